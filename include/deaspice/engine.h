@@ -1,0 +1,62 @@
+/** @file engine.h
+ * Engines that solve a study, behind one table, and the runner that spreads a study over worker processes.
+ */
+#ifndef DEASPICE_ENGINE_H
+#define DEASPICE_ENGINE_H
+
+#include "deaspice/model.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** An engine. A session is the engine's mutable state inside one process; the table entry is const. */
+typedef struct dea_engine {
+    const char *name;    /**< e.g. "ngspice" */
+    const char *summary; /**< one line for --help */
+    bool isolated;       /**< runs only inside a worker process: a foreign library that can crash, hang or be poisoned */
+    double patience;     /**< a worker that needs longer than this for one point, on average over its block, hangs [s] */
+    size_t block;        /**< points that one call of sweep() takes best */
+    /** NULL where the engine can do this model and scene, else why not (one phrase, static). */
+    const char *(*refuses)(const dea_scene *scene, const dea_model *model);
+    /** Starts a session; the caller ends it with end(). */
+    dea_status (*begin)(void **session, dea_error *error);
+    /** Solves points first ... first + count - 1 of the scene's sweep for one model. Never stops at a point past a limit.
+     * Anything but DEA_OK leaves the session unusable; rows are then undefined. */
+    dea_status (*sweep)(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count, dea_row *rows,
+                        dea_error *error);
+    /** Ends a session; NULL is fine. */
+    void (*end)(void *session);
+} dea_engine;
+
+/** Number of engines. */
+DEA_API size_t dea_engine_count(void);
+/** Engine number @p index, NULL past the end. The library owns it. */
+DEA_API const dea_engine *dea_engine_at(size_t index);
+/** Engine by name, NULL if there is none. */
+DEA_API const dea_engine *dea_engine_find(const char *name);
+
+/** How a study is run and who listens. Every callback may be NULL except rows. */
+typedef struct dea_run_options {
+    size_t jobs; /**< worker processes, >= 1; 1 keeps an engine that is not isolated in this process */
+    /** Takes rows in order; @p first counts over models (slowest) and points. A failure ends the run with its status. */
+    dea_status (*rows)(void *user, size_t first, const dea_row *rows, size_t count, dea_error *error);
+    void (*progress)(void *user, size_t done, size_t total);
+    void (*log)(void *user, const char *line); /**< what engines say about points that failed */
+    bool (*stop)(void *user);                  /**< polled at least 10 times a second: true ends the run as interrupted */
+    void *user;
+} dea_run_options;
+
+/** Runs the scene's study: all models, all points, rows in order.
+ *
+ * Workers are forked; none is left behind, whatever way the run ends. A worker that crashes, hangs or fails costs only the points
+ * that it cannot solve even alone: those rows are `failed`.
+ * @return DEA_OK, DEA_ERROR_UNSUPPORTED (the engine refuses a model; nothing was run), DEA_ERROR_ENGINE (no session could begin),
+ *         DEA_ERROR_INTERRUPTED, DEA_ERROR_MEMORY, or what the rows callback returned
+ */
+DEA_API dea_status dea_study_run(const dea_scene *scene, const dea_engine *engine, const dea_run_options *options, dea_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,76 @@
+/** @file model.h
+ * The static models, from the cheapest to the truth, behind one table.
+ */
+#ifndef DEASPICE_MODEL_H
+#define DEASPICE_MODEL_H
+
+#include "deaspice/result.h"
+#include "deaspice/scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** The film at its pre-stretch: all that depends on material and pre-stretch alone, so that a sweep computes it once.
+ * With y = lambda_pre^2: J = I - 3, g = y - y^-2, w = dW/dI, so that sigma(lambda_pre) = 2 g w. */
+typedef struct dea_film {
+    double yeoh[DEA_YEOH_TERMS]; /**< long-term constants [Pa] */
+    double prestretch;           /**< lambda_pre [1] */
+    double permittivity;         /**< absolute permittivity at the pre-stretch [F/m] */
+    double breakdown;            /**< breakdown strength [V/m], +inf: none */
+    double slope;                /**< dsigma/dlambda at the pre-stretch [Pa] */
+    double curvature;            /**< d2sigma/dlambda2 at the pre-stretch [Pa] */
+    double modulus;              /**< operating modulus Y [Pa]: the scene's, else slope */
+    double tension;              /**< nominal stress at the pre-stretch [Pa] */
+    double w11, w12;             /**< tangent moduli at the pre-stretch [Pa] */
+    double square;               /**< lambda_pre^2 [1] */
+    double inverse_fourth;       /**< lambda_pre^-4 [1] */
+    double j, g;                 /**< J, g at the pre-stretch [1] */
+    double w;                    /**< w at the pre-stretch [Pa] */
+} dea_film;
+
+/** One static point: film, geometry and the voltage across the film. */
+typedef struct dea_point {
+    dea_film film;
+    dea_kind kind;
+    double frame_radius;   /**< r [m] */
+    double coverage;       /**< B [1] */
+    double film_thickness; /**< H [m] */
+    double voltage;        /**< U across the film [V] */
+} dea_point;
+
+/** Computes the film of a scene. */
+DEA_API void dea_film_prepare(const dea_scene *scene, dea_film *film);
+/** Sets geometry and voltage of @p point from the scene; its film stays as it is. */
+DEA_API void dea_point_place(const dea_scene *scene, dea_point *point);
+/** True where all numbers of the point are in their ranges (a grid can hold a corner that is not). */
+DEA_API bool dea_point_valid(const dea_point *point);
+
+struct dea_network;
+struct dea_symbols;
+
+/** A static model. */
+typedef struct dea_model {
+    const char *name;      /**< e.g. "lumped" */
+    const char *equation;  /**< e.g. "Eqs. 19-23" */
+    const char *leaves_out; /**< what it neglects */
+    bool lens;             /**< can do a lens too */
+    /** The model's own equations (engine `direct`); fills every field of @p row. @p accuracy is what the user wants. */
+    void (*solve)(const dea_point *point, double accuracy, dea_row *row);
+    /** Adds its elements and limits to a network in displacement form; NULL where the model is not a network. */
+    void (*network)(const struct dea_symbols *symbols, struct dea_network *network);
+    /** It is the boundary value problem of the axisymmetric membrane along the radius. */
+    bool membrane;
+} dea_model;
+
+/** Number of models. */
+DEA_API size_t dea_model_count(void);
+/** Model number @p index from the cheapest up, NULL past the end. The library owns it. */
+DEA_API const dea_model *dea_model_at(size_t index);
+/** Model by name, NULL if there is none. */
+DEA_API const dea_model *dea_model_find(const char *name);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

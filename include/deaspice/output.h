@@ -1,0 +1,36 @@
+/** @file output.h
+ * Writers of static studies (CSV, NetCDF). Rows come in order, block after block, so memory does not grow
+ * with the study. A file appears whole under its name or not at all.
+ */
+#ifndef DEASPICE_OUTPUT_H
+#define DEASPICE_OUTPUT_H
+
+#include "deaspice/result.h"
+#include "deaspice/scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct dea_writer dea_writer;
+
+/** Opens a writer of the study's rows; the scene must outlive it. Where the target cannot be written this fails, before any work.
+ *
+ * @param path   target, "-" for standard output (CSV only)
+ * @param format "csv" or "nc"; NULL: from the ending of @p path, csv where it has none
+ * @param engine name of the engine, for the provenance of the file
+ * @param[out] writer the caller ends it with dea_writer_finish()
+ * @return DEA_OK, DEA_ERROR_USAGE (unknown format), DEA_ERROR_IO, DEA_ERROR_MISSING (no NetCDF library), DEA_ERROR_MEMORY
+ */
+DEA_API dea_status dea_writer_open(const dea_scene *scene, const char *engine, const char *path, const char *format,
+                                   dea_writer **writer, dea_error *error);
+/** Appends @p count rows, the first of them being row number @p first: models slowest, last axis fastest. */
+DEA_API dea_status dea_writer_rows(dea_writer *writer, size_t first, const dea_row *rows, size_t count, dea_error *error);
+/** Ends the file: renames it into place when @p keep is true and all rows came, else removes what was written. Frees the writer;
+ * NULL is fine. A program that catches a signal calls it with @p keep false, from its main flow. */
+DEA_API dea_status dea_writer_finish(dea_writer *writer, bool keep, dea_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

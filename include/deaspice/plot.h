@@ -1,0 +1,45 @@
+/** @file plot.h
+ * Pictures (SVG, PNG) through gnuplot: of static studies, of a material, of a fit. A picture appears whole or not at all.
+ * The format is that of the path's ending, .svg or .png; "-" is not taken.
+ */
+#ifndef DEASPICE_PLOT_H
+#define DEASPICE_PLOT_H
+
+#include "deaspice/fit.h"
+#include "deaspice/material.h"
+#include "deaspice/result.h"
+#include "deaspice/scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct dea_plot dea_plot;
+
+/** Opens the picture of a study; the scene must outlive it. It keeps at most some 2000 points of a curve, so its memory is
+ * bounded.
+ *
+ * One long axis gives strain and displacement over that axis, a curve for each value of the other axes and each model (24 at
+ * most); two axes of more than 12 values and one model give a map of the displacement.
+ * @param[out] plot the caller ends it with dea_plot_finish()
+ * @return DEA_OK, DEA_ERROR_USAGE (ending, a single point, too many curves), DEA_ERROR_IO, DEA_ERROR_MISSING (no gnuplot),
+ *         DEA_ERROR_MEMORY
+ */
+DEA_API dea_status dea_plot_begin(const dea_scene *scene, const char *path, dea_plot **plot, dea_error *error);
+/** Takes @p count rows, the first of them being row number @p first: models slowest, last axis fastest. */
+DEA_API void dea_plot_rows(dea_plot *plot, size_t first, const dea_row *rows, size_t count);
+/** Draws when @p keep is true, and frees the plot; NULL is fine.
+ * @return DEA_OK, DEA_ERROR_USAGE (no point has an equilibrium), DEA_ERROR_IO, DEA_ERROR_ENGINE (gnuplot failed: its words),
+ *         DEA_ERROR_MISSING, DEA_ERROR_MEMORY */
+DEA_API dea_status dea_plot_finish(dea_plot *plot, bool keep, dea_error *error);
+
+/** Draws nominal stress (uniaxial and equi-biaxial) and operating modulus of a material over stretch 1 to 2. Returns as
+ * dea_plot_finish(). */
+DEA_API dea_status dea_plot_material(const dea_material *material, const char *path, dea_error *error);
+/** Draws measured points and fitted curves. Returns as dea_plot_finish(). */
+DEA_API dea_status dea_plot_fit(const dea_fit *fit, const dea_fit_data *data, const char *path, dea_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

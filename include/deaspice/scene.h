@@ -1,0 +1,105 @@
+/** @file scene.h
+ * The scene: one actuator, one material, one drive, one study. Read from YAML, changed by dotted keys.
+ *
+ * Every scalar of a scene has one entry in the key table (src/scene/keys.c): its dotted path, its place in the struct,
+ * its unit and range. The reader, --set, sweep axes and result columns all work from that table.
+ */
+#ifndef DEASPICE_SCENE_H
+#define DEASPICE_SCENE_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "deaspice/material.h"
+#include "deaspice/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct dea_model;
+
+/** Most models that one scene compares (`model: [lumped, coverage]`). */
+enum { DEA_SCENE_MODELS = 8 };
+
+/** Where the electrode is: on the disc (dot) or on the annulus (lens). */
+typedef enum dea_kind { DEA_DOT, DEA_LENS } dea_kind;
+
+/** Geometry as the scene gives it; exactly one of coverage and divide_radius is given. */
+typedef struct dea_actuator {
+    dea_kind kind;
+    double frame_radius;     /**< r [m], > 0 */
+    double coverage;         /**< B = r_a/r [1], 0 < B < 1, NAN where divide_radius is given */
+    double divide_radius;    /**< r_a [m]: electrode_radius of a dot, lens_radius of a lens, NAN where coverage is given */
+    double film_thickness;   /**< H before pre-stretch [m], > 0 */
+    double prestretch;       /**< equi-biaxial pre-stretch [1], >= 1 */
+    double electrode_mass;   /**< mass per area of the electrodes [kg/m^2], >= 0, NAN: none */
+    double focal_length;     /**< lens optics at rest [m], > 0, NAN: none */
+    double refractive_index; /**< of the lens liquid [1], > 1, NAN: none */
+} dea_actuator;
+
+/** Electrical side. */
+typedef struct dea_drive {
+    double voltage;            /**< static voltage U of the source [V] */
+    double series_resistance;  /**< R_s, source and electrodes [Ohm], >= 0, NAN: none */
+    double leakage_resistance; /**< R_p of the film [Ohm], > 0, NAN: none */
+} dea_drive;
+
+/** One axis of a sweep. */
+typedef struct dea_axis {
+    char key[DEA_NAME_LENGTH];    /**< dotted path in the key table */
+    char column[DEA_NAME_LENGTH]; /**< result column with its unit, e.g. voltage_V */
+    char unit[16];                /**< SI unit, "1" where the quantity has no dimension */
+    size_t offset;                /**< place of the scalar inside dea_scene, a double */
+    bool changes_film;            /**< moves the material or the pre-stretch, not only geometry or drive */
+    bool uniform;                 /**< values[i] = from + (to - from) i/(count - 1) */
+    double *values;               /**< count values [unit], owned by the scene */
+    size_t count;                 /**< >= 1 */
+} dea_axis;
+
+/** A scene. Owns its title and axes; free with dea_scene_free(). */
+typedef struct dea_scene {
+    char *title;                   /**< may be empty, never NULL */
+    dea_actuator actuator;
+    dea_material material;
+    dea_drive drive;
+    const struct dea_model *models[DEA_SCENE_MODELS]; /**< models to run one after the other, model_count of them */
+    size_t model_count;                               /**< >= 1 */
+    double accuracy;               /**< wanted relative error of the solution [1], 0 < accuracy < 1, default 1e-6 */
+    dea_axis *axes;                /**< sweep axes in the order of the file, axis_count of them; none is one point */
+    size_t axis_count;
+} dea_scene;
+
+/** One `key=value` of the command line. */
+typedef struct dea_setting {
+    const char *text; /**< e.g. "actuator.prestretch=1.3" */
+} dea_setting;
+
+/** Reads a scene.
+ *
+ * A setting names its key by the whole dotted path or by the end of it (`prestretch`, `yeoh.C1`) and replaces what the file
+ * says; coverage and a radius replace each other. Of several settings of one key the last holds. A key that the scene sweeps takes
+ * no scalar setting: set its axis, `study.sweep.prestretch=[1.3]`, or `study.sweep={}` for none. A swept key counts as given:
+ * without a scalar of its own it holds the first value of its axis. An axis of one point is `from`, with `to` left out or equal.
+ *
+ * @param path     file name, "-" for standard input; only regular files and pipes are read, at most 16 MiB
+ * @param settings overrides with the same checks and units as the file, may be NULL when @p setting_count is 0
+ * @param model    model name, or names with commas between, that replaces the scene's; or NULL
+ * @param[out] scene valid only on DEA_OK; the caller frees it with dea_scene_free()
+ * @return DEA_OK, DEA_ERROR_SCENE (message "file:line:column: key: ..."), DEA_ERROR_IO, DEA_ERROR_MEMORY
+ */
+DEA_API dea_status dea_scene_read(const char *path, const dea_setting *settings, size_t setting_count, const char *model,
+                                  dea_scene *scene, dea_error *error);
+/** Same from memory; @p name stands in messages and relative material files are found beside @p folder. */
+DEA_API dea_status dea_scene_parse(const char *text, size_t length, const char *name, const char *folder,
+                                   const dea_setting *settings, size_t setting_count, const char *model,
+                                   dea_scene *scene, dea_error *error);
+/** Frees what the scene owns; NULL and a zeroed scene are fine. */
+DEA_API void dea_scene_free(dea_scene *scene);
+/** Points of the scene's sweep for one model: product of the axis lengths, 1 without axes. */
+DEA_API size_t dea_scene_point_count(const dea_scene *scene);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,75 @@
+/* Engine `direct`: the models' own equations, point after point, no network. */
+#include "engine/engines.h"
+#include "engine/line.h"
+
+typedef struct visit_state {
+    const dea_model *model;
+    dea_row *rows;
+} visit_state;
+
+static const char *refuses(const dea_scene *scene, const dea_model *model)
+{
+    (void)scene;
+    return model->solve ? NULL : "it has no equation of its own";
+}
+
+static dea_status begin(void **session, dea_error *error)
+{
+    (void)error;
+    *session = NULL;
+    return DEA_OK;
+}
+
+static void solve_point(const dea_model *model, const dea_scene *scene, const dea_point *point, dea_row *row)
+{
+    if (dea_point_valid(point)) {
+        model->solve(point, scene->accuracy, row);
+    } else {
+        *row = dea_row_failed();
+    }
+}
+
+static dea_status solve_line(void *user, const dea_scene *scene, const dea_line *line, dea_error *error)
+{
+    (void)error;
+    const visit_state *state = user;
+    dea_scene here = *scene;
+    dea_point point;
+    dea_film_prepare(&here, &point.film);
+    for (size_t i = 0; i < line->count; i++) {
+        if (line->axis) {
+            dea_axis_set(line->axis, &here, line->axis->values[line->from + i]);
+            if (line->axis->changes_film) {
+                dea_film_prepare(&here, &point.film);
+            }
+        }
+        dea_point_place(&here, &point);
+        solve_point(state->model, &here, &point, &state->rows[line->row + i * line->stride]);
+    }
+    return DEA_OK;
+}
+
+static dea_status sweep(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count, dea_row *rows,
+                        dea_error *error)
+{
+    (void)session;
+    visit_state state = {model, rows};
+    return dea_lines_visit(scene, first, count, solve_line, &state, error);
+}
+
+static void end(void *session)
+{
+    (void)session;
+}
+
+const dea_engine dea_engine_direct = {
+    .name = "direct",
+    .summary = "the models' own equations: closed forms and safeguarded roots",
+    .isolated = false,
+    .patience = 1.0,
+    .block = 16384,
+    .refuses = refuses,
+    .begin = begin,
+    .sweep = sweep,
+    .end = end,
+};

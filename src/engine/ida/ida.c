@@ -1,0 +1,127 @@
+/* Engine `ida`: networks and the exact membrane by SUNDIALS. */
+#include <stdlib.h>
+
+#include "engine/engines.h"
+#include "engine/ida/sundials.h"
+#include "engine/line.h"
+#include "network/balance.h"
+
+typedef struct session_state {
+    SUNContext context;     /* owned, as all */
+    dea_ramp *ramp;
+    dea_shooting *shooting;
+} session_state;
+
+typedef struct visit_state {
+    session_state *session;
+    const dea_model *model;
+    dea_row *rows;
+} visit_state;
+
+static const char *refuses(const dea_scene *scene, const dea_model *model)
+{
+    (void)scene;
+    return model->network || model->membrane ? NULL : "it is neither a network nor a membrane that IDA could solve";
+}
+
+static void end(void *session)
+{
+    session_state *state = session;
+    if (state) {
+        dea_ramp_close(state->ramp);
+        dea_shooting_close(state->shooting);
+        if (state->context) {
+            SUNContext_Free(&state->context);
+        }
+        free(state);
+    }
+}
+
+static dea_status begin(void **session, dea_error *error)
+{
+    session_state *state = calloc(1, sizeof *state);
+    *session = NULL;
+    if (!state) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while IDA starts");
+    }
+    dea_status status = dea_sundials_open(&state->context, error);
+    if (status == DEA_OK) {
+        status = dea_ramp_open(state->context, &state->ramp, error);
+    }
+    if (status == DEA_OK) {
+        status = dea_shooting_open(state->context, &state->shooting, error);
+    }
+    if (status != DEA_OK) {
+        end(state);
+        return status;
+    }
+    *session = state;
+    return DEA_OK;
+}
+
+static dea_status solve_network(visit_state *state, const dea_scene *scene, const dea_line *line, dea_error *error)
+{
+    dea_network network;
+    dea_balance balance;
+    dea_status status = dea_network_build(scene, state->model, line->axis, &network, error);
+    if (status == DEA_OK) {
+        status = dea_balance_open(&network, &balance, error);
+    }
+    dea_network_free(&network);
+    if (status != DEA_OK) {
+        return status;
+    }
+    for (size_t i = 0; i < line->count; i++) {
+        const double symbol = line->axis ? line->axis->values[line->from + i] : 0.0;
+        dea_ramp_solve(state->session->ramp, &balance, symbol, scene->accuracy, &state->rows[line->row + i * line->stride]);
+    }
+    dea_balance_close(&balance);
+    return DEA_OK;
+}
+
+static void solve_membrane(visit_state *state, const dea_scene *scene, const dea_line *line)
+{
+    dea_scene here = *scene;
+    dea_point point;
+    for (size_t i = 0; i < line->count; i++) {
+        dea_row *row = &state->rows[line->row + i * line->stride];
+        if (line->axis) {
+            dea_axis_set(line->axis, &here, line->axis->values[line->from + i]);
+        }
+        dea_film_prepare(&here, &point.film);
+        dea_point_place(&here, &point);
+        *row = dea_row_failed();
+        if (dea_point_valid(&point)) {
+            dea_shooting_solve(state->session->shooting, &point, scene->accuracy, row);
+        }
+    }
+}
+
+static dea_status solve_line(void *user, const dea_scene *scene, const dea_line *line, dea_error *error)
+{
+    visit_state *state = user;
+    if (state->model->network) {
+        return solve_network(state, scene, line, error);
+    }
+    solve_membrane(state, scene, line);
+    return DEA_OK;
+}
+
+static dea_status sweep(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count, dea_row *rows,
+                        dea_error *error)
+{
+    visit_state state = {session, model, rows};
+    return dea_lines_visit(scene, first, count, solve_line, &state, error);
+}
+
+const dea_engine dea_engine_ida = {
+    .name = "ida",
+    .summary = "the network, or the exact membrane, by SUNDIALS IDA",
+    .isolated = false,
+    .patience = 20.0,
+    .block = 256,
+    .refuses = refuses,
+    .begin = begin,
+    .sweep = sweep,
+    .end = end,
+};

@@ -1,0 +1,221 @@
+#include "engine/ngspice/library.h"
+
+#include <locale.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <ngspice/sharedspice.h>
+
+enum { LOG_SIZE = 3000, LINE_SIZE = 160 };
+
+struct dea_ngspice {
+    char log[LOG_SIZE];        /* first lines of what the library said since the last run, repeats left out */
+    char last[LINE_SIZE];      /* last line of the log */
+    bool complained;           /* a line of the log names an error */
+    bool lost;                 /* the library asked to be detached */
+    bool loaded;               /* a circuit is loaded */
+};
+
+/* Words of a line that names a failure; texts differ from version to version. */
+static bool names_failure(const char *line)
+{
+    static const char *const words[] = {"error", "singular", "aborted", "failed", "unusual", "resistance to low", "cannot"};
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+        const size_t length = strlen(words[i]);
+        for (const char *at = line; *at; at++) {
+            if (strncasecmp(at, words[i], length) == 0) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static int on_line(char *text, int id, void *user)
+{
+    dea_ngspice *library = user;
+    const bool from_stderr = strncmp(text, "stderr ", 7) == 0;
+    const char *line = from_stderr || strncmp(text, "stdout ", 7) == 0 ? text + 7 : text;
+    (void)id;
+    if (from_stderr && names_failure(line)) {
+        library->complained = true;
+    }
+    if (from_stderr && strncmp(line, library->last, LINE_SIZE - 1) != 0) {
+        const size_t used = strlen(library->log);
+        snprintf(library->last, LINE_SIZE, "%s", line);
+        snprintf(library->log + used, LOG_SIZE - used, "%s%s", used ? "\n" : "", library->last);
+    }
+    return 0;
+}
+
+static int on_status(char *text, int id, void *user)
+{
+    (void)text, (void)id, (void)user;
+    return 0;
+}
+
+static int on_detach(int code, bool immediate, bool quit, int id, void *user)
+{
+    dea_ngspice *library = user;
+    (void)code, (void)immediate, (void)quit, (void)id;
+    library->lost = true;
+    return 0;
+}
+
+/* A private folder with empty start-up files: no .spiceinit or spinit of anybody else is run. The folder goes at once after start-up. */
+static dea_status enter_private_folder(char *folder, size_t size, dea_error *error)
+{
+    const char *base = getenv("TMPDIR");
+    snprintf(folder, size, "%s/deaspice-XXXXXX", base && base[0] == '/' ? base : "/tmp");
+    if (!mkdtemp(folder) || chdir(folder) != 0) {
+        return dea_fail(error, DEA_ERROR_IO, "no private start-up folder for ngspice under %s", base && base[0] == '/' ? base : "/tmp");
+    }
+    static const char *const files[] = {".spiceinit", "scripts/spinit"};
+    bool written = mkdir("scripts", 0700) == 0;
+    for (size_t i = 0; written && i < 2; i++) {
+        FILE *file = fopen(files[i], "w");
+        written = file && fclose(file) == 0;
+    }
+    if (!written) {
+        return dea_fail(error, DEA_ERROR_IO, "the private start-up folder %s cannot be written", folder);
+    }
+    setenv("SPICE_LIB_DIR", folder, 1);
+    unsetenv("SPICE_SCRIPTS");
+    return DEA_OK;
+}
+
+static void leave_private_folder(const char *folder)
+{
+    (void)unlink("scripts/spinit");
+    (void)unlink(".spiceinit");
+    (void)rmdir("scripts");
+    (void)rmdir(folder);
+}
+
+static void command(const char *text)
+{
+    char line[64];
+    snprintf(line, sizeof line, "%s", text);
+    ngSpice_Command(line);
+}
+
+dea_status dea_ngspice_open(dea_ngspice **library, dea_error *error)
+{
+    char folder[4096];
+    *library = NULL;
+    dea_ngspice *mine = calloc(1, sizeof *mine);
+    if (!mine) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while ngspice starts");
+    }
+    setlocale(LC_ALL, "C"); /* the library reads numbers in the process's locale */
+    dea_status status = enter_private_folder(folder, sizeof folder, error);
+    if (status == DEA_OK && ngSpice_Init(on_line, on_status, on_detach, NULL, NULL, NULL, mine) != 0) {
+        status = dea_fail(error, DEA_ERROR_ENGINE, "ngspice did not start: %s", mine->log);
+    }
+    leave_private_folder(folder);
+    if (status != DEA_OK) {
+        free(mine);
+        return status;
+    }
+    command("set noaskquit");
+    command("set nomoremode");
+    command("unset ngbehavior");
+    *library = mine;
+    return DEA_OK;
+}
+
+void dea_ngspice_close(dea_ngspice *library)
+{
+    free(library);
+}
+
+static void clear_log(dea_ngspice *library)
+{
+    library->log[0] = library->last[0] = '\0';
+    library->complained = false;
+}
+
+/* Cuts a copy of the netlist into cards and loads it. */
+static dea_status load(dea_ngspice *library, const char *netlist, dea_error *error)
+{
+    size_t lines = 0;
+    for (const char *at = netlist; *at; at++) {
+        lines += *at == '\n';
+    }
+    char *text = strdup(netlist);
+    char **cards = calloc(lines + 1, sizeof *cards);
+    int code = 1;
+    if (text && cards) {
+        size_t count = 0;
+        char *rest = text;
+        for (char *card = strsep(&rest, "\n"); card && count < lines; card = strsep(&rest, "\n")) {
+            cards[count++] = card;
+        }
+        code = ngSpice_Circ(cards);
+    }
+    free(cards);
+    free(text);
+    library->loaded = true;
+    if (code != 0 || library->lost || library->complained) {
+        return dea_fail(error, DEA_ERROR_ENGINE, "ngspice refused the netlist: %s", library->log);
+    }
+    return DEA_OK;
+}
+
+/* Copies the vector of the plot that the run made. The old plot, or the plot of constants, must never be taken for it. */
+static dea_status copy(const char *plot_before, const char *vector, dea_ngspice_result *result, dea_error *error)
+{
+    const char *plot = ngSpice_CurPlot();
+    char name[128];
+    if (!plot || strcmp(plot, plot_before) == 0) {
+        return DEA_OK; /* nothing was solved */
+    }
+    snprintf(name, sizeof name, "%s.%s", plot, vector);
+    const pvector_info info = ngGet_Vec_Info(name);
+    if (!info || !info->v_realdata || info->v_length <= 0) {
+        return DEA_OK;
+    }
+    const size_t size = (size_t)info->v_length * sizeof *result->values;
+    result->values = malloc(size);
+    if (!result->values) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for the answer of ngspice");
+    }
+    memcpy(result->values, info->v_realdata, size);
+    result->count = (size_t)info->v_length;
+    for (size_t i = 0; i < result->count; i++) {
+        if (!isfinite(result->values[i])) {
+            result->count = i; /* what follows a NaN is no answer */
+        }
+    }
+    return DEA_OK;
+}
+
+dea_status dea_ngspice_run(dea_ngspice *library, const char *netlist, const char *vector, dea_ngspice_result *result, dea_error *error)
+{
+    char before[64];
+    *result = (dea_ngspice_result){0};
+    clear_log(library);
+    if (library->loaded) {
+        command("remcirc"); /* else a refused circuit would leave the old one to run again */
+        library->loaded = false;
+    }
+    const dea_status status = load(library, netlist, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    command("optran 1 1 1 0 0 0"); /* no rescue by a transient: it gives wrong numbers without an error */
+    const char *plot = ngSpice_CurPlot();
+    snprintf(before, sizeof before, "%s", plot ? plot : "");
+    command("run");
+    const dea_status copied = library->lost ? dea_fail(error, DEA_ERROR_ENGINE, "ngspice gave up: %s", library->log)
+                                            : copy(before, vector, result, error);
+    command("destroy all");
+    ngSpice_Command(NULL); /* frees its command history */
+    return copied;
+}

@@ -1,0 +1,24 @@
+/* One libngspice in this process: start it, run a circuit, read a vector. Runs only in a worker process, which it changes
+ * (working directory, locale, environment) and which must end after a failure that leaves the library unusable. */
+#ifndef DEA_NGSPICE_LIBRARY_H
+#define DEA_NGSPICE_LIBRARY_H
+
+#include "deaspice/status.h"
+
+typedef struct dea_ngspice dea_ngspice;
+
+/* What came of a circuit. */
+typedef struct dea_ngspice_result {
+    double *values; /* owned by the caller: free() */
+    size_t count;   /* points that were solved, may be fewer than wanted */
+} dea_ngspice_result;
+
+/* Starts the library with no start-up file of anybody. Ends with dea_ngspice_close(). */
+dea_status dea_ngspice_open(dea_ngspice **library, dea_error *error);
+void dea_ngspice_close(dea_ngspice *library);
+
+/* Loads a netlist (one card a line), runs its analysis and copies vector @p vector of the new plot. A run that ends early is no failure
+ * of this call: it gives the points before its end. DEA_ERROR_ENGINE with the library's log: the netlist was refused, or the library is lost. */
+dea_status dea_ngspice_run(dea_ngspice *library, const char *netlist, const char *vector, dea_ngspice_result *result, dea_error *error);
+
+#endif

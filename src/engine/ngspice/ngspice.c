@@ -1,0 +1,209 @@
+/* Engine `ngspice`: the network in libngspice. A line of points is one circuit and one DC sweep over the index of the points; each answer
+ * is then checked against the network (force balance, no fold between rest and it). What does not pass is solved again alone, with the load
+ * growing from rest. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "engine/engines.h"
+#include "engine/line.h"
+#include "engine/ngspice/library.h"
+#include "netlist/netlist.h"
+#include "network/balance.h"
+
+enum { RAMP_STEPS = 50, SHORTEST_SWEEP = 32, LONGEST_SWEEP = 100000 };
+
+typedef struct visit_state {
+    dea_ngspice *library;
+    const dea_model *model;
+    dea_row *rows;
+} visit_state;
+
+/* One line with its network. */
+typedef struct line_job {
+    visit_state *state;
+    const dea_scene *scene; /* axes at the first point */
+    const dea_line *line;
+    dea_network network;
+    dea_balance balance;
+} line_job;
+
+static const char *refuses(const dea_scene *scene, const dea_model *model)
+{
+    (void)scene;
+    return model->network ? NULL : "it has no network form that ngspice could solve";
+}
+
+static dea_status begin(void **session, dea_error *error)
+{
+    dea_ngspice *library;
+    const dea_status status = dea_ngspice_open(&library, error);
+    *session = library;
+    return status;
+}
+
+static void end(void *session)
+{
+    dea_ngspice_close(session);
+}
+
+static double symbol_at(const line_job *job, size_t i)
+{
+    return job->line->axis ? job->line->axis->values[job->line->from + i] : 0.0;
+}
+
+static dea_row *row_at(const line_job *job, size_t i)
+{
+    return &job->state->rows[job->line->row + i * job->line->stride];
+}
+
+/* Sizes of force and displacement for the tolerances: what a stretch by its own size would take. */
+static void set_scales(line_job *job, size_t i, dea_netlist_study *study)
+{
+    const dea_actuator *actuator = &job->scene->actuator;
+    const dea_forces f = dea_balance_forces(&job->balance, symbol_at(job, i), 0.0);
+    study->length_scale = actuator->frame_radius;
+    study->force_scale = fabs(f.elastic_slope) * actuator->frame_radius;
+}
+
+/* Fills the row of point i where u is its answer to a tenth of the wanted accuracy. */
+static bool accept(line_job *job, size_t i, double u)
+{
+    return dea_balance_accept(&job->balance, symbol_at(job, i), u, 0.1 * job->scene->accuracy, row_at(job, i));
+}
+
+/* Solves one point alone, its load growing from rest. */
+static dea_status solve_alone(line_job *job, size_t i, dea_error *error)
+{
+    double share, fold;
+    const double symbol = symbol_at(job, i);
+    *row_at(job, i) = dea_row_failed();
+    if (!dea_balance_valid(&job->balance, symbol)) {
+        return DEA_OK;
+    }
+    if (dea_balance_forces(&job->balance, symbol, 0.0).load == 0.0 && accept(job, i, 0.0)) {
+        return DEA_OK;
+    }
+    if (dea_balance_folds(&job->balance, symbol, &share, &fold)) {
+        row_at(job, i)->state = DEA_STATE_PULL_IN;
+        return DEA_OK;
+    }
+    dea_scene here = *job->scene;
+    if (job->line->axis) {
+        dea_axis_set(job->line->axis, &here, symbol);
+    }
+    dea_network network;
+    char *netlist = NULL;
+    dea_ngspice_result result = {0};
+    dea_netlist_study study = {.ramp = RAMP_STEPS};
+    set_scales(job, i, &study);
+    dea_status status = dea_network_build(&here, job->state->model, NULL, &network, error);
+    if (status == DEA_OK) {
+        status = dea_netlist_write(&network, &study, &netlist, error);
+    }
+    if (status == DEA_OK) {
+        status = dea_ngspice_run(job->state->library, netlist, "edge", &result, error);
+    }
+    if (status == DEA_OK && result.count == RAMP_STEPS + 1) {
+        (void)accept(job, i, result.values[RAMP_STEPS]);
+    }
+    free(result.values);
+    free(netlist);
+    dea_network_free(&network);
+    return status;
+}
+
+/* One circuit for count points from number @p from of the line on. */
+static dea_status sweep_circuit(line_job *job, size_t from, size_t count, dea_ngspice_result *result, dea_error *error)
+{
+    char *netlist;
+    dea_netlist_study study = {.axis = job->line->axis, .from = job->line->from + from, .count = count};
+    set_scales(job, from, &study);
+    dea_status status = dea_netlist_write(&job->network, &study, &netlist, error);
+    if (status == DEA_OK) {
+        status = dea_ngspice_run(job->state->library, netlist, "edge", result, error);
+        free(netlist);
+    }
+    return status;
+}
+
+/* True where the point has load and an equilibrium, so that a sweep can start there. */
+static bool can_start(line_job *job, size_t i)
+{
+    double share, fold;
+    const double symbol = symbol_at(job, i);
+    return dea_balance_valid(&job->balance, symbol) && dea_balance_forces(&job->balance, symbol, 0.0).load != 0.0 &&
+           !dea_balance_folds(&job->balance, symbol, &share, &fold);
+}
+
+/* Sweeps count points from number @p from on and takes its answers up to the first that does not pass; *good says how many. */
+static dea_status sweep_stretch(line_job *job, size_t from, size_t count, size_t *good, dea_error *error)
+{
+    dea_ngspice_result result = {0};
+    *good = 0;
+    const dea_status status = sweep_circuit(job, from, count, &result, error);
+    while (*good < result.count && accept(job, from + *good, result.values[*good])) {
+        ++*good;
+    }
+    free(result.values);
+    return status;
+}
+
+/* The whole line. Where a sweep breaks off, or leaves the branch that is connected to rest, the point is solved alone and a new sweep starts
+ * behind it: a short one, in case of more such points, then longer ones again. */
+static dea_status solve_points(line_job *job, dea_error *error)
+{
+    const dea_axis *axis = job->line->axis;
+    const size_t longest = axis && !axis->uniform ? DEA_NETLIST_LIST : LONGEST_SWEEP;
+    size_t reach = longest;
+    size_t i = 0;
+    dea_status status = DEA_OK;
+    while (i < job->line->count && status == DEA_OK) {
+        if (can_start(job, i)) {
+            size_t good;
+            const size_t left = job->line->count - i;
+            const size_t count = left < reach ? left : reach;
+            status = sweep_stretch(job, i, count, &good, error);
+            i += good;
+            reach = good < count ? SHORTEST_SWEEP : 2 * reach < longest ? 2 * reach : longest;
+            if (status != DEA_OK || good == count) {
+                continue;
+            }
+        }
+        status = solve_alone(job, i++, error);
+    }
+    return status;
+}
+
+static dea_status solve_line(void *user, const dea_scene *scene, const dea_line *line, dea_error *error)
+{
+    line_job job = {.state = user, .scene = scene, .line = line};
+    dea_status status = dea_network_build(scene, job.state->model, line->axis, &job.network, error);
+    if (status == DEA_OK) {
+        status = dea_balance_open(&job.network, &job.balance, error);
+    }
+    if (status == DEA_OK) {
+        status = solve_points(&job, error);
+        dea_balance_close(&job.balance);
+    }
+    dea_network_free(&job.network);
+    return status;
+}
+
+static dea_status sweep(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count, dea_row *rows,
+                        dea_error *error)
+{
+    visit_state state = {session, model, rows};
+    return dea_lines_visit(scene, first, count, solve_line, &state, error);
+}
+
+const dea_engine dea_engine_ngspice = {
+    .name = "ngspice",
+    .summary = "the network in libngspice, in worker processes",
+    .isolated = true,
+    .patience = 0.02,
+    .block = 20000,
+    .refuses = refuses,
+    .begin = begin,
+    .sweep = sweep,
+    .end = end,
+};

@@ -1,0 +1,189 @@
+#include "engine/plan.h"
+
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+
+enum {
+    MOST_ALONE = 64,  /* points that are isolated one by one in a run */
+    MOST_LOSSES = 16, /* lost workers after which failing ranges are no longer halved */
+    HOPELESS_LOSSES = 32,
+    HOPELESS_STREAK = 16,
+    MOST_LINES = 200,
+    LINE_LENGTH = DEA_ERROR_LENGTH + 512,
+    MOST_HERE = 1024,   /* points of an engine that may run in this process, which cannot be stopped inside a block */
+    SMALLEST_SHARE = 16 /* a block is not cut below this fraction of what the engine takes best */
+};
+
+static size_t divide_up(size_t a, size_t b)
+{
+    return a / b + (a % b != 0);
+}
+
+static size_t block_size(const dea_engine *engine, size_t jobs, size_t points, size_t total)
+{
+    size_t best = engine->block > 0 ? engine->block : 1;
+    size_t block = best;
+    if (jobs > 1) {
+        size_t share = divide_up(total, jobs > SIZE_MAX / 2 ? jobs : 2 * jobs);
+        size_t least = divide_up(best, SMALLEST_SHARE);
+        if (share < least)
+            share = least;
+        if (share < block)
+            block = share;
+    }
+    if (!engine->isolated && block > MOST_HERE)
+        block = MOST_HERE;
+    return block < points ? block : points;
+}
+
+dea_status dea_plan_make(const dea_scene *scene, const dea_engine *engine, const dea_run_options *options, dea_plan *plan,
+                         dea_error *error)
+{
+    size_t points = dea_scene_point_count(scene);
+    if (scene->model_count == 0 || points == 0)
+        return dea_fail(error, DEA_ERROR_USAGE, "the study has no point");
+    if (points > SIZE_MAX / sizeof(dea_row) / scene->model_count)
+        return dea_fail(error, DEA_ERROR_USAGE, "the study has more points than this machine can count");
+    *plan = (dea_plan){.scene = scene, .engine = engine, .options = options, .points = points};
+    plan->total = points * scene->model_count;
+    plan->block = block_size(engine, options->jobs, points, plan->total);
+    plan->blocks_per_model = divide_up(points, plan->block);
+    plan->blocks = plan->blocks_per_model * scene->model_count;
+    return DEA_OK;
+}
+
+dea_span dea_plan_span(const dea_plan *plan, size_t block)
+{
+    size_t model = block / plan->blocks_per_model;
+    size_t first = (block % plan->blocks_per_model) * plan->block;
+    size_t left = plan->points - first;
+    return (dea_span){.model = plan->scene->models[model],
+                      .first = first,
+                      .row = model * plan->points + first,
+                      .count = left < plan->block ? left : plan->block};
+}
+
+dea_attempt dea_attempt_start(size_t count)
+{
+    return (dea_attempt){.count = count, .end = count};
+}
+
+bool dea_attempt_over(const dea_attempt *attempt)
+{
+    return attempt->next == attempt->count;
+}
+
+static void try_next_range(dea_attempt *attempt)
+{
+    if (attempt->suspect > attempt->next) {
+        size_t half = (attempt->suspect - attempt->next) / 2;
+        attempt->end = attempt->next + (half > 0 ? half : 1);
+    } else {
+        attempt->suspect = 0;
+        attempt->end = attempt->count;
+    }
+}
+
+void dea_attempt_solved(dea_attempt *attempt, dea_damage *damage)
+{
+    damage->streak = 0;
+    attempt->next = attempt->end;
+    try_next_range(attempt);
+}
+
+static bool isolates(const dea_damage *damage)
+{
+    return damage->alone < MOST_ALONE && damage->losses < MOST_LOSSES;
+}
+
+bool dea_damage_hopeless(const dea_damage *damage)
+{
+    return damage->losses >= HOPELESS_LOSSES || damage->streak >= HOPELESS_STREAK;
+}
+
+void dea_plan_log(const dea_plan *plan, dea_damage *damage, const char *format, ...)
+{
+    if (!plan->options->log || damage->lines >= MOST_LINES)
+        return;
+    damage->lines++;
+    char line[LINE_LENGTH];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    plan->options->log(plan->options->user, line);
+    if (damage->lines == MOST_LINES)
+        plan->options->log(plan->options->user, "more failures follow and are not listed");
+}
+
+/* Writes e.g. " (coverage=0.5, voltage_V=4500)"; the last axis varies fastest. */
+static void point_place(const dea_scene *scene, size_t point, char *text, size_t size)
+{
+    size_t used = 0;
+    size_t stride = dea_scene_point_count(scene);
+    text[0] = '\0';
+    for (size_t i = 0; i < scene->axis_count && used < size; i++) {
+        const dea_axis *axis = &scene->axes[i];
+        stride /= axis->count;
+        double value = axis->values[point / stride % axis->count];
+        int length = snprintf(text + used, size - used, "%s%s=%.9g", i == 0 ? " (" : ", ", axis->column, value);
+        used += length > 0 ? (size_t)length : 0;
+    }
+    if (scene->axis_count > 0 && used < size)
+        snprintf(text + used, size - used, ")");
+}
+
+static void log_failure(const dea_plan *plan, const dea_span *span, const dea_attempt *attempt, const char *why,
+                        dea_damage *damage)
+{
+    char place[256];
+    size_t first = span->first + attempt->next;
+    if (attempt->end - attempt->next == 1) {
+        point_place(plan->scene, first, place, sizeof place);
+        dea_plan_log(plan, damage, "%s, %s, point %zu%s: %s", plan->engine->name, span->model->name, first, place, why);
+    } else {
+        dea_plan_log(plan, damage, "%s, %s, points %zu to %zu, not isolated after too many failures: %s", plan->engine->name,
+                     span->model->name, first, span->first + attempt->end - 1, why);
+    }
+}
+
+void dea_rows_fail(dea_row *rows, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        rows[i] = dea_row_failed();
+}
+
+void dea_attempt_failed(dea_attempt *attempt, const dea_plan *plan, const dea_span *span, dea_row *rows, const char *why,
+                        dea_damage *damage)
+{
+    bool alone = attempt->end - attempt->next == 1;
+    if (!alone && isolates(damage)) {
+        attempt->suspect = attempt->end;
+        try_next_range(attempt);
+        return;
+    }
+    if (!isolates(damage))
+        damage->streak++;
+    if (alone)
+        damage->alone++;
+    log_failure(plan, span, attempt, why, damage);
+    dea_rows_fail(rows + attempt->next, attempt->end - attempt->next);
+    attempt->next = attempt->end;
+    attempt->suspect = 0;
+    try_next_range(attempt);
+}
+
+dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const dea_row *rows, dea_error *error)
+{
+    const dea_run_options *options = plan->options;
+    dea_status status = options->rows(options->user, span->row, rows, span->count, error);
+    if (status == DEA_OK && options->progress)
+        options->progress(options->user, span->row + span->count, plan->total);
+    return status;
+}
+
+bool dea_plan_stopped(const dea_plan *plan)
+{
+    return plan->options->stop && plan->options->stop(plan->options->user);
+}

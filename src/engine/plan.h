@@ -1,0 +1,72 @@
+/** @file plan.h
+ * How a study is cut into blocks, and how the points that an engine cannot solve are found inside a block.
+ */
+#ifndef DEA_ENGINE_PLAN_H
+#define DEA_ENGINE_PLAN_H
+
+#include "deaspice/engine.h"
+
+/** A study cut into blocks that never cross from one model to the next. */
+typedef struct dea_plan {
+    const dea_scene *scene;
+    const dea_engine *engine;
+    const dea_run_options *options;
+    size_t points; /**< points of one model */
+    size_t total;  /**< rows of the study: models times points */
+    size_t block;  /**< most points in a block */
+    size_t blocks_per_model;
+    size_t blocks; /**< of the study */
+} dea_plan;
+
+/** One block. */
+typedef struct dea_span {
+    const dea_model *model;
+    size_t first; /**< first point, counted within its model */
+    size_t row;   /**< first row, counted over the study */
+    size_t count; /**< points, >= 1 */
+} dea_span;
+
+/** Progress inside one block: points before `next` are settled, and `suspect` > next ends a range known to fail. */
+typedef struct dea_attempt {
+    size_t count;   /**< points of the block */
+    size_t next;    /**< first point that is not settled */
+    size_t end;     /**< end of the range that is tried now */
+    size_t suspect; /**< end of a range from next on that failed as a whole, 0: none */
+} dea_attempt;
+
+/** What went wrong so far in a run; bounds the time that a broken engine can take. */
+typedef struct dea_damage {
+    size_t alone;  /**< points that failed alone */
+    size_t losses; /**< workers that hung, or went while they had nothing to do */
+    size_t streak; /**< ranges given up since the last one that was solved, after isolating ended */
+    size_t lines;  /**< lines written to the log */
+} dea_damage;
+
+/** Cuts the study for @p options->jobs workers. */
+dea_status dea_plan_make(const dea_scene *scene, const dea_engine *engine, const dea_run_options *options, dea_plan *plan,
+                         dea_error *error);
+/** Block number @p block. */
+dea_span dea_plan_span(const dea_plan *plan, size_t block);
+
+/** Starts a block of @p count points; the whole of it is tried first. */
+dea_attempt dea_attempt_start(size_t count);
+/** True when every point of the block is settled. */
+bool dea_attempt_over(const dea_attempt *attempt);
+/** The range next ... end - 1 was solved. */
+void dea_attempt_solved(dea_attempt *attempt, dea_damage *damage);
+/** The range next ... end - 1 failed for the reason @p why: halves it, or marks its rows (those of the block) as failed and tells
+ * the log. */
+void dea_attempt_failed(dea_attempt *attempt, const dea_plan *plan, const dea_span *span, dea_row *rows, const char *why,
+                        dea_damage *damage);
+/** True when the engine is past hope: nothing more is tried, the remaining rows are failed. */
+bool dea_damage_hopeless(const dea_damage *damage);
+/** Marks rows as failed. */
+void dea_rows_fail(dea_row *rows, size_t count);
+/** Hands a block to the rows callback and tells progress. */
+dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const dea_row *rows, dea_error *error);
+/** True when the caller wants the run to end. */
+bool dea_plan_stopped(const dea_plan *plan);
+/** One line for the caller's log. */
+void dea_plan_log(const dea_plan *plan, dea_damage *damage, const char *format, ...) DEA_PRINTF(3, 4);
+
+#endif

@@ -1,0 +1,337 @@
+#define _GNU_SOURCE
+#include "engine/pool.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <time.h>
+
+#include "engine/worker.h"
+
+enum { SLOTS_PER_WORKER = 4, MOST_WORKERS = 1024, WAIT_MS = 50 };
+
+static const double longest_tick = 1; /* [s] the pool's clock stands still while this process is stopped */
+static const double start_time = 30;  /* [s] an engine may take to begin a session */
+
+/* Block number n lives in slot n % slot_count from its first attempt until its rows are handed over. */
+typedef struct dea_slot {
+    dea_span span;
+    dea_attempt attempt;
+    dea_row *rows; /* shared memory */
+    bool busy;     /* a worker has its current range */
+} dea_slot;
+
+typedef struct dea_pool {
+    const dea_plan *plan;
+    double beyond;
+    dea_worker *workers;
+    size_t worker_count; /* places for workers */
+    size_t limit;        /* workers that may live at a time, <= worker_count */
+    struct pollfd *polls;
+    dea_slot *slots;
+    size_t slot_count;
+    size_t opened;    /* blocks that have a slot or had one */
+    size_t delivered; /* blocks handed over */
+    dea_damage damage;
+    double clock, last; /* [s] */
+    void *memory;       /* shared: rows of the slots, then errors of the workers */
+    size_t memory_size;
+} dea_pool;
+
+static double seconds_now(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static void pool_tick(dea_pool *pool)
+{
+    double now = seconds_now();
+    double passed = now - pool->last;
+    pool->clock += passed < longest_tick ? passed : longest_tick;
+    pool->last = now;
+}
+
+static size_t smaller(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+static dea_status pool_share_memory(dea_pool *pool, dea_error *error)
+{
+    size_t rows = pool->slot_count * pool->plan->block * sizeof(dea_row);
+    pool->memory_size = rows + pool->worker_count * sizeof(dea_error);
+    pool->memory = mmap(NULL, pool->memory_size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (pool->memory == MAP_FAILED)
+        return dea_fail(error, DEA_ERROR_MEMORY, "no %zu bytes of shared memory for the workers: %s", pool->memory_size,
+                        strerror(errno));
+    dea_error *errors = (dea_error *)((char *)pool->memory + rows);
+    for (size_t i = 0; i < pool->worker_count; i++)
+        pool->workers[i].error = errors + i;
+    for (size_t i = 0; i < pool->slot_count; i++)
+        pool->slots[i].rows = (dea_row *)pool->memory + i * pool->plan->block;
+    return DEA_OK;
+}
+
+static dea_status pool_init(dea_pool *pool, const dea_plan *plan, double beyond, dea_error *error)
+{
+    size_t workers = smaller(smaller(plan->options->jobs, plan->blocks), MOST_WORKERS);
+    *pool = (dea_pool){.plan = plan, .beyond = beyond, .worker_count = workers, .limit = workers, .memory = MAP_FAILED};
+    pool->slot_count = smaller(plan->blocks, workers * SLOTS_PER_WORKER);
+    pool->workers = calloc(workers, sizeof *pool->workers);
+    pool->polls = calloc(workers, sizeof *pool->polls);
+    pool->slots = calloc(pool->slot_count, sizeof *pool->slots);
+    if (!pool->workers || !pool->polls || !pool->slots)
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for %zu workers", workers);
+    pool->last = seconds_now();
+    return pool_share_memory(pool, error);
+}
+
+static void pool_finish(dea_pool *pool)
+{
+    for (size_t i = 0; pool->workers && i < pool->worker_count; i++)
+        dea_worker_end(&pool->workers[i], NULL, 0);
+    if (pool->memory != MAP_FAILED)
+        munmap(pool->memory, pool->memory_size);
+    free(pool->slots);
+    free(pool->polls);
+    free(pool->workers);
+}
+
+static dea_slot *slot_of(dea_pool *pool, size_t block)
+{
+    return &pool->slots[block % pool->slot_count];
+}
+
+/* Gives slots to blocks in order as they come free. */
+static void pool_open_blocks(dea_pool *pool)
+{
+    while (pool->opened < pool->plan->blocks && pool->opened - pool->delivered < pool->slot_count) {
+        dea_slot *slot = slot_of(pool, pool->opened);
+        slot->span = dea_plan_span(pool->plan, pool->opened);
+        slot->attempt = dea_attempt_start(slot->span.count);
+        slot->busy = false;
+        pool->opened++;
+    }
+}
+
+/* The earliest block that waits for a worker; NULL when there is none. */
+static dea_slot *pool_waiting(dea_pool *pool)
+{
+    for (size_t block = pool->delivered; block < pool->opened; block++) {
+        dea_slot *slot = slot_of(pool, block);
+        if (!slot->busy && !dea_attempt_over(&slot->attempt))
+            return slot;
+    }
+    return NULL;
+}
+
+static void slot_failed(dea_pool *pool, dea_slot *slot, const char *why)
+{
+    slot->busy = false;
+    dea_attempt_failed(&slot->attempt, pool->plan, &slot->span, slot->rows, why, &pool->damage);
+}
+
+/* Fails what is left once the engine is past hope. */
+static void pool_abandon(dea_pool *pool)
+{
+    for (size_t block = pool->delivered; block < pool->opened; block++) {
+        dea_slot *slot = slot_of(pool, block);
+        if (slot->busy)
+            continue;
+        dea_rows_fail(slot->rows + slot->attempt.next, slot->attempt.count - slot->attempt.next);
+        slot->attempt.next = slot->attempt.count;
+    }
+}
+
+static size_t pool_unsettled(dea_pool *pool)
+{
+    size_t count = 0;
+    for (size_t block = pool->delivered; block < pool->opened; block++)
+        count += dea_attempt_over(&slot_of(pool, block)->attempt) ? 0 : 1;
+    return count;
+}
+
+static size_t pool_alive(const dea_pool *pool)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < pool->worker_count; i++)
+        count += pool->workers[i].state != DEA_WORKER_NONE ? 1 : 0;
+    return count;
+}
+
+/* Fewer workers will do as long as there is one. */
+static dea_status pool_shrink(dea_pool *pool, dea_status status, const dea_error *reason, dea_error *error)
+{
+    pool->limit = pool_alive(pool);
+    if (pool->limit == 0)
+        return dea_fail(error, status, "%s", reason->message);
+    dea_plan_log(pool->plan, &pool->damage, "going on with %zu workers: %s", pool->limit, reason->message);
+    return DEA_OK;
+}
+
+/* Starts workers until there is one for every block that is open. */
+static dea_status pool_staff(dea_pool *pool, dea_error *error)
+{
+    size_t wanted = smaller(pool_unsettled(pool), pool->limit);
+    size_t alive = pool_alive(pool);
+    for (size_t i = 0; i < pool->worker_count && alive < wanted; i++) {
+        dea_worker *worker = &pool->workers[i];
+        if (worker->state != DEA_WORKER_NONE)
+            continue;
+        dea_error reason = {0};
+        dea_status status = dea_worker_start(worker, pool->plan, pool->workers, pool->worker_count, &reason);
+        if (status != DEA_OK && alive == 0)
+            return dea_fail(error, status, "%s", reason.message);
+        if (status != DEA_OK) {
+            pool->limit = alive;
+            return DEA_OK;
+        }
+        worker->deadline = pool->clock + start_time;
+        alive++;
+    }
+    return DEA_OK;
+}
+
+static void pool_dispatch(dea_pool *pool)
+{
+    for (size_t i = 0; i < pool->worker_count; i++) {
+        dea_worker *worker = &pool->workers[i];
+        if (worker->state != DEA_WORKER_IDLE)
+            continue;
+        dea_slot *slot = pool_waiting(pool);
+        if (!slot)
+            return;
+        const dea_attempt *attempt = &slot->attempt;
+        dea_order order = {.model = slot->span.model,
+                           .first = slot->span.first + attempt->next,
+                           .count = attempt->end - attempt->next,
+                           .rows = slot->rows + attempt->next};
+        if (!dea_worker_send(worker, &order)) {
+            pool->damage.losses++;
+            dea_worker_end(worker, NULL, 0);
+            continue;
+        }
+        slot->busy = true;
+        worker->slot = (size_t)(slot - pool->slots);
+        worker->state = DEA_WORKER_BUSY;
+        worker->deadline = pool->clock + pool->beyond + pool->plan->engine->patience * (double)order.count;
+    }
+}
+
+/* A worker that has gone: its range failed, or it could not even begin. */
+static dea_status worker_lost(dea_pool *pool, dea_worker *worker, dea_status status, const char *why, dea_error *error)
+{
+    dea_worker_state before = worker->state;
+    char how[128] = "";
+    dea_worker_end(worker, why ? NULL : how, sizeof how);
+    if (!why)
+        why = how;
+    if (before == DEA_WORKER_IDLE)
+        pool->damage.losses++;
+    if (before == DEA_WORKER_BUSY)
+        slot_failed(pool, &pool->slots[worker->slot], why);
+    if (before != DEA_WORKER_STARTS)
+        return DEA_OK;
+    dea_error reason = {0};
+    dea_fail(&reason, status, "engine %s could not begin: %s", pool->plan->engine->name, why);
+    return pool_shrink(pool, status, &reason, error);
+}
+
+static dea_status worker_reported(dea_pool *pool, dea_worker *worker, dea_error *error)
+{
+    dea_status status;
+    if (!dea_worker_receive(worker, &status))
+        return worker_lost(pool, worker, DEA_ERROR_ENGINE, NULL, error);
+    if (status != DEA_OK) {
+        char why[DEA_ERROR_LENGTH];
+        size_t length = strnlen(worker->error->message, sizeof why - 1);
+        memcpy(why, worker->error->message, length);
+        why[length] = '\0';
+        return worker_lost(pool, worker, status, length > 0 ? why : dea_status_text(status), error);
+    }
+    if (worker->state == DEA_WORKER_BUSY) {
+        dea_slot *slot = &pool->slots[worker->slot];
+        slot->busy = false;
+        dea_attempt_solved(&slot->attempt, &pool->damage);
+    }
+    worker->state = DEA_WORKER_IDLE;
+    return DEA_OK;
+}
+
+static dea_status worker_overdue(dea_pool *pool, dea_worker *worker, dea_error *error)
+{
+    bool waits = worker->state == DEA_WORKER_IDLE || worker->state == DEA_WORKER_NONE;
+    if (waits || pool->clock < worker->deadline)
+        return DEA_OK;
+    pool->damage.losses++;
+    return worker_lost(pool, worker, DEA_ERROR_ENGINE, "no answer for too long, the worker was killed", error);
+}
+
+/* Waits a moment for workers that have something to tell and takes it. */
+static dea_status pool_listen(dea_pool *pool, dea_error *error)
+{
+    for (size_t i = 0; i < pool->worker_count; i++) {
+        bool lives = pool->workers[i].state != DEA_WORKER_NONE;
+        pool->polls[i] = (struct pollfd){.fd = lives ? pool->workers[i].socket : -1, .events = POLLIN};
+    }
+    int ready = poll(pool->polls, pool->worker_count, WAIT_MS);
+    if (ready < 0 && errno != EINTR)
+        return dea_fail(error, DEA_ERROR_ENGINE, "cannot wait for the workers: %s", strerror(errno));
+    pool_tick(pool);
+    dea_status status = DEA_OK;
+    for (size_t i = 0; i < pool->worker_count && status == DEA_OK; i++) {
+        if (ready > 0 && pool->polls[i].revents != 0)
+            status = worker_reported(pool, &pool->workers[i], error);
+        else
+            status = worker_overdue(pool, &pool->workers[i], error);
+    }
+    return status;
+}
+
+/* Hands over the blocks that are settled, in order. */
+static dea_status pool_deliver(dea_pool *pool, dea_error *error)
+{
+    while (pool->delivered < pool->opened) {
+        const dea_slot *slot = slot_of(pool, pool->delivered);
+        if (slot->busy || !dea_attempt_over(&slot->attempt))
+            return DEA_OK;
+        dea_status status = dea_plan_deliver(pool->plan, &slot->span, slot->rows, error);
+        if (status != DEA_OK)
+            return status;
+        pool->delivered++;
+    }
+    return DEA_OK;
+}
+
+/* Workers get their next blocks before the caller gets the rows, so that they solve while it writes. */
+static dea_status pool_round(dea_pool *pool, dea_error *error)
+{
+    pool_open_blocks(pool);
+    if (dea_damage_hopeless(&pool->damage))
+        pool_abandon(pool);
+    dea_status status = pool_staff(pool, error);
+    pool_dispatch(pool);
+    if (status == DEA_OK)
+        status = pool_deliver(pool, error);
+    if (status == DEA_OK && pool_unsettled(pool) > 0)
+        status = pool_listen(pool, error);
+    return status;
+}
+
+dea_status dea_pool_run(const dea_plan *plan, double beyond, dea_error *error)
+{
+    dea_pool pool;
+    dea_status status = pool_init(&pool, plan, beyond, error);
+    while (status == DEA_OK && pool.delivered < plan->blocks) {
+        if (dea_plan_stopped(plan))
+            status = dea_fail(error, DEA_ERROR_INTERRUPTED, "interrupted");
+        else
+            status = pool_round(&pool, error);
+    }
+    pool_finish(&pool);
+    return status;
+}

@@ -1,0 +1,24 @@
+#include "engine/engines.h"
+
+#include <string.h>
+
+static const dea_engine *const engines[] = {&dea_engine_direct, &dea_engine_ngspice, &dea_engine_ida};
+
+size_t dea_engine_count(void)
+{
+    return sizeof engines / sizeof engines[0];
+}
+
+const dea_engine *dea_engine_at(size_t index)
+{
+    return index < dea_engine_count() ? engines[index] : NULL;
+}
+
+const dea_engine *dea_engine_find(const char *name)
+{
+    for (size_t i = 0; i < dea_engine_count(); i++) {
+        if (strcmp(engines[i]->name, name) == 0)
+            return engines[i];
+    }
+    return NULL;
+}

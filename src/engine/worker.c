@@ -1,0 +1,170 @@
+#define _GNU_SOURCE
+#include "engine/worker.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* The parent alone decides about an interrupt; its death ends the worker by SIGKILL. */
+static void reset_signals(void)
+{
+    static const int ignored[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
+    struct sigaction action = {.sa_handler = SIG_DFL};
+    sigemptyset(&action.sa_mask);
+    for (int number = 1; number < NSIG; number++)
+        sigaction(number, &action, NULL);
+    action.sa_handler = SIG_IGN;
+    for (size_t i = 0; i < sizeof ignored / sizeof ignored[0]; i++)
+        sigaction(ignored[i], &action, NULL);
+    sigprocmask(SIG_SETMASK, &action.sa_mask, NULL);
+}
+
+/* Nothing that a foreign library does in a worker can reach the caller's files. */
+static void leave_files(int socket)
+{
+    int null = open("/dev/null", O_RDWR);
+    if (null >= 0) {
+        dup2(null, STDIN_FILENO);
+        dup2(null, STDOUT_FILENO);
+    }
+    if (socket > STDERR_FILENO + 1)
+        close_range(STDERR_FILENO + 1, (unsigned)socket - 1, 0);
+    close_range((unsigned)socket + 1, ~0U, 0);
+}
+
+static bool report(int socket, dea_status status)
+{
+    return send(socket, &status, sizeof status, MSG_NOSIGNAL) == (ssize_t)sizeof status;
+}
+
+static ssize_t receive(int socket, void *data, size_t size)
+{
+    ssize_t got;
+    do {
+        got = recv(socket, data, size, 0);
+    } while (got < 0 && errno == EINTR);
+    return got;
+}
+
+static void work(const dea_plan *plan, int socket, dea_error *error)
+{
+    void *session = NULL;
+    error->message[0] = '\0';
+    dea_status status = plan->engine->begin(&session, error);
+    dea_order order;
+    while (report(socket, status) && status == DEA_OK && receive(socket, &order, sizeof order) == (ssize_t)sizeof order) {
+        error->message[0] = '\0';
+        status = plan->engine->sweep(session, plan->scene, order.model, order.first, order.count, order.rows, error);
+    }
+    if (status == DEA_OK)
+        plan->engine->end(session);
+}
+
+static _Noreturn void live(const dea_plan *plan, int socket, pid_t parent, dea_error *error)
+{
+    static const struct rlimit no_core = {0, 0};
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent)
+        _exit(0);
+    setrlimit(RLIMIT_CORE, &no_core);
+    if (socket <= STDERR_FILENO) /* the caller had closed a standard stream */
+        socket = fcntl(socket, F_DUPFD, STDERR_FILENO + 1);
+    if (socket < 0)
+        _exit(1);
+    leave_files(socket);
+    reset_signals();
+    work(plan, socket, error);
+    _exit(0);
+}
+
+dea_status dea_worker_start(dea_worker *worker, const dea_plan *plan, const dea_worker *others, size_t count, dea_error *error)
+{
+    int ends[2];
+    if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
+        return dea_fail(error, DEA_ERROR_ENGINE, "cannot start a worker: %s", strerror(errno));
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    pid_t parent = getpid();
+    pid_t pid = fork();
+    int reason = errno;
+    if (pid == 0) {
+        for (size_t i = 0; i < count; i++) {
+            if (others[i].state != DEA_WORKER_NONE)
+                close(others[i].socket);
+        }
+        close(ends[0]);
+        live(plan, ends[1], parent, worker->error);
+    }
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    close(ends[1]);
+    if (pid < 0) {
+        close(ends[0]);
+        return dea_fail(error, DEA_ERROR_ENGINE, "cannot start a worker: %s", strerror(reason));
+    }
+    worker->pid = pid;
+    worker->socket = ends[0];
+    worker->state = DEA_WORKER_STARTS;
+    return DEA_OK;
+}
+
+bool dea_worker_send(const dea_worker *worker, const dea_order *order)
+{
+    ssize_t sent;
+    do {
+        sent = send(worker->socket, order, sizeof *order, MSG_NOSIGNAL);
+    } while (sent < 0 && errno == EINTR);
+    return sent == (ssize_t)sizeof *order;
+}
+
+bool dea_worker_receive(const dea_worker *worker, dea_status *status)
+{
+    return receive(worker->socket, status, sizeof *status) == (ssize_t)sizeof *status;
+}
+
+static void describe_end(int ended, char *how, size_t size)
+{
+    if (WIFSIGNALED(ended))
+        snprintf(how, size, "the worker was killed by signal %d (%s)", WTERMSIG(ended), strsignal(WTERMSIG(ended)));
+    else
+        snprintf(how, size, "the worker ended by itself with exit status %d", WEXITSTATUS(ended));
+}
+
+/* A worker whose socket is closed is exiting, perhaps with a signal that tells why: it gets a moment before it is killed. */
+static pid_t reap(pid_t pid, bool closed, int *ended)
+{
+    pid_t got = 0;
+    for (int tries = 0; closed && tries < 200 && got == 0; tries++) {
+        got = waitpid(pid, ended, WNOHANG);
+        if (got == 0)
+            usleep(1000);
+    }
+    if (got != 0)
+        return got;
+    kill(pid, SIGKILL);
+    do {
+        got = waitpid(pid, ended, 0);
+    } while (got < 0 && errno == EINTR);
+    return got;
+}
+
+void dea_worker_end(dea_worker *worker, char *how, size_t size)
+{
+    if (worker->state == DEA_WORKER_NONE)
+        return;
+    int ended = 0;
+    pid_t got = reap(worker->pid, how != NULL, &ended);
+    if (how && got == worker->pid)
+        describe_end(ended, how, size);
+    else if (how)
+        snprintf(how, size, "the worker ended");
+    close(worker->socket);
+    worker->state = DEA_WORKER_NONE;
+}

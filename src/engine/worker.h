@@ -1,0 +1,41 @@
+/** @file worker.h
+ * One worker process: forked, told what to solve over a socket, answers over it; rows and messages go through shared memory.
+ */
+#ifndef DEA_ENGINE_WORKER_H
+#define DEA_ENGINE_WORKER_H
+
+#include <sys/types.h>
+
+#include "engine/plan.h"
+
+/** Where a worker is. */
+typedef enum dea_worker_state { DEA_WORKER_NONE, DEA_WORKER_STARTS, DEA_WORKER_IDLE, DEA_WORKER_BUSY } dea_worker_state;
+
+/** A worker as its parent sees it. */
+typedef struct dea_worker {
+    dea_worker_state state;
+    pid_t pid;
+    int socket;       /**< the parent's end */
+    dea_error *error; /**< shared memory: what a failure was about */
+    size_t slot;      /**< while busy: where its rows go */
+    double deadline;  /**< on the pool's clock [s] */
+} dea_worker;
+
+/** What a worker is to solve. */
+typedef struct dea_order {
+    const dea_model *model; /**< same address in parent and worker */
+    size_t first;           /**< point */
+    size_t count;           /**< points */
+    dea_row *rows;          /**< shared memory */
+} dea_order;
+
+/** Forks a worker that begins a session of the engine and reports. @p others are closed in it. */
+dea_status dea_worker_start(dea_worker *worker, const dea_plan *plan, const dea_worker *others, size_t count, dea_error *error);
+/** Sends an order; false when the worker is gone. */
+bool dea_worker_send(const dea_worker *worker, const dea_order *order);
+/** Takes the worker's report; false when it is gone. */
+bool dea_worker_receive(const dea_worker *worker, dea_status *report);
+/** Kills and reaps the worker; writes how it ended into @p how when that is not NULL. */
+void dea_worker_end(dea_worker *worker, char *how, size_t size);
+
+#endif

@@ -1,0 +1,256 @@
+/* Yeoh constants by linear least squares. The nominal stress is linear in C: P = sum C_i dP/dC_i, so with rows weighted by v and
+ * columns scaled to length 1 the problem is min |A x - b|. The singular value decomposition A = U S V^T gives x = V S^-1 U^T b,
+ * the covariance V S^-2 V^T sigma^2 and the condition number at once. */
+#include "deaspice/fit.h"
+
+#include <float.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Condition number of the scaled columns beyond which the data does not tell the constants apart. */
+static const double condition_max = 1e7;
+
+/* The largest weight in a relative fit: that of a stress of 1 % of the largest. */
+static const double relative_floor = 0.01;
+
+const char *dea_load_name(dea_load load)
+{
+    static const char *const names[DEA_LOAD_COUNT] = {"uniaxial", "equibiaxial"};
+    return (unsigned)load < DEA_LOAD_COUNT ? names[load] : "unknown";
+}
+
+dea_load dea_load_find(const char *name)
+{
+    int load = 0;
+    while (load < DEA_LOAD_COUNT && strcmp(name, dea_load_name((dea_load)load)) != 0) {
+        load++;
+    }
+    return (dea_load)load;
+}
+
+dea_status dea_fit_add(dea_fit_data *data, dea_fit_point point, dea_error *error)
+{
+    if (!(point.stretch > 0.0) || !isfinite(point.stretch) || !isfinite(point.stress) || (unsigned)point.load >= DEA_LOAD_COUNT) {
+        return dea_fail(error, DEA_ERROR_USAGE, "a measured point needs a stretch above 0, a finite stress and a load");
+    }
+    if (data->count == data->room) {
+        const size_t room = data->room > 0 ? 2 * data->room : 64;
+        dea_fit_point *points = realloc(data->points, room * sizeof *points);
+        if (!points) {
+            return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+        }
+        data->points = points;
+        data->room = room;
+    }
+    data->points[data->count++] = point;
+    return DEA_OK;
+}
+
+void dea_fit_data_free(dea_fit_data *data)
+{
+    if (data) {
+        free(data->points);
+        *data = (dea_fit_data){0};
+    }
+}
+
+/* Stretch across the load, in the plane. */
+static double stretch_across(dea_load load, double stretch)
+{
+    return load == DEA_LOAD_EQUIBIAXIAL ? stretch : 1.0 / sqrt(stretch);
+}
+
+double dea_fit_stress(const double yeoh[DEA_YEOH_TERMS], dea_load load, double stretch)
+{
+    return dea_yeoh_stress(yeoh, stretch, stretch_across(load, stretch)).p1;
+}
+
+/* Slope of the nominal stress over stretch [Pa]: W11 + W12 equi-biaxial, W11 - W12^2/W22 uniaxial. */
+static double load_tangent(const double yeoh[DEA_YEOH_TERMS], dea_load load, double stretch)
+{
+    const dea_stress s = dea_yeoh_stress(yeoh, stretch, stretch_across(load, stretch));
+    return load == DEA_LOAD_EQUIBIAXIAL ? s.w11 + s.w12 : s.w11 - s.w12 * s.w12 / s.w22;
+}
+
+/* The least-squares problem, matrices column by column. */
+typedef struct problem {
+    size_t rows;
+    int terms;
+    double *matrix;                  /* A, rows x terms; owned */
+    double *right;                   /* b, rows; owned */
+    double *left;                    /* U, rows x terms; owned */
+    double scale[DEA_YEOH_TERMS];    /* length of the columns before scaling */
+    double singular[DEA_YEOH_TERMS]; /* descending */
+    double vt[DEA_YEOH_TERMS * DEA_YEOH_TERMS];
+} problem;
+
+static void problem_free(problem *p)
+{
+    free(p->matrix);
+    free(p->right);
+    free(p->left);
+}
+
+static double stress_largest(const dea_fit_data *data)
+{
+    double largest = 0.0;
+    for (size_t i = 0; i < data->count; i++) {
+        largest = fmax(largest, fabs(data->points[i].stress));
+    }
+    return largest;
+}
+
+static dea_status problem_fill(problem *p, const dea_fit_data *data, bool relative, dea_error *error)
+{
+    static const double units[DEA_YEOH_TERMS][DEA_YEOH_TERMS] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    const double largest = stress_largest(data);
+    p->matrix = malloc(p->rows * (size_t)p->terms * sizeof *p->matrix);
+    p->left = malloc(p->rows * (size_t)p->terms * sizeof *p->left);
+    p->right = malloc(p->rows * sizeof *p->right);
+    if (!p->matrix || !p->left || !p->right) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+    }
+    for (int j = 0; j < p->terms; j++) {
+        double *column = p->matrix + (size_t)j * p->rows;
+        for (size_t i = 0; i < p->rows; i++) {
+            const dea_fit_point *point = &data->points[i];
+            const double weight = relative ? 1.0 / fmax(fabs(point->stress), relative_floor * largest) : 1.0;
+            column[i] = weight * dea_fit_stress(units[j], point->load, point->stretch);
+            p->right[i] = weight * point->stress;
+            p->scale[j] = hypot(p->scale[j], column[i]);
+        }
+        for (size_t i = 0; i < p->rows && p->scale[j] > 0.0; i++) {
+            column[i] /= p->scale[j];
+        }
+    }
+    return DEA_OK;
+}
+
+static dea_status problem_decompose(problem *p, dea_fit *fit, dea_error *error)
+{
+    double work[DEA_YEOH_TERMS];
+    const lapack_int rows = (lapack_int)p->rows, terms = (lapack_int)p->terms;
+    const lapack_int info =
+        LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'S', 'S', rows, terms, p->matrix, rows, p->singular, p->left, rows, p->vt, terms, work);
+    if (info != 0) {
+        return dea_fail(error, DEA_ERROR_USAGE, "the least-squares problem could not be solved (LAPACK dgesvd: %d)", (int)info);
+    }
+    fit->condition = p->singular[0] / p->singular[p->terms - 1];
+    if (!(fit->condition <= condition_max)) {
+        return dea_fail(
+            error, DEA_ERROR_USAGE,
+            "the data does not determine %d Yeoh constants: stretch from %.6g to %.6g gives condition number %.3g; fit fewer "
+            "constants or measure more stretches",
+            p->terms, fit->stretch_min, fit->stretch_max, fit->condition);
+    }
+    return DEA_OK;
+}
+
+/* x_j = sum_k V_jk (u_k . b)/s_k; variance_j = sigma^2 sum_k (V_jk/s_k)^2; both back in the unscaled columns. */
+static void problem_solve(const problem *p, dea_fit *fit)
+{
+    double projection[DEA_YEOH_TERMS] = {0.0}, inside[DEA_YEOH_TERMS] = {0.0}, sum = 0.0;
+    for (int k = 0; k < p->terms; k++) {
+        for (size_t i = 0; i < p->rows; i++) {
+            projection[k] += p->left[(size_t)k * p->rows + i] * p->right[i];
+        }
+    }
+    for (size_t i = 0; i < p->rows; i++) {
+        double residual = p->right[i];
+        for (int k = 0; k < p->terms; k++) {
+            residual -= p->left[(size_t)k * p->rows + i] * projection[k];
+        }
+        sum += residual * residual;
+    }
+    for (int j = 0; j < p->terms; j++) {
+        for (int k = 0; k < p->terms; k++) {
+            const double share = p->vt[j * p->terms + k] / p->singular[k];
+            fit->yeoh[j] += share * projection[k] / p->scale[j];
+            inside[j] += share * share;
+        }
+        const double freedom = (double)p->rows - p->terms;
+        fit->deviation[j] = freedom > 0.0 ? sqrt(sum / freedom * inside[j]) / p->scale[j] : NAN;
+    }
+}
+
+static void fit_judge(const dea_fit_data *data, dea_fit *fit)
+{
+    double mean = 0.0, residuals = 0.0, spread = 0.0, squares = 0.0;
+    const double count = (double)data->count;
+    for (size_t i = 0; i < data->count; i++) {
+        mean += data->points[i].stress / count;
+    }
+    for (size_t i = 0; i < data->count; i++) {
+        const dea_fit_point *point = &data->points[i];
+        const double residual = point->stress - dea_fit_stress(fit->yeoh, point->load, point->stretch);
+        residuals += residual * residual;
+        spread += (point->stress - mean) * (point->stress - mean);
+        squares += point->stress * point->stress;
+    }
+    fit->residual_rms = sqrt(residuals / count);
+    fit->residual_relative = sqrt(residuals / squares);
+    fit->r_squared = 1.0 - residuals / spread;
+}
+
+/* Walks the range of the data, and from rest, in search of a tangent modulus that is not positive. */
+static void fit_walk(dea_fit *fit)
+{
+    enum { STEPS = 400 };
+    const double from = fmin(fit->stretch_min, 1.0), to = fmax(fit->stretch_max, 1.0);
+    fit->unstable_stretch = NAN;
+    for (int i = 0; i <= STEPS; i++) {
+        const double stretch = from + (to - from) * i / STEPS;
+        for (int load = 0; load < DEA_LOAD_COUNT; load++) {
+            if (!(load_tangent(fit->yeoh, (dea_load)load, stretch) > 0.0)) {
+                fit->unstable_stretch = stretch;
+                return;
+            }
+        }
+    }
+}
+
+static dea_status fit_examine(const dea_fit_data *data, int terms, dea_fit *fit, dea_error *error)
+{
+    if (terms < 1 || terms > DEA_YEOH_TERMS) {
+        return dea_fail(error, DEA_ERROR_USAGE, "%d Yeoh constants were asked for; accepted: 1 to %d", terms, DEA_YEOH_TERMS);
+    }
+    *fit = (dea_fit){.terms = terms, .stretch_min = INFINITY, .stretch_max = -INFINITY};
+    size_t deformed = 0;
+    for (size_t i = 0; i < data->count; i++) {
+        const dea_fit_point *point = &data->points[i];
+        deformed += fabs(point->stretch - 1.0) > 1e-9;
+        fit->count[point->load]++;
+        fit->stretch_min = fmin(fit->stretch_min, point->stretch);
+        fit->stretch_max = fmax(fit->stretch_max, point->stretch);
+    }
+    if (deformed < (size_t)terms) {
+        return dea_fail(error, DEA_ERROR_USAGE, "%zu points with a stretch other than 1 do not determine %d Yeoh constants",
+                        deformed, terms);
+    }
+    if (!(stress_largest(data) > 0.0)) {
+        return dea_fail(error, DEA_ERROR_USAGE, "all %zu measured stresses are 0", data->count);
+    }
+    return DEA_OK;
+}
+
+dea_status dea_fit_yeoh(const dea_fit_data *data, int terms, bool relative, dea_fit *fit, dea_error *error)
+{
+    dea_status status = fit_examine(data, terms, fit, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    problem p = {.rows = data->count, .terms = terms};
+    status = problem_fill(&p, data, relative, error);
+    if (status == DEA_OK) {
+        status = problem_decompose(&p, fit, error);
+    }
+    if (status == DEA_OK) {
+        problem_solve(&p, fit);
+        fit_judge(data, fit);
+        fit_walk(fit);
+    }
+    problem_free(&p);
+    return status;
+}

@@ -1,0 +1,39 @@
+/* Eq. 13: hyperelastic film under a bias force that does not change. */
+#include "model/film_balance.h"
+#include "network/hyperelastic.h"
+
+static void solve(const dea_point *point, double accuracy, dea_row *row)
+{
+    (void)accuracy;
+    const double pressure = dea_point_pressure(point);
+    double strain;
+    if (!dea_film_balance(&point->film, 0.0, pressure, &strain)) {
+        dea_row_refuse(row, DEA_STATE_PULL_IN);
+        return;
+    }
+    const double stretch = 1.0 + strain;
+    const double force = pressure * stretch * stretch * stretch * dea_point_cross_section(point); /* A(lambda_a) eps E^2 */
+    dea_row_fill(row, point, strain, force, point->film.square * stretch * stretch, true);
+}
+
+/* The disc alone as a spring: the bias force is in its measure from the pre-stretch. */
+static void build(const dea_symbols *symbols, dea_network *network)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_ref area = dea_hyperelastic_area(symbols, network->strain);
+    dea_network_add(network, DEA_ROLE_HYPERELASTIC, "n_disc", "disc, A (sigma - sigma_pre), Eq. 13 [N]",
+                    dea_mul(pool, area, dea_hyperelastic_change(symbols, network->strain)));
+    dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force, A eps E^2, Eq. 13 [N]",
+                    dea_hyperelastic_force(symbols, network->strain, network->strain));
+    network->field = dea_hyperelastic_field(symbols, network->strain);
+    network->length = dea_mul(pool, symbols->coverage, symbols->frame_radius);
+}
+
+const dea_model dea_model_constant_force = {
+    .name = "constant_force",
+    .equation = "Eq. 13",
+    .leaves_out = "loss of bias force; an upper bound",
+    .lens = false,
+    .solve = solve,
+    .network = build,
+};

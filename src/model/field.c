@@ -1,0 +1,353 @@
+/* Exact axisymmetric membrane, integrated in x = ln(R/R_a) by Gragg's midpoint rule, extrapolated to order 14 on a fixed mesh.
+ *
+ * With D = lambda_2 - lambda_1 and e = lambda_2 - lambda_pre the equations of physics.md, section 3, read
+ *
+ *     de/dx = -D,   dD/dx = -D [ 1 + (2 w (1 + t^3) + k lambda_1 lambda_2 + s12)/s11 ],   t = 1/(lambda_1 lambda_2),
+ *
+ * which keeps the digits of a strain of any size: D and e scale with the load. The one condition is e = 0 at the frame.
+ */
+#include <float.h>
+
+#include "model/film_balance.h"
+
+enum { GBS_COLUMNS = 7 };
+
+/* Longest step in x: the extrapolation error per step is then below 1e-13 of D. */
+static const double longest_step = 0.35;
+
+typedef struct radial_state {
+    double d; /* D = lambda_2 - lambda_1 */
+    double e; /* lambda_2 - lambda_pre */
+} radial_state;
+
+/* The boundary value problem at one load. */
+typedef struct membrane {
+    const dea_film *film;
+    double disc_k;    /* Maxwell pressure in the disc: M of a dot, 0 of a lens [Pa] */
+    double annulus_k; /* and in the annulus [Pa] */
+    double length;    /* ln(1/B) */
+} membrane;
+
+/* What an integration collects for the limits of the film and the force on the edge. */
+typedef struct extremes {
+    double least_stress; /* smallest in-plane nominal stress [Pa] */
+    double largest_area; /* largest lambda_1 lambda_2 of the electroded region [1] */
+    double edge_force;   /* lambda_1 lambda_2^2 of the electroded side at R_a [1] */
+} extremes;
+
+static radial_state slope_at(const membrane *m, radial_state s)
+{
+    const double l2 = m->film->prestretch + s.e;
+    const double l1 = l2 - s.d;
+    const double area = l1 * l2;
+    const double t = 1.0 / area;
+    const dea_stress stress = dea_yeoh_stress(m->film->yeoh, l1, l2);
+    const double s11 = stress.w11 - m->annulus_k * l2 * l2;
+    const double s12 = stress.w12 - 2.0 * m->annulus_k * area;
+    const double rate = 1.0 + (2.0 * stress.w * (1.0 + t * t * t) + m->annulus_k * area + s12) / s11;
+    return (radial_state){-s.d * rate, -s.d};
+}
+
+/* Gragg's modified midpoint rule over one step with n substeps and its smoothing. */
+static radial_state midpoint(const membrane *m, radial_state start, radial_state slope, double step, int n)
+{
+    const double h = step / n;
+    radial_state before = start;
+    radial_state now = {start.d + h * slope.d, start.e + h * slope.e};
+    for (int i = 1; i < n; i++) {
+        const radial_state f = slope_at(m, now);
+        const radial_state next = {before.d + 2.0 * h * f.d, before.e + 2.0 * h * f.e};
+        before = now;
+        now = next;
+    }
+    const radial_state f = slope_at(m, now);
+    return (radial_state){0.5 * (before.d + now.d + h * f.d), 0.5 * (before.e + now.e + h * f.e)};
+}
+
+/* One step: midpoint rules with 2, 4, ... 14 substeps, extrapolated in h^2 (Neville). */
+static radial_state advance(const membrane *m, radial_state start, double step)
+{
+    radial_state row[GBS_COLUMNS];
+    const radial_state slope = slope_at(m, start);
+    for (int k = 0; k < GBS_COLUMNS; k++) {
+        radial_state value = midpoint(m, start, slope, step, 2 * (k + 1));
+        for (int j = 1; j <= k; j++) {
+            const double ratio = (double)(k + 1) / (double)(k + 1 - j);
+            const double weight = 1.0 / (ratio * ratio - 1.0);
+            const radial_state last = row[j - 1];
+            row[j - 1] = value;
+            value.d += weight * (value.d - last.d);
+            value.e += weight * (value.e - last.e);
+        }
+        row[k] = value;
+    }
+    return row[GBS_COLUMNS - 1];
+}
+
+/* p1(l - d, l) - p1(l, l), factored in d. */
+static double stress_drop(const double yeoh[DEA_YEOH_TERMS], double l, double d)
+{
+    const double l1 = l - d;
+    const double i1 = 1.0 / l1;
+    const double il = 1.0 / l;
+    const dea_stress rest = dea_yeoh_stress(yeoh, l, l);
+    const double a_rest = rest.p1 / rest.w;
+    /* l1^-3 - l^-3 = d (l^2 + l l1 + l1^2)/(l1 l)^3 */
+    const double da = -2.0 * d * (1.0 + il * il * (l * l + l * l1 + l1 * l1) * i1 * i1 * i1 * il * il * il);
+    const double dj = -d * (l1 + l) * (1.0 - i1 * i1 * il * il * il * il);
+    const double p = (l - 1.0) * (l + 1.0);
+    const double j = p * p * (2.0 * l * l + 1.0) * il * il * il * il;
+    const double dw = dj * (2.0 * yeoh[1] + 3.0 * yeoh[2] * (2.0 * j + dj));
+    return (rest.w + dw) * da + dw * a_rest;
+}
+
+/* D on the annulus side of R_a from the continuity of s1 there; NAN where there is none.
+ * s1 - s1_disc = p1(l - D, l) - p1(l, l) + (k_d - k_o) l^3 + k_o D l^2 = 0 */
+static double jump_at_edge(const membrane *m, double l)
+{
+    const double jump = (m->disc_k - m->annulus_k) * l * l * l;
+    double d = 0.0;
+    for (int i = 0; i < 40; i++) {
+        const dea_stress here = dea_yeoh_stress(m->film->yeoh, l - d, l);
+        const double residual = stress_drop(m->film->yeoh, l, d) + jump + m->annulus_k * d * l * l;
+        const double step = residual / (here.w11 - m->annulus_k * l * l);
+        double next = d + step;
+        if (!(next < l)) {
+            next = 0.5 * (d + l); /* keeps lambda_1 positive */
+        }
+        const double change = fabs(next - d);
+        d = next;
+        if (change <= 1e-9 * fabs(d)) { /* quadratic */
+            return d;
+        }
+    }
+    return NAN;
+}
+
+static void note(const membrane *m, radial_state s, extremes *x)
+{
+    const double l2 = m->film->prestretch + s.e;
+    const double l1 = l2 - s.d;
+    const dea_stress stress = dea_yeoh_stress(m->film->yeoh, l1, l2);
+    const double area = l1 * l2;
+    x->least_stress = fmin(x->least_stress, fmin(stress.p1 - m->annulus_k * area * l2, stress.p2 - m->annulus_k * area * l1));
+    if (m->annulus_k > 0.0) {
+        x->largest_area = fmax(x->largest_area, area);
+    }
+}
+
+/* Integrates from the edge, where the disc has the stretch lambda_pre + edge, to the frame; returns e there. x may be NULL. */
+static double miss_at_frame(const membrane *m, double edge, extremes *x)
+{
+    const double l = m->film->prestretch + edge;
+    if (!(l > 0.0)) {
+        return NAN;
+    }
+    radial_state s = {jump_at_edge(m, l), edge};
+    const int steps = (int)ceil(m->length / longest_step);
+    const double step = m->length / steps;
+    if (x) {
+        const double disc = dea_yeoh_stress(m->film->yeoh, l, l).p1 - m->disc_k * l * l * l;
+        const bool lens = m->annulus_k > 0.0;
+        *x = (extremes){disc, lens ? (l - s.d) * l : l * l, lens ? (l - s.d) * l * l : l * l * l};
+        note(m, s, x);
+    }
+    for (int i = 0; i < steps && isfinite(s.d); i++) {
+        s = advance(m, s, step);
+        if (x) {
+            note(m, s, x);
+        }
+    }
+    return isfinite(s.d) ? s.e : NAN;
+}
+
+/* The same problem under a share of the load. */
+static membrane under_load(const membrane *full, double share)
+{
+    membrane m = *full;
+    m.disc_k *= share;
+    m.annulus_k *= share;
+    return m;
+}
+
+/* Strain of the linearised membrane (the model `lame`), NAN where it has pulled in. */
+static double linear_guess(const dea_point *point, double m)
+{
+    const dea_film *film = &point->film;
+    const bool dot = point->kind == DEA_DOT;
+    const double b2 = point->coverage * point->coverage;
+    const double q = (1.0 + b2) / (1.0 - b2);
+    const double softening = m * film->square * (dot ? 3.0 : q - 2.0);
+    const double stiffness = film->w11 + film->w12 + film->w11 * q - film->w12 - softening;
+    return stiffness > 0.0 ? dea_point_sign(point) * m * film->square * film->prestretch / stiffness : NAN;
+}
+
+/* Secant from the linear answer; true where it settles on a root so near to rest that no fold can lie between. */
+static bool near_rest(const membrane *m, double guess, double *edge)
+{
+    double e0 = guess;
+    double miss0 = miss_at_frame(m, e0, NULL);
+    double slope = 1.0; /* d(miss)/d(edge) at rest */
+    double first_slope = 1.0;
+    for (int i = 0; i < 12 && isfinite(miss0); i++) {
+        const double step = -miss0 / slope;
+        const double e1 = e0 + step;
+        if (fabs(step) <= 1e-9 * fabs(e1)) { /* the error left is the product of the last two steps */
+            *edge = e1;
+            return fabs(e1) < 0.1 * m->film->prestretch && first_slope > 0.5 && first_slope < 2.0 && slope > 0.4;
+        }
+        const double miss1 = miss_at_frame(m, e1, NULL);
+        slope = (miss1 - miss0) / (e1 - e0);
+        if (i == 0) {
+            first_slope = slope;
+        }
+        e0 = e1;
+        miss0 = miss1;
+    }
+    return false;
+}
+
+/* Share of the full load that holds the edge at @p edge, secant from @p guess; NAN where there is none. */
+static double share_at(const membrane *full, double edge, double guess)
+{
+    double s0 = 0.0;
+    double miss0 = edge; /* without load the film is uniform */
+    double s1 = guess;
+    for (int i = 0; i < 40; i++) {
+        const membrane m = under_load(full, s1);
+        const double miss1 = miss_at_frame(&m, edge, NULL);
+        const double step = -miss1 * (s1 - s0) / (miss1 - miss0);
+        if (!isfinite(step)) {
+            return miss1 == 0.0 ? s1 : NAN;
+        }
+        s0 = s1;
+        miss0 = miss1;
+        s1 += step;
+        if (fabs(step) <= 1e-13 * fabs(s1)) {
+            return s1;
+        }
+    }
+    return NAN;
+}
+
+/* Root of the miss at full load between two edges on either side of it (Illinois variant of regula falsi). */
+static double bracketed_edge(const membrane *m, double low, double high)
+{
+    double miss_low = miss_at_frame(m, low, NULL);
+    double miss_high = miss_at_frame(m, high, NULL);
+    double edge = high;
+    for (int i = 0; i < 100 && fabs(high - low) > 4e-16 * fabs(high); i++) {
+        edge = (low * miss_high - high * miss_low) / (miss_high - miss_low);
+        const double miss = miss_at_frame(m, edge, NULL);
+        if (miss == 0.0 || !isfinite(miss)) {
+            break;
+        }
+        if ((miss > 0.0) == (miss_high > 0.0)) {
+            high = edge;
+            miss_high = miss;
+            miss_low *= 0.5;
+        } else {
+            low = high;
+            miss_low = miss_high;
+            high = edge;
+            miss_high = miss;
+        }
+    }
+    return edge;
+}
+
+/* Largest share of the load between two edges (golden section); returns its edge. */
+static double edge_of_largest_share(const membrane *full, double low, double high, double guess, double *largest)
+{
+    const double golden = 0.6180339887498949;
+    double x1 = high - golden * (high - low);
+    double x2 = low + golden * (high - low);
+    double f1 = share_at(full, x1, guess);
+    double f2 = share_at(full, x2, guess);
+    for (int i = 0; i < 60 && fabs(high - low) > 1e-8 * fabs(high); i++) {
+        if (f1 > f2 || isnan(f2)) {
+            high = x2;
+            x2 = x1;
+            f2 = f1;
+            x1 = high - golden * (high - low);
+            f1 = share_at(full, x1, guess);
+        } else {
+            low = x1;
+            x1 = x2;
+            f1 = f2;
+            x2 = low + golden * (high - low);
+            f2 = share_at(full, x2, guess);
+        }
+    }
+    *largest = fmax(f1, f2);
+    return f1 > f2 ? x1 : x2;
+}
+
+/* Follows the equilibrium from rest in steps of the edge until the load is reached or falls again; false: pull-in. */
+static bool trace(const membrane *full, double sign, double end, double *edge)
+{
+    const double pre = full->film->prestretch;
+    double before = 0.0;
+    double last = 0.0;
+    double share = 0.0;
+    while (fabs(last) < fabs(end)) {
+        const double step = 0.03 * (sign > 0.0 ? pre + last : pre);
+        const double here = sign * fmin(fabs(end), fabs(last) + step);
+        const double guess = share > 0.0 ? share * fabs(here / last) : 0.1;
+        const double next = share_at(full, here, guess);
+        if (next >= 1.0) {
+            *edge = bracketed_edge(full, last, here);
+            return true;
+        }
+        if (!(next > share)) {
+            double largest;
+            const double top = edge_of_largest_share(full, before, here, share, &largest);
+            if (!(largest >= 1.0)) {
+                return false;
+            }
+            *edge = bracketed_edge(full, before, top);
+            return true;
+        }
+        before = last;
+        last = here;
+        share = next;
+    }
+    return false;
+}
+
+static void solve(const dea_point *point, double accuracy, dea_row *row)
+{
+    (void)accuracy;
+    const dea_film *film = &point->film;
+    const bool dot = point->kind == DEA_DOT;
+    const double nominal = dea_point_nominal_field(point);
+    const double pressure = film->permittivity * nominal * nominal; /* M */
+    const double b = point->coverage;
+    const membrane m = {film, dot ? pressure : 0.0, dot ? 0.0 : pressure, -log(b)};
+    const double sign = dea_point_sign(point);
+    double edge = 0.0;
+
+    if (pressure > 0.0 && !near_rest(&m, linear_guess(point, pressure), &edge)) {
+        const double end = dot ? film->prestretch * (1.0 / b - 1.0) : -film->prestretch;
+        if (!(film->w11 > 0.0) || !trace(&m, sign, end * (1.0 - 1e-9), &edge)) {
+            dea_row_refuse(row, DEA_STATE_PULL_IN);
+            return;
+        }
+    }
+    extremes x;
+    if (!isfinite(miss_at_frame(&m, edge, &x))) {
+        dea_row_refuse(row, DEA_STATE_FAILED);
+        return;
+    }
+    const double force = sign * 2.0 * DEA_PI * point->film_thickness * pressure * x.edge_force * dea_point_divide(point) / film->prestretch;
+    dea_row_fill(row, point, edge / film->prestretch, force, x.largest_area, x.least_stress > 0.0);
+}
+
+const dea_model dea_model_field = {
+    .name = "field",
+    .equation = "axisymmetric membrane",
+    .leaves_out = "bending, all out of plane",
+    .lens = true,
+    .solve = solve,
+    .membrane = true,
+};

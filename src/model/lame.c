@@ -1,0 +1,120 @@
+/* Plane elasticity about the pre-stretched film: Lame's disc and annulus, with electrostatic softening. */
+#include "model/film_balance.h"
+#include "network/network.h"
+
+/* Nominal stresses at one place of a region with moduli a, b under the changes d1, d2 of the radial and hoop stretch. */
+static double smaller_stress(double rest, double a, double b, double d1, double d2)
+{
+    return rest + fmin(a * d1 + b * d2, b * d1 + a * d2);
+}
+
+static void solve(const dea_point *point, double accuracy, dea_row *row)
+{
+    (void)accuracy;
+    const dea_film *film = &point->film;
+    const bool dot = point->kind == DEA_DOT;
+    const double b2 = point->coverage * point->coverage;
+    const double nominal = dea_point_nominal_field(point);
+    const double m = film->permittivity * nominal * nominal; /* M */
+    const double softened1 = film->w11 - m * film->square;
+    const double softened2 = film->w12 - 2.0 * m * film->square;
+    const double disc1 = dot ? softened1 : film->w11;
+    const double disc2 = dot ? softened2 : film->w12;
+    const double annulus1 = dot ? film->w11 : softened1;
+    const double annulus2 = dot ? film->w12 : softened2;
+    const double q = (1.0 + b2) / (1.0 - b2);
+
+    /* 1/n over 2 pi H: disc a + b, annulus a (1 + B^2)/(1 - B^2) - b */
+    const double stiffness = disc1 + disc2 + annulus1 * q - annulus2;
+    const double load = dea_point_sign(point) * m * film->square * film->prestretch; /* F_DEA/(2 pi H R_a) */
+    if (m > 0.0 && !(stiffness > 0.0)) {
+        dea_row_refuse(row, DEA_STATE_PULL_IN);
+        return;
+    }
+    const double change = m > 0.0 ? load / stiffness : 0.0; /* of the hoop stretch at r_a */
+    const double strain = change / film->prestretch;
+    const double edge = point->coverage * (1.0 + strain);
+    const double maxwell = m * film->square * film->prestretch;
+    const double disc_rest = film->tension - (dot ? maxwell : 0.0);
+    const double annulus_rest = film->tension - (dot ? 0.0 : maxwell);
+    /* annulus: d1 = -c (F^2/R^2 + 1), d2 = c (F^2/R^2 - 1) with d2 = change at r_a; linear in F^2/R^2, so its ends decide */
+    const double rim = -2.0 * change * b2 / (1.0 - b2);
+    const double least = fmin(smaller_stress(disc_rest, disc1, disc2, change, change),
+                              fmin(smaller_stress(annulus_rest, annulus1, annulus2, -q * change, change),
+                                   smaller_stress(annulus_rest, annulus1, annulus2, rim, 0.0)));
+    const double area = dot ? (1.0 + strain) * (1.0 + strain) : (1.0 - edge * edge) / (1.0 - b2);
+    const double force = 2.0 * DEA_PI * point->film_thickness * load * dea_point_divide(point) / film->prestretch;
+    dea_row_fill(row, point, strain, force, film->square * area, least > 0.0);
+}
+
+/* Moduli of one region: W11, W12 and what the voltage takes off where it carries the electrode. */
+typedef struct region {
+    dea_ref a, b;  /* tangent moduli with softening [Pa] */
+    dea_ref rest;  /* nominal stress at rest under voltage [Pa] */
+} region;
+
+/* Smaller of the two in-plane stresses: both must stay positive. */
+static void limit_region(dea_pool *pool, dea_network *network, region r, dea_ref d1, dea_ref d2)
+{
+    dea_network_taut(network, dea_add(pool, r.rest, dea_add(pool, dea_mul(pool, r.a, d1), dea_mul(pool, r.b, d2))));
+    dea_network_taut(network, dea_add(pool, r.rest, dea_add(pool, dea_mul(pool, r.b, d1), dea_mul(pool, r.a, d2))));
+}
+
+static void limit_tension(const dea_symbols *symbols, dea_network *network, region disc, region annulus)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_ref one = dea_number(pool, 1.0);
+    const dea_ref b2 = dea_square(pool, symbols->coverage);
+    const dea_ref rest = dea_sub(pool, one, b2);
+    const dea_ref q = dea_div(pool, dea_add(pool, one, b2), rest);
+    const dea_ref change = dea_mul(pool, symbols->prestretch, network->strain);
+    limit_region(pool, network, disc, change, change);
+    limit_region(pool, network, annulus, dea_neg(pool, dea_mul(pool, q, change)), change);
+    limit_region(pool, network, annulus, dea_scale(pool, -2.0, dea_mul(pool, change, dea_div(pool, b2, rest))), dea_number(pool, 0.0));
+}
+
+/* Disc and annulus as springs, softening as a negative one, and the force of Eq. 21 over the circumference. */
+static void build(const dea_symbols *symbols, dea_network *network)
+{
+    dea_pool *pool = symbols->pool;
+    const bool dot = symbols->kind == DEA_DOT;
+    const dea_ref one = dea_number(pool, 1.0);
+    const dea_yeoh_terms t = dea_symbols_yeoh(symbols);
+    const dea_ref l = symbols->prestretch;
+    const dea_ref y3 = dea_mul(pool, dea_square(pool, t.square), t.square);
+    const dea_ref slope = dea_add(pool, dea_scale(pool, 2.0, symbols->yeoh[1]), dea_mul(pool, dea_scale(pool, 6.0, symbols->yeoh[2]), t.j));
+    const dea_ref a1 = dea_scale(pool, 2.0, dea_div(pool, t.g, l)); /* a1 = a2 = 2 g/lambda at equal stretches */
+    const dea_ref bend = dea_mul(pool, slope, dea_square(pool, a1));
+    const dea_ref w11 = dea_add(pool, dea_mul(pool, t.w, dea_add(pool, dea_number(pool, 2.0), dea_div(pool, dea_number(pool, 6.0), y3))), bend);
+    const dea_ref w12 = dea_add(pool, dea_div(pool, dea_scale(pool, 4.0, t.w), y3), bend);
+    const dea_ref thickness = dea_scale(pool, 2.0 * DEA_PI, symbols->film_thickness);
+    const dea_ref b2 = dea_square(pool, symbols->coverage);
+    const dea_ref q = dea_div(pool, dea_add(pool, one, b2), dea_sub(pool, one, b2));
+    const dea_ref soft = dea_mul(pool, dea_symbols_pressure(symbols), t.square); /* M lambda_pre^2 */
+    const dea_ref maxwell = dea_mul(pool, soft, l);
+    const dea_ref rest = dea_mul(pool, t.w, a1);
+
+    dea_network_add(network, DEA_ROLE_SPRING, "n_disc", "compliance of the disc, 1/n = 2 pi H (W11 + W12) [m/N]",
+                    dea_mul(pool, thickness, dea_add(pool, w11, w12)));
+    dea_network_add(network, DEA_ROLE_SPRING, "n_annulus", "compliance of the annulus, 1/n = 2 pi H (W11 (1+B^2)/(1-B^2) - W12) [m/N]",
+                    dea_mul(pool, thickness, dea_sub(pool, dea_mul(pool, w11, q), w12)));
+    const dea_ref share = dot ? dea_number(pool, 3.0) : dea_sub(pool, q, dea_number(pool, 2.0));
+    dea_network_add(network, DEA_ROLE_SPRING, "n_el", "electrostatic softening, a negative compliance [m/N]",
+                    dea_neg(pool, dea_mul(pool, thickness, dea_mul(pool, soft, share))));
+    const dea_ref radius = dea_div(pool, dea_mul(pool, symbols->coverage, symbols->frame_radius), l); /* R_a */
+    dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force 2 pi H M lambda_pre^3 R_a, Eq. 21 [N]",
+                    dea_scale(pool, network->sign, dea_mul(pool, thickness, dea_mul(pool, maxwell, radius))));
+    const region passive = {w11, w12, rest};
+    const region active = {dea_sub(pool, w11, soft), dea_sub(pool, w12, dea_scale(pool, 2.0, soft)), dea_sub(pool, rest, maxwell)};
+    limit_tension(symbols, network, dot ? active : passive, dot ? passive : active);
+    dea_network_limit_area(symbols, network);
+}
+
+const dea_model dea_model_lame = {
+    .name = "lame",
+    .equation = "Lame's disc and annulus",
+    .leaves_out = "finite strain",
+    .lens = true,
+    .solve = solve,
+    .network = build,
+};

@@ -1,0 +1,99 @@
+#include "output/label.h"
+
+#include "output/number.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+/* Units that take a prefix. */
+static bool unit_scales(const char *unit)
+{
+    static const char *const units[] = {"m", "V", "Pa", "N", "s", "Ohm", "ohm", "V/m", "Hz", "F", "A"};
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        if (strcmp(unit, units[i]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+dea_scale dea_scale_choose(double largest, const char *unit)
+{
+    static const char *const prefixes[] = {"p", "n", "µ", "m", "", "k", "M", "G", "T"};
+    dea_scale scale = {.factor = 1.0};
+    if (strcmp(unit, "1") == 0) {
+        return scale;
+    }
+    const char *shown = strcasecmp(unit, "ohm") == 0 ? "Ω" : unit;
+    int step = 0;
+    if (unit_scales(unit) && isfinite(largest) && largest > 0.0) {
+        step = (int)floor(log10(largest * (1.0 + 1e-9)) / 3.0);
+        step = step < -4 ? -4 : step > 4 ? 4 : step;
+    }
+    scale.factor = pow(10.0, -3.0 * step);
+    snprintf(scale.unit, sizeof scale.unit, "%s%.16s", prefixes[step + 4], shown);
+    return scale;
+}
+
+dea_scale dea_scale_axis(const dea_axis *axis)
+{
+    double largest = 0.0;
+    for (size_t i = 0; i < axis->count; i++) {
+        largest = fmax(largest, fabs(axis->values[i]));
+    }
+    return dea_scale_choose(largest, axis->unit);
+}
+
+/* Words and symbol of a quantity. */
+static void axis_names(const dea_axis *axis, char words[DEA_NAME_LENGTH], const char **symbol)
+{
+    static const struct {
+        const char *key, *words, *symbol;
+    } known[] = {
+        {"actuator.coverage", "Coverage ratio", "B"},
+        {"actuator.prestretch", "Pre-stretch", "λ"},
+        {"actuator.frame_radius", "Frame radius", "r"},
+        {"actuator.film_thickness", "Film thickness", "H"},
+        {"drive.voltage", "Voltage", "U"},
+        {"material.modulus", "Operating modulus", "Y"},
+        {"material.permittivity", "Relative permittivity", "ε"},
+        {"material.yeoh.C1", "Yeoh constant", "C1"},
+        {"material.yeoh.C2", "Yeoh constant", "C2"},
+        {"material.yeoh.C3", "Yeoh constant", "C3"},
+    };
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        if (strcmp(axis->key, known[i].key) == 0) {
+            snprintf(words, DEA_NAME_LENGTH, "%s", known[i].words);
+            *symbol = known[i].symbol;
+            return;
+        }
+    }
+    const char *dot = strchr(axis->key, '.');
+    snprintf(words, DEA_NAME_LENGTH, "%s", dot ? dot + 1 : axis->key);
+    for (char *letter = words; *letter; letter++) {
+        *letter = *letter == '_' || *letter == '.' ? ' ' : *letter;
+    }
+    words[0] = (char)toupper((unsigned char)words[0]);
+    *symbol = "";
+}
+
+void dea_label_axis(const dea_axis *axis, const dea_scale *scale, char label[DEA_LABEL_LENGTH])
+{
+    char words[DEA_NAME_LENGTH];
+    const char *symbol;
+    axis_names(axis, words, &symbol);
+    snprintf(label, DEA_LABEL_LENGTH, "%s%s%s%s%s%s", words, *symbol ? " " : "", symbol, *scale->unit ? " [" : "", scale->unit,
+             *scale->unit ? "]" : "");
+}
+
+void dea_label_value(const dea_axis *axis, const dea_scale *scale, size_t index, char label[DEA_LABEL_LENGTH])
+{
+    char words[DEA_NAME_LENGTH], number[DEA_NUMBER_LENGTH];
+    const char *symbol;
+    axis_names(axis, words, &symbol);
+    dea_number_text(number, axis->values[index] * scale->factor, 4);
+    snprintf(label, DEA_LABEL_LENGTH, "%s = %s%s%s", *symbol ? symbol : words, number, *scale->unit ? " " : "", scale->unit);
+}

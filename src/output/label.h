@@ -1,0 +1,24 @@
+/* What axes are called in pictures, and the unit prefix that keeps their numbers short. */
+#ifndef DEASPICE_OUTPUT_LABEL_H
+#define DEASPICE_OUTPUT_LABEL_H
+
+#include "deaspice/scene.h"
+
+enum { DEA_LABEL_LENGTH = 160 };
+
+/* A unit as it is shown: value in SI times factor, e.g. 1e-3 and "kV". */
+typedef struct dea_scale {
+    double factor;
+    char unit[24]; /* empty where there is no dimension */
+} dea_scale;
+
+/* Scale that makes @p largest (absolute, SI) read as 1 to 999. */
+dea_scale dea_scale_choose(double largest, const char *unit);
+/* Scale of an axis, from its largest value. */
+dea_scale dea_scale_axis(const dea_axis *axis);
+/* Label of an axis in full: "Voltage U [kV]". */
+void dea_label_axis(const dea_axis *axis, const dea_scale *scale, char label[DEA_LABEL_LENGTH]);
+/* One value of an axis, as a legend has it: "U = 4.5 kV". */
+void dea_label_value(const dea_axis *axis, const dea_scale *scale, size_t index, char label[DEA_LABEL_LENGTH]);
+
+#endif

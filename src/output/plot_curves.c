@@ -1,0 +1,338 @@
+/* Strain and displacement side by side: one colour for each value of the other axes, one dash for each model. */
+#include "output/label.h"
+#include "output/picture.h"
+
+#include "deaspice/model.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = 960, PANEL = 300, TITLE = 54, NO_TITLE = 28, LEGEND_ROW = 20, MARKS_PER_CURVE = 20, FEW_POINTS = 25, MARKS = 3 };
+
+/* Marks on curves: limits that a point is past. */
+static const struct {
+    dea_state state;
+    int symbol, inside; /* point types of gnuplot: the outline, and its inside in white below it */
+    const char *legend;
+} marks[MARKS] = {
+    {DEA_STATE_SLACK, 6, 7, "slack"},
+    {DEA_STATE_BREAKDOWN, 8, 9, "breakdown"},
+    {DEA_STATE_PULL_IN, 5, 5, "pull-in"},
+};
+
+/* What the whole picture needs to know. */
+typedef struct sheet {
+    const dea_plot *plot;
+    const dea_axis *axis;
+    const size_t *order; /* kept values by size */
+    dea_scale across, displacement;
+    size_t groups; /* curves of one model */
+    bool seen[MARKS];
+    double low[2], high[2]; /* of strain and displacement as drawn, 0 included */
+    int height, legend_rows, legend_columns;
+} sheet;
+
+static const dea_dot *sheet_dot(const sheet *page, size_t curve, size_t place)
+{
+    return &page->plot->dots[curve * page->plot->across.kept + page->order[place]];
+}
+
+/* Is there a mark of this kind at this point? Pull-in is marked where the curve ends, the others every so often. */
+static bool is_marked(const sheet *page, size_t curve, size_t place, size_t mark)
+{
+    const size_t kept = page->plot->across.kept;
+    const dea_dot *dot = sheet_dot(page, curve, place);
+    if (marks[mark].state != DEA_STATE_PULL_IN) {
+        const size_t step = kept / MARKS_PER_CURVE + 1, back = step / 2 < place ? step / 2 : place;
+        const bool begins = place == 0 || sheet_dot(page, curve, place - 1)->state != dot->state;
+        const bool within = place % step == 0 && sheet_dot(page, curve, place - back)->state == dot->state;
+        return dot->state == marks[mark].state && (begins || within);
+    }
+    const bool before = place > 0 && sheet_dot(page, curve, place - 1)->state == DEA_STATE_PULL_IN;
+    const bool after = place + 1 < kept && sheet_dot(page, curve, place + 1)->state == DEA_STATE_PULL_IN;
+    return isfinite(dot->strain) && (before || after);
+}
+
+static void sheet_scan(sheet *page)
+{
+    const dea_plot *plot = page->plot;
+    double largest = 0.0;
+    for (size_t i = 0; i < plot->curves * plot->across.kept; i++) {
+        if (isfinite(plot->dots[i].displacement)) {
+            largest = fmax(largest, fabs(plot->dots[i].displacement));
+        }
+    }
+    page->displacement = dea_scale_choose(largest, "m");
+    for (size_t curve = 0; curve < plot->curves; curve++) {
+        for (size_t place = 0; place < plot->across.kept; place++) {
+            const dea_dot *dot = sheet_dot(page, curve, place);
+            const double drawn[2] = {100.0 * dot->strain, page->displacement.factor * dot->displacement};
+            for (int i = 0; i < 2 && isfinite(drawn[i]); i++) {
+                page->low[i] = fmin(page->low[i], drawn[i]);
+                page->high[i] = fmax(page->high[i], drawn[i]);
+            }
+            for (size_t mark = 0; mark < MARKS; mark++) {
+                page->seen[mark] = page->seen[mark] || is_marked(page, curve, place, mark);
+            }
+        }
+    }
+}
+
+/* Name of a group of curves: the values of all axes but the one along x. */
+static void group_label(const sheet *page, size_t group, char *label, size_t size)
+{
+    const dea_scene *scene = page->plot->scene;
+    size_t step = page->groups;
+    size_t used = 0;
+    *label = '\0';
+    for (size_t i = 0; i < scene->axis_count; i++) {
+        const dea_axis *axis = &scene->axes[i];
+        if (i == page->plot->x || axis->count == 1) {
+            continue;
+        }
+        step /= axis->count;
+        const dea_scale scale = dea_scale_axis(axis);
+        char part[DEA_LABEL_LENGTH];
+        dea_label_value(axis, &scale, group / step % axis->count, part);
+        if (used < size) {
+            used += (size_t)snprintf(label + used, size - used, "%s%s", used > 0 ? ", " : "", part);
+        }
+    }
+}
+
+static void model_label(const dea_scene *scene, size_t model, char label[DEA_LABEL_LENGTH])
+{
+    snprintf(label, DEA_LABEL_LENGTH, "%s", scene->models[model]->name);
+    for (char *letter = label; *letter; letter++) {
+        *letter = *letter == '_' ? ' ' : *letter;
+    }
+}
+
+/* Colour follows the group; with one group it follows the model, as the dash does. */
+static void curve_colour(const sheet *page, size_t model, size_t group, char colour[8])
+{
+    const bool single = page->groups == 1;
+    dea_plot_colour(single ? model : group, single ? page->plot->scene->model_count : page->groups, colour);
+}
+
+static void write_data(const sheet *page, FILE *script)
+{
+    const dea_plot *plot = page->plot;
+    for (size_t curve = 0; curve < plot->curves; curve++) {
+        fprintf(script, "$curve%zu << END\n", curve);
+        for (size_t place = 0; place < plot->across.kept; place++) {
+            const dea_dot *dot = sheet_dot(page, curve, place);
+            const double drawn[2] = {100.0 * dot->strain, page->displacement.factor * dot->displacement};
+            const size_t index = dea_thinning_index(&plot->across, page->order[place]);
+            dea_gnuplot_number(script, page->across.factor * page->axis->values[index]);
+            for (int i = 0; i < 2; i++) {
+                fputc(' ', script);
+                dea_gnuplot_number(script, drawn[i]);
+            }
+            for (size_t mark = 0; mark < MARKS; mark++) {
+                for (int i = 0; i < 2; i++) {
+                    fputc(' ', script);
+                    dea_gnuplot_number(script, is_marked(page, curve, place, mark) ? drawn[i] : NAN);
+                }
+            }
+            fputc('\n', script);
+        }
+        fputs("END\n", script);
+    }
+}
+
+static void write_marks(const sheet *page, FILE *script, size_t curve, int column)
+{
+    char colour[8];
+    curve_colour(page, curve / page->groups, curve % page->groups, colour);
+    for (size_t mark = 0; mark < MARKS; mark++) {
+        if (page->seen[mark]) {
+            const int from = column + 2 * ((int)mark + 1);
+            fprintf(script, ", \\\n $curve%zu using 1:%d with points pointtype %d pointsize 0.8 linecolor '#ffffff' notitle",
+                    curve, from, marks[mark].inside);
+            fprintf(script,
+                    ", \\\n $curve%zu using 1:%d with points pointtype %d pointsize 0.7 linewidth 1.3 linecolor '%s' notitle",
+                    curve, from, marks[mark].symbol, colour);
+        }
+    }
+}
+
+/* One plot command: all curves of column 2 (strain) or 3 (displacement), then their marks. */
+static void write_curves(const sheet *page, FILE *script, int column)
+{
+    const dea_plot *plot = page->plot;
+    const bool few = plot->across.kept <= FEW_POINTS;
+    fputs("plot ", script);
+    for (size_t curve = 0; curve < plot->curves; curve++) {
+        char colour[8];
+        curve_colour(page, curve / page->groups, curve % page->groups, colour);
+        fprintf(script,
+                "%s$curve%zu using 1:%d with %s dashtype %zu linewidth 1.8 linecolor '%s' pointtype 7 pointsize 0.4 notitle",
+                curve > 0 ? ", \\\n " : "", curve, column, few ? "linespoints" : "lines", curve / page->groups + 1, colour);
+    }
+    for (size_t curve = 0; curve < plot->curves; curve++) {
+        write_marks(page, script, curve, column);
+    }
+    fputc('\n', script);
+}
+
+/* One panel: its place on the canvas, its labels, its curves. */
+static void write_panel(const sheet *page, FILE *script, int number)
+{
+    const double left = number == 0 ? 88.0 : 580.0;
+    const double top = page->plot->scene->title[0] ? TITLE : NO_TITLE;
+    char label[DEA_LABEL_LENGTH + 24];
+    fputs("set lmargin at screen ", script);
+    dea_gnuplot_number(script, left / WIDTH);
+    fputs("\nset rmargin at screen ", script);
+    dea_gnuplot_number(script, (left + 364.0) / WIDTH);
+    fputs("\nset tmargin at screen ", script);
+    dea_gnuplot_number(script, 1.0 - top / page->height);
+    fputs("\nset bmargin at screen ", script);
+    dea_gnuplot_number(script, 1.0 - (top + PANEL) / page->height);
+    snprintf(label, sizeof label, number == 0 ? "Strain s [%%]" : "Displacement u [%s]", page->displacement.unit);
+    fputs("\nset ylabel ", script);
+    dea_gnuplot_text(script, label);
+    fprintf(script, "\nset label 1 '(%c)' at graph 0, graph 1.045 left\n", 'a' + number);
+    const bool flat = !(page->high[number] > page->low[number]);
+    fprintf(script, "set yrange [%s:%s]\n", page->low[number] < 0.0 || flat ? "*" : "0",
+            page->high[number] > 0.0 || flat ? "*" : "0");
+    write_curves(page, script, number + 2);
+}
+
+/* Entries of the legend, counted where @p script is NULL; @p widest is their longest text. */
+static int legend_entries(const sheet *page, FILE *script, size_t *widest)
+{
+    const dea_scene *scene = page->plot->scene;
+    const size_t groups = page->groups > 1 ? page->groups : 0, models = scene->model_count > 1 ? scene->model_count : 0;
+    int entries = 0;
+    *widest = 0;
+    for (size_t i = 0; i < groups + models + MARKS; i++) {
+        char label[2 * DEA_LABEL_LENGTH] = "", colour[8] = "#404040", style[96];
+        if (i < groups) {
+            group_label(page, i, label, sizeof label);
+            curve_colour(page, 0, i, colour);
+            snprintf(style, sizeof style, "lines dashtype 1 linewidth 1.8");
+        } else if (i < groups + models) {
+            model_label(scene, i - groups, label);
+            if (groups == 0) {
+                curve_colour(page, i - groups, 0, colour);
+            }
+            snprintf(style, sizeof style, "lines dashtype %zu linewidth 1.8", i - groups + 1);
+        } else {
+            const size_t mark = i - groups - models;
+            snprintf(label, sizeof label, "%s", page->seen[mark] ? marks[mark].legend : "");
+            snprintf(style, sizeof style, "points pointtype %d pointsize 0.8 linewidth 1.2", marks[mark].symbol);
+        }
+        const size_t length = strlen(label);
+        *widest = length > *widest ? length : *widest;
+        entries += length > 0;
+        if (script && length > 0) {
+            fprintf(script, "%sNaN with %s linecolor '%s' title ", entries > 1 ? ", \\\n " : "plot ", style, colour);
+            dea_gnuplot_text(script, label);
+        }
+    }
+    return entries;
+}
+
+/* A panel of its own, without axes, below the others. */
+static void write_legend(const sheet *page, FILE *script)
+{
+    if (page->legend_rows == 0) {
+        return;
+    }
+    size_t widest;
+    fputs("unset label\nunset xlabel\nunset ylabel\nunset border\nunset tics\nunset grid\nunset logscale\n"
+          "set xrange [0:1]\nset yrange [0:1]\n"
+          "set lmargin at screen 0\nset rmargin at screen 1\nset bmargin at screen 0\nset tmargin at screen ",
+          script);
+    const double share = (LEGEND_ROW * page->legend_rows + 10.0) / page->height;
+    dea_gnuplot_number(script, share);
+    fputs("\nset key at screen 0.5, screen ", script);
+    dea_gnuplot_number(script, share / 2.0);
+    fprintf(script, " center center horizontal Left reverse samplen 3 spacing 1.1 maxcols %d textcolor '#202020'\n",
+            page->legend_columns);
+    legend_entries(page, script, &widest);
+    fputc('\n', script);
+}
+
+static void sheet_layout(sheet *page)
+{
+    size_t widest;
+    const int entries = legend_entries(page, NULL, &widest);
+    const int fits = WIDTH / (int)(70 + 8 * widest);
+    page->legend_columns = entries < fits ? entries : fits < 1 ? 1 : fits;
+    if (page->legend_columns > 0) {
+        page->legend_rows = (entries + page->legend_columns - 1) / page->legend_columns;
+        page->legend_columns = (entries + page->legend_rows - 1) / page->legend_rows; /* rows of even length */
+    }
+    page->height = (page->plot->scene->title[0] ? TITLE : NO_TITLE) + PANEL + 56 +
+                   (page->legend_rows > 0 ? LEGEND_ROW * page->legend_rows + 10 : 0);
+}
+
+/* Positive values with a constant ratio over two decades or more ask for a logarithmic axis. */
+static bool axis_logarithmic(const sheet *page)
+{
+    const double *values = page->axis->values;
+    const size_t count = page->axis->count;
+    if (page->axis->uniform || count < 4 || !(values[0] > 0.0) || !(values[count - 1] >= 100.0 * values[0])) {
+        return false;
+    }
+    const double ratio = pow(values[count - 1] / values[0], 1.0 / (double)(count - 1));
+    for (size_t i = 1; i < count; i++) {
+        if (!(fabs(values[i] / (values[i - 1] * ratio) - 1.0) < 0.05)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void write_frame(const sheet *page, FILE *script)
+{
+    const size_t last = page->plot->across.kept - 1;
+    char label[DEA_LABEL_LENGTH];
+    dea_plot_style(script);
+    fputs("set datafile missing 'NaN'\nset datafile separator whitespace\nunset key\nset multiplot\n", script);
+    if (page->plot->scene->title[0]) {
+        fputs("set label 2 ", script);
+        dea_gnuplot_text(script, page->plot->scene->title);
+        fputs(" at screen 0.5, screen ", script);
+        dea_gnuplot_number(script, 1.0 - 17.0 / page->height);
+        fputs(" center\n", script);
+    }
+    dea_label_axis(page->axis, &page->across, label);
+    fputs("set xlabel ", script);
+    dea_gnuplot_text(script, label);
+    fputs("\nset xrange [", script);
+    dea_gnuplot_number(script, page->across.factor * page->axis->values[dea_thinning_index(&page->plot->across, page->order[0])]);
+    fputc(':', script);
+    dea_gnuplot_number(script,
+                       page->across.factor * page->axis->values[dea_thinning_index(&page->plot->across, page->order[last])]);
+    fprintf(script, "]\n%s", axis_logarithmic(page) ? "set logscale x\nset format x '%g'\n" : "");
+}
+
+dea_status dea_plot_draw_curves(dea_plot *plot, dea_error *error)
+{
+    sheet page = {.plot = plot, .axis = &plot->scene->axes[plot->x]};
+    size_t *order = dea_plot_order(page.axis, &plot->across);
+    if (!order) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+    }
+    page.order = order;
+    page.across = dea_scale_axis(page.axis);
+    page.groups = plot->curves / plot->scene->model_count;
+    sheet_scan(&page);
+    sheet_layout(&page);
+    FILE *script = plot->picture.script;
+    dea_gnuplot_size(&plot->picture, WIDTH, page.height);
+    write_data(&page, script);
+    write_frame(&page, script);
+    write_panel(&page, script, 0);
+    fputs("unset label 2\n", script);
+    write_panel(&page, script, 1);
+    write_legend(&page, script);
+    fputs("unset multiplot\nunset output\n", script);
+    free(order);
+    return DEA_OK;
+}

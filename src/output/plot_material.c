@@ -1,0 +1,151 @@
+/* Pictures of a material and of a fit: stress and modulus over stretch. */
+#include "output/picture.h"
+
+#include "output/label.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { WIDTH = 960, HEIGHT = 420, FIT_WIDTH = 640, FIT_HEIGHT = 440, CURVE_STEPS = 200, POINTS_MAX = 2000 };
+
+static const char *const load_colours[DEA_LOAD_COUNT] = {"#0072b2", "#d55e00"};
+static const char *const load_titles[DEA_LOAD_COUNT] = {"uniaxial", "equi-biaxial"};
+
+/* Left and right edge of the axes, and their height, as shares of the canvas. */
+static void write_place(FILE *script, double left, double right, double bottom, double top)
+{
+    static const char *const names[] = {"lmargin", "rmargin", "bmargin", "tmargin"};
+    const double values[] = {left, right, bottom, top};
+    for (int i = 0; i < 4; i++) {
+        fprintf(script, "set %s at screen ", names[i]);
+        dea_gnuplot_number(script, values[i]);
+        fputc('\n', script);
+    }
+}
+
+static void write_setting(FILE *script, const char *setting, const char *text)
+{
+    fprintf(script, "set %s ", setting);
+    dea_gnuplot_text(script, text);
+    fputc('\n', script);
+}
+
+static void write_pair(FILE *script, double x, double y)
+{
+    dea_gnuplot_number(script, x);
+    fputc(' ', script);
+    dea_gnuplot_number(script, y);
+    fputc('\n', script);
+}
+
+/* Data block $fit<load> of nominal stress [kPa] over stretch. */
+static void write_stress(FILE *script, const double yeoh[DEA_YEOH_TERMS], dea_load load, double from, double to)
+{
+    fprintf(script, "$fit%d << END\n", (int)load);
+    for (int i = 0; i <= CURVE_STEPS; i++) {
+        const double stretch = from + (to - from) * i / CURVE_STEPS;
+        write_pair(script, stretch, 1e-3 * dea_fit_stress(yeoh, load, stretch));
+    }
+    fputs("END\n", script);
+}
+
+static void write_material(const dea_material *material, FILE *script)
+{
+    double yeoh[DEA_YEOH_TERMS];
+    dea_material_long_term(material, yeoh);
+    for (int load = 0; load < DEA_LOAD_COUNT; load++) {
+        write_stress(script, yeoh, (dea_load)load, 1.0, 2.0);
+    }
+    fputs("$modulus << END\n", script);
+    for (int i = 0; i <= CURVE_STEPS; i++) {
+        const double stretch = 1.0 + (double)i / CURVE_STEPS;
+        write_pair(script, stretch, 1e-6 * dea_yeoh_modulus(yeoh, stretch));
+    }
+    fputs("END\n", script);
+    dea_plot_style(script);
+    fputs("set multiplot\nset xrange [1:2]\nset yrange [0:*]\nset key top left Left reverse samplen 3\nset label 1 '(a)' at "
+          "graph 0, graph 1.045\n",
+          script);
+    write_setting(script, "label 2", material->name);
+    fprintf(script, "set label 2 at screen 0.5, screen 0.96 center\n");
+    write_setting(script, "xlabel", "Stretch λ");
+    write_setting(script, "ylabel", "Engineering stress P [kPa]");
+    write_place(script, 0.095, 0.48, 0.15, 0.865);
+    for (int load = 0; load < DEA_LOAD_COUNT; load++) {
+        fprintf(script, "%s$fit%d with lines linewidth 1.8 dashtype %d linecolor '%s' title '%s'", load > 0 ? ", " : "plot ",
+                load, load + 1, load_colours[load], load_titles[load]);
+    }
+    fputs("\nunset label 2\nset label 1 '(b)' at graph 0, graph 1.045\n", script);
+    write_setting(script, "ylabel", "Operating modulus Y [MPa]");
+    write_place(script, 0.59, 0.975, 0.15, 0.865);
+    fprintf(script, "plot $modulus with lines linewidth 1.8 linecolor '%s' notitle\nunset multiplot\nunset output\n",
+            load_colours[DEA_LOAD_EQUIBIAXIAL]);
+}
+
+dea_status dea_plot_material(const dea_material *material, const char *path, dea_error *error)
+{
+    dea_gnuplot picture;
+    const dea_status status = dea_gnuplot_begin(&picture, path, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    dea_gnuplot_size(&picture, WIDTH, HEIGHT);
+    write_material(material, picture.script);
+    return dea_gnuplot_finish(&picture, true, error);
+}
+
+/* Data block $data<load> of the measured points, evenly thinned where there are very many. */
+static void write_points(FILE *script, const dea_fit_data *data, const dea_fit *fit, dea_load load)
+{
+    const size_t step = fit->count[load] / POINTS_MAX + 1;
+    size_t seen = 0;
+    fprintf(script, "$data%d << END\n", (int)load);
+    for (size_t i = 0; i < data->count; i++) {
+        if (data->points[i].load == load && seen++ % step == 0) {
+            write_pair(script, data->points[i].stretch, 1e-3 * data->points[i].stress);
+        }
+    }
+    fputs("END\n", script);
+}
+
+static void write_fit(const dea_fit *fit, const dea_fit_data *data, FILE *script)
+{
+    const double from = fmin(fit->stretch_min, 1.0), to = fmax(fit->stretch_max, 1.0);
+    dea_plot_style(script);
+    fputs("set key top left Left reverse samplen 2\nset xrange [", script);
+    dea_gnuplot_number(script, from);
+    fputc(':', script);
+    dea_gnuplot_number(script, to);
+    fputs("]\n", script);
+    write_setting(script, "xlabel", "Stretch λ");
+    write_setting(script, "ylabel", "Engineering stress P [kPa]");
+    for (int load = 0; load < DEA_LOAD_COUNT; load++) {
+        if (fit->count[load] > 0) {
+            write_stress(script, fit->yeoh, (dea_load)load, from, to);
+            write_points(script, data, fit, (dea_load)load);
+        }
+    }
+    const char *before = "plot ";
+    for (int load = 0; load < DEA_LOAD_COUNT; load++) {
+        if (fit->count[load] > 0) {
+            fprintf(script, "%s$data%d with points pointtype 6 pointsize 0.7 linewidth 1 linecolor '%s' title '%s, measured'",
+                    before, load, load_colours[load], load_titles[load]);
+            fprintf(script, ", $fit%d with lines linewidth 1.8 linecolor '%s' title '%s, Yeoh fit'", load, load_colours[load],
+                    load_titles[load]);
+            before = ", ";
+        }
+    }
+    fputs("\nunset output\n", script);
+}
+
+dea_status dea_plot_fit(const dea_fit *fit, const dea_fit_data *data, const char *path, dea_error *error)
+{
+    dea_gnuplot picture;
+    const dea_status status = dea_gnuplot_begin(&picture, path, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    dea_gnuplot_size(&picture, FIT_WIDTH, FIT_HEIGHT);
+    write_fit(fit, data, picture.script);
+    return dea_gnuplot_finish(&picture, true, error);
+}

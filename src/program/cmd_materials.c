@@ -1,0 +1,163 @@
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "deaspice/material.h"
+#include "deaspice/plot.h"
+#include "output/atomic.h"
+#include "output/number.h"
+#include "program/program.h"
+
+enum { CURVE_POINTS = 101, MOST_MATERIALS = 64, CURVE_COLUMNS = 4 };
+
+static const double curve_end = 2; /* stretch */
+
+static void print_list(void)
+{
+    int width = 0;
+    for (size_t i = 0; i < dea_material_count(); i++) {
+        int length = (int)strlen(dea_material_builtin(i)->name);
+        width = length > width ? length : width;
+    }
+    for (size_t i = 0; i < dea_material_count(); i++) {
+        const dea_material *material = dea_material_builtin(i);
+        printf("%-*s  %s\n", width, material->name, material->source);
+    }
+}
+
+static void print_optional(const char *name, double value, const char *unit)
+{
+    if (!isnan(value))
+        printf("%-22s %.9g%s\n", name, value, unit);
+}
+
+static void print_relaxation(const dea_material *material)
+{
+    printf("%-22s %s\n", "moduli", material->instantaneous ? "instantaneous" : "long-term");
+    for (size_t i = 0; i < material->prony_count; i++)
+        printf("prony %zu                g = %.9g, tau = %.9g s\n", i + 1, material->prony[i].g, material->prony[i].tau);
+}
+
+static void print_constants(const dea_material *material)
+{
+    printf("%-22s %s\n", "name", material->name);
+    printf("%-22s %s\n", "source", material->source);
+    for (size_t i = 0; i < DEA_YEOH_TERMS; i++)
+        printf("C%zu                     %.9g Pa\n", i + 1, material->yeoh[i]);
+    if (fabs(material->permittivity_per_stretch) > 0)
+        printf("%-22s %.9g %+.9g stretch\n", "permittivity", material->permittivity, material->permittivity_per_stretch);
+    else
+        printf("%-22s %.9g\n", "permittivity", material->permittivity);
+    print_optional("density", material->density, " kg/m^3");
+    print_optional("retardation", material->retardation, " s");
+    print_optional("modulus", material->modulus, " Pa");
+    print_optional("breakdown", material->breakdown, " V/m");
+    if (material->prony_count > 0)
+        print_relaxation(material);
+}
+
+/* What follows from the long-term constants at usual pre-stretches. */
+static void print_moduli(const dea_material *material)
+{
+    static const double stretches[] = {1.0, 1.1, 1.2, 1.3, 1.5, 2.0};
+    double yeoh[DEA_YEOH_TERMS];
+    dea_material_long_term(material, yeoh);
+    printf("\n%10s %12s %12s %12s %12s\n", "prestretch", "stress_Pa", "Y_Pa", "W11_Pa", "W12_Pa");
+    for (size_t i = 0; i < sizeof stretches / sizeof stretches[0]; i++) {
+        double stretch = stretches[i];
+        dea_stress stress = dea_yeoh_stress(yeoh, stretch, stretch);
+        printf("%10g %12.1f %12.1f %12.1f %12.1f\n", stretch, stress.p1, dea_yeoh_modulus(yeoh, stretch), stress.w11, stress.w12);
+    }
+}
+
+/* A film pulled one way only narrows by stretch^-1/2 in both other directions. */
+static dea_status write_curve_row(dea_atomic *file, const double yeoh[DEA_YEOH_TERMS], double stretch, dea_error *error)
+{
+    const double values[CURVE_COLUMNS] = {stretch, dea_yeoh_stress(yeoh, stretch, 1 / sqrt(stretch)).p1,
+                                          dea_yeoh_stress(yeoh, stretch, stretch).p1, dea_yeoh_modulus(yeoh, stretch)};
+    char line[CURVE_COLUMNS * (DEA_NUMBER_LENGTH + 1)];
+    size_t used = 0;
+    for (size_t i = 0; i < CURVE_COLUMNS; i++) {
+        used += dea_number_write(line + used, values[i]);
+        line[used++] = i + 1 < CURVE_COLUMNS ? ',' : '\n';
+    }
+    return dea_atomic_write(file, line, used, error);
+}
+
+static dea_status write_curves(const dea_material *material, const char *path, dea_error *error)
+{
+    static const char header[] = "stretch,uniaxial_Pa,equibiaxial_Pa,modulus_Pa\n";
+    double yeoh[DEA_YEOH_TERMS];
+    dea_atomic file;
+    dea_material_long_term(material, yeoh);
+    dea_status status = dea_atomic_open(&file, path, error);
+    if (status != DEA_OK)
+        return status;
+    status = dea_atomic_write(&file, header, sizeof header - 1, error);
+    for (int i = 0; i < CURVE_POINTS && status == DEA_OK; i++)
+        status = write_curve_row(&file, yeoh, 1 + (curve_end - 1) * i / (CURVE_POINTS - 1), error);
+    dea_status closed = dea_atomic_close(&file, status == DEA_OK, status == DEA_OK ? error : NULL);
+    return status != DEA_OK ? status : closed;
+}
+
+static const dea_material *material_choose(const char *name)
+{
+    const char *names[MOST_MATERIALS];
+    size_t count = 0;
+    const dea_material *material = dea_material_find(name);
+    for (; count < MOST_MATERIALS && dea_material_builtin(count); count++)
+        names[count] = dea_material_builtin(count)->name;
+    if (!material)
+        dea_complain_unknown("material", name, names, count);
+    return material;
+}
+
+static dea_exit run(const dea_arguments *arguments)
+{
+    if (arguments->operand_count == 0) {
+        if (arguments->output || arguments->plot) {
+            dea_complain("-o and --plot need the name of a material");
+            return DEA_EXIT_USAGE;
+        }
+        print_list();
+        return DEA_EXIT_DONE;
+    }
+    const dea_material *material = material_choose(arguments->operands[0].path);
+    if (!material)
+        return DEA_EXIT_USAGE;
+    dea_error error = {0};
+    dea_status status = DEA_OK;
+    dea_signals_catch();
+    if (!arguments->output && !arguments->plot) {
+        print_constants(material);
+        print_moduli(material);
+    }
+    if (arguments->output)
+        status = write_curves(material, arguments->output, &error);
+    if (arguments->plot && status == DEA_OK)
+        status = dea_plot_material(material, arguments->plot, &error);
+    return status == DEA_OK ? DEA_EXIT_DONE : dea_complain_error(&error);
+}
+
+const dea_command dea_command_materials = {
+    .name = "materials",
+    .summary = "what is built in",
+    .help = "Usage: deaspice materials [OPTION]... [NAME]\n"
+            "\n"
+            "Lists the built-in materials, or shows the constants of one and what follows from\n"
+            "them at usual pre-stretches: nominal stress, operating modulus Y, tangent moduli.\n"
+            "\n"
+            "  -o, --output FILE     write stress and modulus over stretch as CSV, - is standard\n"
+            "                        output\n"
+            "      --plot FILE       draw them, FILE ends in .svg or .png\n"
+            "  -h, --help            this text\n"
+            "  -V, --version         the version\n"
+            "\n"
+            "Examples:\n"
+            "  deaspice materials\n"
+            "  deaspice materials elastosil-2030 --plot elastosil.svg\n",
+    .takes = DEA_TAKES_OUTPUT | DEA_TAKES_PLOT,
+    .least = 0,
+    .most = 1,
+    .run = run,
+};

@@ -1,0 +1,115 @@
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <sundials/sundials_version.h>
+
+#include "program/program.h"
+
+#ifndef DEA_VERSION
+#define DEA_VERSION "unknown"
+#endif
+
+static const dea_command *const commands[] = {&dea_command_run, &dea_command_check, &dea_command_fit, &dea_command_materials};
+
+enum { COMMANDS = sizeof commands / sizeof commands[0] };
+
+static void print_usage(FILE *out)
+{
+    fputs("Usage: deaspice COMMAND [OPTION]... [FILE]...\n"
+          "\n"
+          "Simulates dielectric elastomer actuators as networks and as membranes.\n"
+          "\n"
+          "Commands:\n",
+          out);
+    for (size_t i = 0; i < COMMANDS; i++)
+        fprintf(out, "  %-10s %s\n", commands[i]->name, commands[i]->summary);
+    fputs("\n"
+          "Engines:\n",
+          out);
+    for (size_t i = 0; i < dea_engine_count(); i++)
+        fprintf(out, "  %-10s %s\n", dea_engine_at(i)->name, dea_engine_at(i)->summary);
+    fputs("\n"
+          "deaspice COMMAND --help tells more about a command, deaspice --version the version.\n"
+          "Exit status: 0 done, 1 a run failed, 2 usage or a bad scene, 3 a check disagreed.\n",
+          out);
+}
+
+static void print_version(void)
+{
+    char sundials[64] = "";
+    SUNDIALSGetVersion(sundials, sizeof sundials);
+    printf("deaspice %s (SUNDIALS %s; engines:", DEA_VERSION, sundials);
+    for (size_t i = 0; i < dea_engine_count(); i++)
+        printf(" %s", dea_engine_at(i)->name);
+    puts(")");
+}
+
+static const dea_command *command_find(const char *name)
+{
+    const char *names[COMMANDS];
+    for (size_t i = 0; i < COMMANDS; i++) {
+        names[i] = commands[i]->name;
+        if (strcmp(names[i], name) == 0)
+            return commands[i];
+    }
+    dea_complain_unknown("command", name, names, COMMANDS);
+    return NULL;
+}
+
+static dea_exit command_run(const dea_command *command, int argc, char **argv)
+{
+    dea_arguments arguments;
+    dea_exit outcome = DEA_EXIT_USAGE;
+    switch (dea_arguments_parse(command, argc, argv, &arguments)) {
+    case DEA_PARSED_FINE:
+        outcome = command->run(&arguments);
+        break;
+    case DEA_PARSED_HELP:
+        fputs(command->help, stdout);
+        outcome = DEA_EXIT_DONE;
+        break;
+    case DEA_PARSED_VERSION:
+        print_version();
+        outcome = DEA_EXIT_DONE;
+        break;
+    case DEA_PARSED_WRONG:
+        break;
+    }
+    dea_arguments_free(&arguments);
+    return outcome;
+}
+
+static dea_exit dispatch(int argc, char **argv)
+{
+    if (argc < 2) {
+        print_usage(stderr);
+        return DEA_EXIT_USAGE;
+    }
+    const char *first = argv[1];
+    if (strcmp(first, "--help") == 0 || strcmp(first, "-h") == 0 || strcmp(first, "help") == 0) {
+        print_usage(stdout);
+        return DEA_EXIT_DONE;
+    }
+    if (strcmp(first, "--version") == 0 || strcmp(first, "-V") == 0) {
+        print_version();
+        return DEA_EXIT_DONE;
+    }
+    if (first[0] == '-') {
+        dea_complain("the command comes first: deaspice COMMAND %s ...; see deaspice --help", first);
+        return DEA_EXIT_USAGE;
+    }
+    const dea_command *command = command_find(first);
+    return command ? command_run(command, argc - 1, argv + 1) : DEA_EXIT_USAGE;
+}
+
+int main(int argc, char **argv)
+{
+    dea_exit outcome = dispatch(argc, argv);
+    bool failed = ferror(stdout) != 0;
+    if ((fflush(stdout) != 0 || failed) && dea_signals_caught() == 0) {
+        dea_complain("cannot write standard output: %s", errno ? strerror(errno) : "it failed");
+        outcome = outcome == DEA_EXIT_DONE ? DEA_EXIT_FAILED : outcome;
+    }
+    dea_signals_raise();
+    return (int)outcome;
+}

@@ -1,0 +1,281 @@
+#define _GNU_SOURCE
+#include <errno.h>
+#include <getopt.h>
+#include <math.h>
+#include <sched.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "program/program.h"
+#include "support/text.h"
+
+enum { MOST_JOBS = 1024 };
+
+/* An option of any command: what takes it, and what it does with its value; false when the value is wrong. */
+typedef struct option_entry {
+    const char *name;
+    char letter; /* 0: none */
+    bool valued;
+    unsigned group; /* dea_takes; 0: every command */
+    bool (*set)(dea_arguments *arguments, const char *value);
+} option_entry;
+
+size_t dea_core_count(void)
+{
+    cpu_set_t set;
+    int count = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
+    return count > 0 ? (size_t)count : 1;
+}
+
+static bool set_text(const char **place, const char *name, const char *value)
+{
+    if (*place) {
+        dea_complain("--%s is given twice", name);
+        return false;
+    }
+    if (*value == '\0') {
+        dea_complain("--%s needs a value", name);
+        return false;
+    }
+    *place = value;
+    return true;
+}
+
+static bool set_engine(dea_arguments *arguments, const char *value)
+{
+    return set_text(&arguments->engine, "engine", value) && dea_engine_choose(value) != NULL;
+}
+
+static bool set_model(dea_arguments *arguments, const char *value)
+{
+    return set_text(&arguments->model, "model", value);
+}
+
+static bool set_setting(dea_arguments *arguments, const char *value)
+{
+    arguments->settings[arguments->setting_count++].text = value;
+    return true;
+}
+
+static bool set_output(dea_arguments *arguments, const char *value)
+{
+    return set_text(&arguments->output, "output", value);
+}
+
+static bool set_format(dea_arguments *arguments, const char *value)
+{
+    return set_text(&arguments->format, "format", value);
+}
+
+static bool set_plot(dea_arguments *arguments, const char *value)
+{
+    return set_text(&arguments->plot, "plot", value);
+}
+
+/* Whole number of at most @p most, -1 where it is none. */
+static long whole_number(const char *text, long most)
+{
+    char *end;
+    errno = 0;
+    long value = strtol(text, &end, 10);
+    bool digits = *text >= '0' && *text <= '9';
+    return digits && *end == '\0' && errno == 0 && value <= most ? value : -1;
+}
+
+static bool set_jobs(dea_arguments *arguments, const char *value)
+{
+    long jobs = strcmp(value, "auto") == 0 ? 0 : whole_number(value, MOST_JOBS);
+    if (jobs < 0) {
+        dea_complain("--jobs %s: needs a whole number up to %d, or auto", value, MOST_JOBS);
+        return false;
+    }
+    arguments->jobs = jobs > 0 ? (size_t)jobs : dea_core_count();
+    return true;
+}
+
+static bool set_quiet(dea_arguments *arguments, const char *value)
+{
+    (void)value;
+    arguments->quiet = true;
+    return true;
+}
+
+static bool set_tolerance(dea_arguments *arguments, const char *value)
+{
+    char *end;
+    arguments->tolerance = strtod(value, &end);
+    if (end == value || *end != '\0' || !(arguments->tolerance > 0 && arguments->tolerance < 1)) {
+        dea_complain("--tolerance %s: needs a number between 0 and 1, for example 1e-6", value);
+        return false;
+    }
+    return true;
+}
+
+static bool set_terms(dea_arguments *arguments, const char *value)
+{
+    long terms = whole_number(value, DEA_YEOH_TERMS);
+    if (terms < 1) {
+        dea_complain("--terms %s: needs 1, 2 or 3", value);
+        return false;
+    }
+    arguments->terms = (unsigned)terms;
+    return true;
+}
+
+static bool set_relative(dea_arguments *arguments, const char *value)
+{
+    (void)value;
+    arguments->relative = true;
+    return true;
+}
+
+static bool add_operand(dea_arguments *arguments, const char *path, dea_given_mode mode)
+{
+    arguments->operands[arguments->operand_count++] = (dea_operand){path, mode};
+    return true;
+}
+
+static bool add_uniaxial(dea_arguments *arguments, const char *value)
+{
+    return add_operand(arguments, value, DEA_GIVEN_UNIAXIAL);
+}
+
+static bool add_equibiaxial(dea_arguments *arguments, const char *value)
+{
+    return add_operand(arguments, value, DEA_GIVEN_EQUIBIAXIAL);
+}
+
+static const option_entry entries[] = {
+    {"engine", 0, true, DEA_TAKES_ENGINE, set_engine},
+    {"model", 0, true, DEA_TAKES_SCENE, set_model},
+    {"set", 0, true, DEA_TAKES_SCENE, set_setting},
+    {"output", 'o', true, DEA_TAKES_OUTPUT, set_output},
+    {"format", 0, true, DEA_TAKES_FORMAT, set_format},
+    {"plot", 0, true, DEA_TAKES_PLOT, set_plot},
+    {"jobs", 'j', true, DEA_TAKES_JOBS, set_jobs},
+    {"quiet", 'q', false, DEA_TAKES_QUIET, set_quiet},
+    {"tolerance", 0, true, DEA_TAKES_TOLERANCE, set_tolerance},
+    {"uniaxial", 0, true, DEA_TAKES_FIT, add_uniaxial},
+    {"equibiaxial", 0, true, DEA_TAKES_FIT, add_equibiaxial},
+    {"terms", 0, true, DEA_TAKES_FIT, set_terms},
+    {"relative", 0, false, DEA_TAKES_FIT, set_relative},
+    {"help", 'h', false, 0, NULL},
+    {"version", 'V', false, 0, NULL},
+};
+
+enum { ENTRIES = sizeof entries / sizeof entries[0], FIRST_CODE = 256 };
+
+static bool takes(const dea_command *command, const option_entry *entry)
+{
+    return entry->group == 0 || (command->takes & entry->group) != 0;
+}
+
+static void complain_option(const dea_command *command, const char *given)
+{
+    char dashed[ENTRIES][DEA_NAME_LENGTH];
+    const char *names[ENTRIES];
+    size_t count = 0;
+    char word[DEA_NAME_LENGTH];
+    char what[DEA_NAME_LENGTH];
+    for (size_t i = 0; i < ENTRIES; i++) {
+        if (!takes(command, &entries[i]))
+            continue;
+        snprintf(dashed[count], sizeof dashed[count], "--%s", entries[i].name);
+        names[count] = dashed[count];
+        count++;
+    }
+    snprintf(word, sizeof word, "%.*s", (int)strcspn(given, "="), given);
+    snprintf(what, sizeof what, "option of %s", command->name);
+    dea_complain_unknown(what, word, names, count);
+}
+
+/* Long options and letters that the command takes, in getopt's form; codes of long options are FIRST_CODE + entry. */
+static void fill_getopt(const dea_command *command, struct option *longs, char *letters)
+{
+    *letters++ = ':';
+    for (int i = 0; i < ENTRIES; i++) {
+        const option_entry *entry = &entries[i];
+        if (!takes(command, entry))
+            continue;
+        *longs++ = (struct option){entry->name, entry->valued ? required_argument : no_argument, NULL, FIRST_CODE + i};
+        if (entry->letter) {
+            *letters++ = entry->letter;
+            if (entry->valued)
+                *letters++ = ':';
+        }
+    }
+    *longs = (struct option){0};
+    *letters = '\0';
+}
+
+static const option_entry *entry_of(int code)
+{
+    for (int i = 0; i < ENTRIES; i++) {
+        if (code == FIRST_CODE + i || (entries[i].letter && code == entries[i].letter))
+            return &entries[i];
+    }
+    return NULL;
+}
+
+static dea_parsed take_option(const dea_command *command, int code, char **argv, dea_arguments *arguments)
+{
+    const option_entry *entry = entry_of(code);
+    const char *word = argv[optind - 1];
+    char letter[3] = {'-', (char)optopt, '\0'};
+    if (code == ':') {
+        const option_entry *lacking = entry_of(optopt);
+        dea_complain("--%s needs a value", lacking ? lacking->name : letter);
+        return DEA_PARSED_WRONG;
+    }
+    if (!entry && optopt >= FIRST_CODE) {
+        dea_complain("--%s takes no value", entry_of(optopt)->name);
+        return DEA_PARSED_WRONG;
+    }
+    if (!entry) {
+        complain_option(command, optopt ? letter : word);
+        return DEA_PARSED_WRONG;
+    }
+    if (!entry->set)
+        return entry->letter == 'h' ? DEA_PARSED_HELP : DEA_PARSED_VERSION;
+    return entry->set(arguments, optarg) ? DEA_PARSED_FINE : DEA_PARSED_WRONG;
+}
+
+static dea_parsed count_operands(const dea_command *command, const dea_arguments *arguments)
+{
+    if (arguments->operand_count < command->least)
+        dea_complain("%s needs a file; see deaspice %s --help", command->name, command->name);
+    else if (arguments->operand_count > command->most)
+        dea_complain("%s takes one operand, \"%s\" is one too many", command->name, arguments->operands[command->most].path);
+    else
+        return DEA_PARSED_FINE;
+    return DEA_PARSED_WRONG;
+}
+
+dea_parsed dea_arguments_parse(const dea_command *command, int argc, char **argv, dea_arguments *arguments)
+{
+    struct option longs[ENTRIES + 1];
+    char letters[2 * ENTRIES + 2];
+    *arguments = (dea_arguments){.tolerance = NAN};
+    arguments->settings = calloc((size_t)argc + 1, sizeof *arguments->settings);
+    arguments->operands = calloc((size_t)argc + 1, sizeof *arguments->operands);
+    if (!arguments->settings || !arguments->operands) {
+        dea_complain("out of memory");
+        return DEA_PARSED_WRONG;
+    }
+    fill_getopt(command, longs, letters);
+    opterr = 0;
+    dea_parsed parsed = DEA_PARSED_FINE;
+    int code;
+    while (parsed == DEA_PARSED_FINE && (code = getopt_long(argc, argv, letters, longs, NULL)) != -1)
+        parsed = take_option(command, code, argv, arguments);
+    for (; parsed == DEA_PARSED_FINE && optind < argc; optind++)
+        add_operand(arguments, argv[optind], DEA_GIVEN_NONE);
+    return parsed == DEA_PARSED_FINE ? count_operands(command, arguments) : parsed;
+}
+
+void dea_arguments_free(dea_arguments *arguments)
+{
+    free(arguments->settings);
+    free(arguments->operands);
+}

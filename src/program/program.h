@@ -1,0 +1,109 @@
+/** @file program.h
+ * What the commands of the program share: arguments, messages, exit status, signals.
+ */
+#ifndef DEA_PROGRAM_PROGRAM_H
+#define DEA_PROGRAM_PROGRAM_H
+
+#include "deaspice/engine.h"
+#include "deaspice/scene.h"
+
+/** Exit status of the program. */
+typedef enum dea_exit {
+    DEA_EXIT_DONE = 0,
+    DEA_EXIT_FAILED = 1,   /**< a run failed */
+    DEA_EXIT_USAGE = 2,    /**< usage, a bad scene, or an engine that cannot do it */
+    DEA_EXIT_DISAGREED = 3 /**< a check disagreed */
+} dea_exit;
+
+/** What a command takes besides --help and --version; one bit each. */
+typedef enum dea_takes {
+    DEA_TAKES_ENGINE = 1 << 0,
+    DEA_TAKES_SCENE = 1 << 1, /**< --model, --set */
+    DEA_TAKES_OUTPUT = 1 << 2,
+    DEA_TAKES_FORMAT = 1 << 3,
+    DEA_TAKES_PLOT = 1 << 4,
+    DEA_TAKES_JOBS = 1 << 5,
+    DEA_TAKES_QUIET = 1 << 6,
+    DEA_TAKES_TOLERANCE = 1 << 7,
+    DEA_TAKES_FIT = 1 << 8 /**< --uniaxial, --equibiaxial, --terms, --relative */
+} dea_takes;
+
+/** Mode of a data file as the command line gives it. */
+typedef enum dea_given_mode { DEA_GIVEN_NONE, DEA_GIVEN_UNIAXIAL, DEA_GIVEN_EQUIBIAXIAL } dea_given_mode;
+
+/** A file of the command line. */
+typedef struct dea_operand {
+    const char *path;
+    dea_given_mode mode; /**< fit only */
+} dea_operand;
+
+/** Arguments of a command; strings belong to argv, arrays to this. */
+typedef struct dea_arguments {
+    const char *engine; /**< NULL: not given */
+    const char *model;  /**< NULL: the scene's */
+    dea_setting *settings;
+    size_t setting_count;
+    const char *output;
+    const char *format;
+    const char *plot;
+    size_t jobs; /**< 0: not given; "auto" is already the number of cores */
+    bool quiet;
+    double tolerance; /**< NAN: not given */
+    unsigned terms;   /**< 0: not given */
+    bool relative;
+    dea_operand *operands;
+    size_t operand_count;
+} dea_arguments;
+
+/** A command. */
+typedef struct dea_command {
+    const char *name;
+    const char *summary; /**< one line */
+    const char *help;    /**< text of --help */
+    unsigned takes;      /**< dea_takes */
+    size_t least, most;  /**< operands */
+    dea_exit (*run)(const dea_arguments *arguments);
+} dea_command;
+
+extern const dea_command dea_command_run;
+extern const dea_command dea_command_check;
+extern const dea_command dea_command_fit;
+extern const dea_command dea_command_materials;
+
+/** How parsing ended. */
+typedef enum dea_parsed { DEA_PARSED_FINE, DEA_PARSED_HELP, DEA_PARSED_VERSION, DEA_PARSED_WRONG } dea_parsed;
+
+/** Parses what follows the command's name (argv[0]); tells what is wrong. The caller frees with dea_arguments_free(). */
+dea_parsed dea_arguments_parse(const dea_command *command, int argc, char **argv, dea_arguments *arguments);
+/** Frees the arrays. */
+void dea_arguments_free(dea_arguments *arguments);
+/** Cores that this process may use, at least 1. */
+size_t dea_core_count(void);
+
+/** Prints "deaspice: message" on standard error. */
+void dea_complain(const char *format, ...) DEA_PRINTF(1, 2);
+/** Complains about @p error unless a signal ended the work; returns the exit status that goes with it. */
+dea_exit dea_complain_error(const dea_error *error);
+/** Complains about an unknown @p what, with a guess among @p count names. */
+void dea_complain_unknown(const char *what, const char *given, const char *const *names, size_t count);
+/** Engine of that name, complaining with a guess when there is none. */
+const dea_engine *dea_engine_choose(const char *name);
+/** Reads a scene with the settings of the command line; on failure says so and sets @p outcome. */
+bool dea_scene_open(const dea_arguments *arguments, const char *path, dea_scene *scene, dea_exit *outcome);
+/** Complains about an engine that refuses a model and names those that can do it; true where it does. */
+bool dea_engine_refuses(const dea_engine *engine, const dea_scene *scene);
+/** Seconds since some moment. */
+double dea_seconds(void);
+
+/** Lets SIGINT, SIGTERM, SIGHUP and SIGPIPE end the work cleanly from now on; a second one kills at once. */
+void dea_signals_catch(void);
+/** The signal that came, 0: none. */
+int dea_signals_caught(void);
+/** True when what came is a reader that went away, which is nothing to talk about. */
+bool dea_signals_broken_pipe(void);
+/** Same as a stop callback of a run. */
+bool dea_signals_stop(void *user);
+/** Ends this process by the signal that came, if one did. */
+void dea_signals_raise(void);
+
+#endif

@@ -1,0 +1,125 @@
+/* What only the whole scene shows. */
+#include <math.h>
+#include <stddef.h>
+
+#include "deaspice/model.h"
+#include "scene/reader.h"
+
+/* A key that every scene needs, by the mapping that should hold it. */
+typedef struct need {
+    const char *parent, *path;
+} need;
+
+static dea_status fail_missing(dea_reader *reader, const char *parent, const char *path)
+{
+    dea_ref ref;
+    const dea_node *holder = dea_tree_child(reader->root, parent);
+    const dea_place *place = holder ? &holder->place : &reader->root->place;
+    return dea_place_fail(place, reader->error, path, "missing; accepted: %s", dea_key_find(path, &ref) ? ref.key->accepted : "");
+}
+
+static dea_status needs_check(dea_reader *reader)
+{
+    static const need needs[] = {
+        {"actuator", "actuator.frame_radius"}, {"actuator", "actuator.film_thickness"},
+        {"actuator", "actuator.prestretch"},   {"drive", "drive.voltage"},
+        {"material", "material.yeoh.C1"},      {"material", "material.permittivity"},
+    };
+    if (!reader->kind_known) {
+        return fail_missing(reader, "actuator", "actuator.kind");
+    }
+    if (!dea_tree_child(reader->root, "material")) {
+        return fail_missing(reader, "material", "material");
+    }
+    for (size_t i = 0; i < sizeof needs / sizeof *needs; i++) {
+        dea_ref ref;
+        if (dea_key_find(needs[i].path, &ref) && isnan(*(const double *)((const char *)reader->scene + dea_ref_offset(&ref)))) {
+            return fail_missing(reader, needs[i].parent, needs[i].path);
+        }
+    }
+    const dea_actuator *actuator = &reader->scene->actuator;
+    if (isnan(actuator->coverage) && isnan(actuator->divide_radius)) {
+        return dea_place_fail(&dea_tree_child(reader->root, "actuator")->place, reader->error, "actuator.coverage",
+                              "missing; accepted: coverage, e.g. 0.5, or %s",
+                              actuator->kind == DEA_LENS ? "lens_radius" : "electrode_radius");
+    }
+    return reader->scene->model_count > 0 ? DEA_OK : fail_missing(reader, "", "model");
+}
+
+/* The place of whoever gave a scalar, else the scene's. */
+static const dea_place *place_of(dea_reader *reader, size_t offset, const char *parent)
+{
+    const dea_given *given = dea_reader_given(reader, offset);
+    const dea_node *holder = dea_tree_child(reader->root, parent);
+    return given->node ? &given->node->place : holder ? &holder->place : &reader->root->place;
+}
+
+static bool swept(dea_reader *reader, size_t offset)
+{
+    return dea_reader_given(reader, offset)->swept;
+}
+
+static dea_status radius_check(dea_reader *reader)
+{
+    const dea_actuator *actuator = &reader->scene->actuator;
+    const size_t divide = offsetof(dea_scene, actuator.divide_radius);
+    const size_t frame = offsetof(dea_scene, actuator.frame_radius);
+    if (isnan(actuator->divide_radius) || swept(reader, divide) || swept(reader, frame) ||
+        actuator->divide_radius < actuator->frame_radius) {
+        return DEA_OK;
+    }
+    return dea_place_fail(place_of(reader, divide, "actuator"), reader->error, dea_reader_given(reader, divide)->ref.path,
+                          "out of range (%g m); accepted: less than frame_radius, %g m", actuator->divide_radius,
+                          actuator->frame_radius);
+}
+
+static dea_status permittivity_check(dea_reader *reader)
+{
+    const dea_scene *scene = reader->scene;
+    const size_t constant = offsetof(dea_scene, material.permittivity);
+    const size_t slope = offsetof(dea_scene, material.permittivity_per_stretch);
+    const double value = dea_material_permittivity(&scene->material, scene->actuator.prestretch);
+    if (swept(reader, constant) || swept(reader, slope) || swept(reader, offsetof(dea_scene, actuator.prestretch)) ||
+        value > 0.0) {
+        return DEA_OK;
+    }
+    return dea_place_fail(place_of(reader, slope, "material"), reader->error, "material.permittivity",
+                          "falls to %g at the pre-stretch %g; accepted: a permittivity > 0 there", value,
+                          scene->actuator.prestretch);
+}
+
+static dea_status prony_check(dea_reader *reader)
+{
+    const dea_material *material = &reader->scene->material;
+    double sum = 0.0;
+    for (size_t i = 0; i < material->prony_count; i++) {
+        sum += swept(reader, offsetof(dea_scene, material.prony) + i * sizeof(dea_prony)) ? 0.0 : material->prony[i].g;
+    }
+    if (sum < 1.0) {
+        return DEA_OK;
+    }
+    const size_t first = offsetof(dea_scene, material.prony);
+    return dea_place_fail(place_of(reader, first, "material"), reader->error, "material.prony",
+                          "the shares g sum to %g; accepted: less than 1, so that a long-term modulus stays", sum);
+}
+
+static dea_status optics_check(dea_reader *reader)
+{
+    const dea_actuator *actuator = &reader->scene->actuator;
+    const bool length = !isnan(actuator->focal_length);
+    if (length == !isnan(actuator->refractive_index)) {
+        return DEA_OK;
+    }
+    const size_t given = length ? offsetof(dea_scene, actuator.focal_length) : offsetof(dea_scene, actuator.refractive_index);
+    return dea_place_fail(place_of(reader, given, "actuator"), reader->error, "actuator.optics",
+                          "%s is missing; accepted: both keys together", length ? "refractive_index" : "focal_length");
+}
+
+dea_status dea_reader_finish(dea_reader *reader)
+{
+    dea_status status = needs_check(reader);
+    status = status ? status : radius_check(reader);
+    status = status ? status : permittivity_check(reader);
+    status = status ? status : prony_check(reader);
+    return status ? status : optics_check(reader);
+}

@@ -1,0 +1,264 @@
+#include "scene/keys.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/reader.h"
+#include "support/text.h"
+
+#define AT(member) offsetof(dea_scene, member)
+#define SCALAR(name, member, si, ending, from, to, ends, has, shown, help)                                                       \
+    {                                                                                                                            \
+        .path = name, .read = dea_read_scalar, .offset = AT(member), .unit = si, .suffix = ending, .low = from, .high = to,      \
+        .open = ends, .kinds = has, .words = shown, .accepted = help                                                             \
+    }
+#define OTHER(name, reader, help)                                                                                                \
+    {                                                                                                                            \
+        .path = name, .read = reader, .offset = DEA_KEY_NOWHERE, .kinds = DEA_KEY_BOTH, .accepted = help                         \
+    }
+
+static const dea_key keys[] = {
+    OTHER("title", dea_read_title, "one line of text, at most 1000 bytes"),
+    OTHER("actuator", dea_read_mapping, "a mapping with kind, frame_radius, coverage, ..."),
+    OTHER("actuator.kind", dea_read_kind, "dot, lens"),
+    SCALAR("actuator.frame_radius", actuator.frame_radius, "m", "_m", 0, INFINITY, true, DEA_KEY_BOTH, 1,
+           "a length > 0, e.g. 30 mm"),
+    SCALAR("actuator.coverage", actuator.coverage, "1", "", 0, 1, true, DEA_KEY_BOTH, 1, "a ratio > 0 and < 1, e.g. 0.5"),
+    SCALAR("actuator.electrode_radius", actuator.divide_radius, "m", "_m", 0, INFINITY, true, DEA_KEY_DOT, 1,
+           "a length > 0 and < frame_radius, e.g. 15 mm"),
+    SCALAR("actuator.lens_radius", actuator.divide_radius, "m", "_m", 0, INFINITY, true, DEA_KEY_LENS, 1,
+           "a length > 0 and < frame_radius, e.g. 15 mm"),
+    SCALAR("actuator.film_thickness", actuator.film_thickness, "m", "_m", 0, INFINITY, true, DEA_KEY_BOTH, 1,
+           "a length > 0, e.g. 100 um"),
+    SCALAR("actuator.prestretch", actuator.prestretch, "1", "", 1, INFINITY, false, DEA_KEY_BOTH, 1, "a stretch >= 1, e.g. 1.2"),
+    SCALAR("actuator.electrode_mass", actuator.electrode_mass, "kg/m^2", "_kg_per_m2", 0, INFINITY, false, DEA_KEY_BOTH, 1,
+           "a mass per area >= 0, e.g. 25 g/m^2"),
+    OTHER("actuator.optics", dea_read_mapping, "a mapping with focal_length and refractive_index (lens only)"),
+    SCALAR("actuator.optics.focal_length", actuator.focal_length, "m", "_m", 0, INFINITY, true, DEA_KEY_LENS, 1,
+           "a length > 0, e.g. 22 mm"),
+    SCALAR("actuator.optics.refractive_index", actuator.refractive_index, "1", "", 1, INFINITY, true, DEA_KEY_LENS, 1,
+           "a number > 1, e.g. 1.4"),
+    OTHER("material", dea_read_material, "a built-in name, the path of a material file, or a mapping"),
+    OTHER("material.base", dea_read_later, "a built-in name or the path of a material file"),
+    OTHER("material.source", dea_read_source, "one line of text, at most 255 bytes"),
+    OTHER("material.yeoh", dea_read_mapping, "a mapping with C1, C2, C3, e.g. {C1: 178426 Pa}"),
+    SCALAR("material.yeoh.C1", material.yeoh[0], "Pa", "_Pa", 0, INFINITY, true, DEA_KEY_BOTH, 1,
+           "a modulus > 0, e.g. 178426 Pa"),
+    SCALAR("material.yeoh.C2", material.yeoh[1], "Pa", "_Pa", -INFINITY, INFINITY, true, DEA_KEY_BOTH, 1,
+           "a modulus, e.g. -6023 Pa"),
+    SCALAR("material.yeoh.C3", material.yeoh[2], "Pa", "_Pa", -INFINITY, INFINITY, true, DEA_KEY_BOTH, 1,
+           "a modulus, e.g. 4234 Pa"),
+    {.path = "material.permittivity",
+     .read = dea_read_permittivity,
+     .offset = AT(material.permittivity),
+     .unit = "1",
+     .suffix = "",
+     .low = 0,
+     .high = INFINITY,
+     .open = true,
+     .kinds = DEA_KEY_BOTH,
+     .words = 1,
+     .accepted = "a relative permittivity > 0, e.g. 2.8, or {constant: 2.76, per_stretch: -0.28}"},
+    SCALAR("material.permittivity.constant", material.permittivity, "1", "", 0, INFINITY, true, DEA_KEY_BOTH, 2,
+           "a relative permittivity > 0, e.g. 2.76"),
+    SCALAR("material.permittivity.per_stretch", material.permittivity_per_stretch, "1", "", -INFINITY, INFINITY, true,
+           DEA_KEY_BOTH, 2, "a number, e.g. -0.28"),
+    SCALAR("material.density", material.density, "kg/m^3", "_kg_per_m3", 0, INFINITY, true, DEA_KEY_BOTH, 1,
+           "a density > 0, e.g. 1080 kg/m^3"),
+    OTHER("material.prony", dea_read_prony, "a list of at most 64 branches, e.g. [{g: 0.2, tau: 0.5 s}]"),
+    OTHER("material.prony.#", dea_read_mapping, "a branch, e.g. {g: 0.2, tau: 0.5 s}"),
+    SCALAR("material.prony.#.g", material.prony[0].g, "1", "", 0, 1, true, DEA_KEY_BOTH, 3, "a share > 0 and < 1, e.g. 0.2"),
+    SCALAR("material.prony.#.tau", material.prony[0].tau, "s", "_s", 0, INFINITY, true, DEA_KEY_BOTH, 3,
+           "a time > 0, e.g. 0.5 s"),
+    OTHER("material.moduli", dea_read_moduli, "long-term, instantaneous"),
+    SCALAR("material.retardation", material.retardation, "s", "_s", 0, INFINITY, true, DEA_KEY_BOTH, 1, "a time > 0, e.g. 1 ms"),
+    SCALAR("material.modulus", material.modulus, "Pa", "_Pa", 0, INFINITY, true, DEA_KEY_BOTH, 1, "a modulus > 0, e.g. 1.2 MPa"),
+    SCALAR("material.breakdown", material.breakdown, "V/m", "_V_per_m", 0, INFINITY, true, DEA_KEY_BOTH, 1,
+           "a field > 0, e.g. 80 V/um"),
+    OTHER("drive", dea_read_mapping, "a mapping with voltage, ..."),
+    SCALAR("drive.voltage", drive.voltage, "V", "_V", -INFINITY, INFINITY, true, DEA_KEY_BOTH, 1, "a voltage, e.g. 4500 V"),
+    SCALAR("drive.series_resistance", drive.series_resistance, "ohm", "_Ohm", 0, INFINITY, false, DEA_KEY_BOTH, 1,
+           "a resistance >= 0, e.g. 1 MOhm"),
+    SCALAR("drive.leakage_resistance", drive.leakage_resistance, "ohm", "_Ohm", 0, INFINITY, true, DEA_KEY_BOTH, 1,
+           "a resistance > 0, e.g. 100 GOhm"),
+    OTHER("drive.waveform", dea_read_unavailable, "voltage"),
+    OTHER("model", dea_read_model, "a model name or a list of them"),
+    OTHER("study", dea_read_later, "a mapping with sweep, e.g. {sweep: {}} for the scene as one point"),
+    OTHER("study.sweep", dea_read_later, "a mapping of axes, e.g. {coverage: [0.25, 0.5]}"),
+    OTHER("study.transient", dea_read_unavailable, "sweep"),
+    OTHER("study.ac", dea_read_unavailable, "sweep"),
+    OTHER("study.over", dea_read_unavailable, "sweep"),
+    SCALAR("accuracy", accuracy, "1", "", 0, 1, true, DEA_KEY_BOTH, 0, "a relative error > 0 and < 1, e.g. 1e-6"),
+};
+
+enum { KEY_COUNT = sizeof keys / sizeof *keys };
+
+/* Copies @p name with every component that is a number below DEA_PRONY_MAX written as "#", the last of them kept in *index. */
+static bool name_normalise(const char *name, char out[DEA_NAME_LENGTH], size_t *index)
+{
+    size_t used = 0;
+    *index = 0;
+    while (*name && used + 2 < DEA_NAME_LENGTH) {
+        const size_t length = strcspn(name, ".");
+        const size_t digits = strspn(name, "0123456789");
+        if (length > 0 && digits == length) {
+            *index = length <= 2 && (length == 1 || name[0] != '0') ? strtoul(name, NULL, 10) : DEA_PRONY_MAX;
+            out[used++] = '#';
+        } else if (used + length + 2 < DEA_NAME_LENGTH) {
+            memcpy(out + used, name, length);
+            used += length;
+        } else {
+            return false;
+        }
+        name += length;
+        if (*name == '.') {
+            out[used++] = '.';
+            name++;
+        }
+    }
+    out[used] = '\0';
+    return *name == '\0' && *index < DEA_PRONY_MAX;
+}
+
+static void ref_set(dea_ref *ref, const dea_key *key, size_t index)
+{
+    const char *mark = strchr(key->path, '#');
+    ref->key = key;
+    ref->index = mark ? index : 0;
+    if (mark) {
+        snprintf(ref->path, sizeof ref->path, "%.*s%zu%s", (int)(mark - key->path), key->path, index, mark + 1);
+    } else {
+        snprintf(ref->path, sizeof ref->path, "%s", key->path);
+    }
+}
+
+bool dea_key_find(const char *path, dea_ref *ref)
+{
+    char name[DEA_NAME_LENGTH];
+    size_t index = 0;
+    if (!name_normalise(path, name, &index)) {
+        return false;
+    }
+    for (size_t i = 0; i < KEY_COUNT; i++) {
+        if (strcmp(keys[i].path, name) == 0) {
+            ref_set(ref, &keys[i], index);
+            return true;
+        }
+    }
+    return false;
+}
+
+/* True where @p name is the end of @p path, whole components, and holds the index of a path that has one. */
+static bool ends_with(const char *path, const char *name)
+{
+    const size_t whole = strlen(path);
+    const size_t part = strlen(name);
+    const bool indexed = !strchr(path, '#') || strchr(name, '#');
+    return part > 0 && part < whole && indexed && path[whole - part - 1] == '.' && strcmp(path + whole - part, name) == 0;
+}
+
+bool dea_key_resolve(const char *name, dea_ref *ref)
+{
+    char wanted[DEA_NAME_LENGTH];
+    size_t index = 0;
+    size_t found = 0;
+    if (dea_key_find(name, ref)) {
+        return true;
+    }
+    if (!name_normalise(name, wanted, &index)) {
+        return false;
+    }
+    for (size_t i = 0; i < KEY_COUNT; i++) {
+        if (ends_with(keys[i].path, wanted)) {
+            ref_set(ref, &keys[i], index);
+            found++;
+        }
+    }
+    return found == 1;
+}
+
+size_t dea_ref_offset(const dea_ref *ref)
+{
+    return ref->key->offset + ref->index * sizeof(dea_prony);
+}
+
+static const char *last_component(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot ? dot + 1 : path;
+}
+
+static bool child_of(const char *path, const char *parent)
+{
+    const size_t length = strlen(parent);
+    if (length == 0) {
+        return !strchr(path, '.');
+    }
+    return strncmp(path, parent, length) == 0 && path[length] == '.' && !strchr(path + length + 1, '.');
+}
+
+/* The key that @p name is most likely a slip of, among the children of @p parent or, where that is NULL, among all. */
+static const dea_key *nearest(const char *parent, const char *name)
+{
+    const dea_key *best = NULL;
+    size_t least = SIZE_MAX;
+    for (size_t i = 0; i < KEY_COUNT; i++) {
+        const char *word = last_component(keys[i].path);
+        const bool elsewhere = parent ? !child_of(keys[i].path, parent) : strchr(keys[i].path, '#') != NULL;
+        const bool apart = elsewhere || word[0] == '#' || keys[i].read == dea_read_unavailable;
+        const size_t distance = apart ? SIZE_MAX : dea_text_distance(word, name);
+        if (distance < least && dea_text_likely(word, distance)) {
+            best = &keys[i];
+            least = distance;
+        }
+    }
+    return best;
+}
+
+static size_t append(char out[DEA_KEY_ROOM], size_t used, const char *between, const char *word)
+{
+    const int more = used < DEA_KEY_ROOM ? snprintf(out + used, DEA_KEY_ROOM - used, "%s%s", between, word) : 0;
+    return used + (size_t)(more > 0 ? more : 0);
+}
+
+void dea_key_suggest(const char *parent, const char *name, char out[DEA_KEY_ROOM])
+{
+    char place[DEA_NAME_LENGTH];
+    size_t index = 0;
+    size_t used = 0;
+    out[0] = '\0';
+    if (!name_normalise(parent, place, &index)) {
+        return;
+    }
+    const dea_key *sibling = nearest(place, name);
+    const dea_key *meant = sibling ? sibling : nearest(NULL, last_component(name));
+    if (meant) {
+        used = append(out, used, "; did you mean ", sibling ? last_component(meant->path) : meant->path);
+        used = append(out, used, "?", "");
+    }
+    const char *between = meant ? " accepted: " : "; accepted: ";
+    for (size_t i = 0; i < KEY_COUNT; i++) {
+        if (child_of(keys[i].path, place) && keys[i].read != dea_read_unavailable) {
+            used = append(out, used, between, last_component(keys[i].path));
+            between = ", ";
+        }
+    }
+}
+
+void dea_ref_column(const dea_ref *ref, size_t components, char column[DEA_NAME_LENGTH])
+{
+    const char *start = ref->path + strlen(ref->path);
+    for (size_t seen = 0; start > ref->path; start--) {
+        seen += start[-1] == '.';
+        if (seen == components) {
+            break;
+        }
+    }
+    snprintf(column, DEA_NAME_LENGTH, "%s%s", start, ref->key->suffix);
+    for (char *c = column; *c; c++) {
+        *c = *c == '.' ? '_' : *c;
+    }
+}

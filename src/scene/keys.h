@@ -1,0 +1,51 @@
+/* The keys of a scene: one table that the reader, --set, sweep axes and result columns work from. */
+#ifndef DEA_SCENE_KEYS_H
+#define DEA_SCENE_KEYS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "deaspice/scene.h"
+#include "scene/tree.h"
+
+typedef struct dea_reader dea_reader;
+typedef struct dea_key dea_key;
+typedef struct dea_ref dea_ref;
+
+enum { DEA_KEY_DOT = 1, DEA_KEY_LENS = 2, DEA_KEY_BOTH = 3, DEA_KEY_ROOM = 512 };
+
+/* Not a scalar: no place in the scene. */
+#define DEA_KEY_NOWHERE ((size_t)-1)
+
+struct dea_key {
+    const char *path; /* dotted; a component "#" stands for an index */
+    dea_status (*read)(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+    size_t offset;        /* of the double in dea_scene, DEA_KEY_NOWHERE for what is no scalar */
+    const char *unit;     /* "1" without dimension */
+    const char *suffix;   /* of the result column, e.g. "_m" */
+    double low, high;     /* range */
+    bool open;            /* the range is without its ends */
+    unsigned kinds;       /* of actuator that have it */
+    size_t words;         /* components of the path that its result column shows at least, 0: cannot be a sweep axis */
+    const char *accepted; /* for messages: range and an example */
+};
+
+/* One key with its index. */
+struct dea_ref {
+    const dea_key *key;
+    size_t index;               /* of "#", else 0 */
+    char path[DEA_NAME_LENGTH]; /* with the index, e.g. material.prony.0.tau */
+};
+
+/* Finds a key by its whole path. */
+bool dea_key_find(const char *path, dea_ref *ref);
+/* Finds a key by its whole path or by the end of it ("coverage", "yeoh.C1") where only one key ends so. */
+bool dea_key_resolve(const char *name, dea_ref *ref);
+/* Place of the scalar in dea_scene. */
+size_t dea_ref_offset(const dea_ref *ref);
+/* Says what an unknown key below @p parent ("", "actuator", ...) could mean: "; did you mean ...?; accepted: ...". */
+void dea_key_suggest(const char *parent, const char *name, char out[DEA_KEY_ROOM]);
+/* Result column of the last @p components components of a key's path and its unit. */
+void dea_ref_column(const dea_ref *ref, size_t components, char column[DEA_NAME_LENGTH]);
+
+#endif

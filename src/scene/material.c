@@ -1,0 +1,214 @@
+/* Reading of the material: by name, from a file, or written out. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/file.h"
+#include "scene/reader.h"
+
+static dea_status base_read(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+
+/* Reads the keys of a material; what its base says goes first. */
+static dea_status mapping_read(dea_reader *reader, const dea_node *node)
+{
+    dea_material *material = &reader->scene->material;
+    const dea_node *base = dea_tree_child(node, "base");
+    dea_ref ref;
+    if (base && dea_key_find("material.base", &ref)) {
+        const dea_status status = base_read(reader, &ref, base);
+        if (status) {
+            return status;
+        }
+        char source[DEA_SOURCE_LENGTH];
+        snprintf(source, sizeof source, "%s, with changes", material->name);
+        memcpy(material->source, source, sizeof source);
+    }
+    snprintf(material->name, sizeof material->name, "%s", "scene");
+    return dea_reader_children(reader, "material", node);
+}
+
+/* The file that @p node names, seen from the folder of the file that names it; NULL without memory. */
+static char *path_of(dea_reader *reader, const dea_node *node)
+{
+    const char *folder = node->text[0] == '/' ? "" : node->place.origin->folder;
+    const size_t room = strlen(folder) + strlen(node->text) + 2;
+    char *path = dea_arena_take(&reader->arena, room);
+    if (path) {
+        snprintf(path, room, "%s%s%s", folder, folder[0] ? "/" : "", node->text);
+    }
+    return path;
+}
+
+/* What stands before positions of a material file. */
+static dea_origin *origin_of(dea_reader *reader, const char *path)
+{
+    char shown[10 * 256 + 8];
+    const char *slash = strrchr(path, '/');
+    dea_origin *origin = dea_arena_take(&reader->arena, sizeof *origin);
+    dea_text_clip(path, 256, shown, sizeof shown);
+    if (origin) {
+        origin->name = dea_arena_copy(&reader->arena, shown, strlen(shown));
+        origin->folder = slash == path ? "/" : slash ? dea_arena_copy(&reader->arena, path, (size_t)(slash - path)) : ".";
+    }
+    return origin && origin->name && origin->folder ? origin : NULL;
+}
+
+static dea_status file_parse(dea_reader *reader, const char *path, const char *text, size_t length)
+{
+    dea_node *root = NULL;
+    dea_origin *origin = origin_of(reader, path);
+    if (!origin) {
+        return dea_reader_memory(reader);
+    }
+    dea_status status = dea_tree_parse(text, length, origin, &reader->arena, &root, reader->error);
+    if (!status && root->kind != DEA_NODE_MAPPING) {
+        status = dea_place_fail(&root->place, reader->error, "material",
+                                "not a mapping; accepted: keys such as yeoh, permittivity, density");
+    }
+    return status ? status : mapping_read(reader, root);
+}
+
+static dea_status file_read(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    dea_material *material = &reader->scene->material;
+    char shown[DEA_TEXT_ROOM];
+    char *text = NULL;
+    size_t length = 0;
+    char *path = path_of(reader, node);
+    if (!path) {
+        return dea_reader_memory(reader);
+    }
+    if (reader->material_depth == DEA_MATERIAL_DEPTH) {
+        return dea_reader_refuse(reader, ref, node, "materials name each other as base in a circle");
+    }
+    const char *refused = NULL;
+    const dea_status read = dea_file_read(path, false, &text, &length, &refused);
+    if (read == DEA_ERROR_MEMORY) {
+        return dea_reader_memory(reader);
+    }
+    if (read) {
+        return dea_place_fail(&node->place, reader->error, ref->path, "cannot read the material file %s: %s",
+                              dea_reader_show(node, shown), refused);
+    }
+    reader->material_depth++;
+    const dea_status status = file_parse(reader, path, text, length);
+    reader->material_depth--;
+    free(text);
+    const char *slash = strrchr(path, '/');
+    dea_text_clip(slash ? slash + 1 : path, DEA_TEXT_SHOWN, shown, DEA_NAME_LENGTH);
+    memcpy(material->name, shown, DEA_NAME_LENGTH);
+    return status;
+}
+
+static dea_status fail_name(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    char shown[DEA_TEXT_ROOM];
+    char names[DEA_KEY_ROOM] = "";
+    char meant[DEA_KEY_ROOM] = "";
+    for (size_t i = 0, used = 0; i < dea_material_count() && used < sizeof names; i++) {
+        const char *name = dea_material_builtin(i)->name;
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", name);
+        if (dea_text_likely(name, dea_text_distance(name, node->text)) && !meant[0]) {
+            snprintf(meant, sizeof meant, "did you mean %s? ", name);
+        }
+    }
+    return dea_place_fail(&node->place, reader->error, ref->path,
+                          "unknown material (%s); %saccepted: %s, a file name with \".\" or \"/\", or a mapping",
+                          dea_reader_show(node, shown), meant, names);
+}
+
+/* A built-in name or a file. */
+static dea_status base_read(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    if (node->kind != DEA_NODE_SCALAR || !node->text[0]) {
+        return dea_reader_refuse(reader, ref, node, node->kind == DEA_NODE_SCALAR ? "has no value" : "not a name");
+    }
+    const dea_material *builtin = dea_material_find(node->text);
+    if (builtin) {
+        reader->scene->material = *builtin;
+        return DEA_OK;
+    }
+    if (!strpbrk(node->text, "./")) {
+        return fail_name(reader, ref, node);
+    }
+    if (!node->place.origin->folder) {
+        return dea_reader_refuse(reader, ref, node, "files cannot be named here");
+    }
+    return file_read(reader, ref, node);
+}
+
+dea_status dea_read_material(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    if (node->kind == DEA_NODE_SEQUENCE) {
+        return dea_reader_refuse(reader, ref, node, "not a material");
+    }
+    return node->kind == DEA_NODE_MAPPING ? mapping_read(reader, node) : base_read(reader, ref, node);
+}
+
+dea_status dea_read_source(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    dea_material *material = &reader->scene->material;
+    if (node->kind != DEA_NODE_SCALAR || strpbrk(node->text, "\n\r\t") || strlen(node->text) >= sizeof material->source) {
+        return dea_reader_refuse(reader, ref, node, "not one line of text");
+    }
+    snprintf(material->source, sizeof material->source, "%s", node->text);
+    return DEA_OK;
+}
+
+dea_status dea_read_permittivity(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    if (node->kind == DEA_NODE_MAPPING) {
+        return dea_reader_children(reader, ref->path, node);
+    }
+    const dea_status status = dea_read_scalar(reader, ref, node);
+    if (!status) {
+        reader->scene->material.permittivity_per_stretch = 0.0;
+    }
+    return status;
+}
+
+static dea_status branch_read(dea_reader *reader, size_t index, const dea_node *node)
+{
+    dea_prony *branch = &reader->scene->material.prony[index];
+    char path[DEA_NAME_LENGTH];
+    dea_ref ref;
+    *branch = (dea_prony){.g = NAN, .tau = NAN};
+    snprintf(path, sizeof path, "material.prony.%zu", index);
+    if (!dea_key_find(path, &ref)) {
+        return dea_reader_memory(reader);
+    }
+    const dea_status status = dea_read_mapping(reader, &ref, node);
+    if (!status && (isnan(branch->g) || isnan(branch->tau))) {
+        return dea_reader_refuse(reader, &ref, node, isnan(branch->g) ? "g is missing" : "tau is missing");
+    }
+    return status;
+}
+
+dea_status dea_read_prony(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    size_t index = 0;
+    if (node->kind != DEA_NODE_SEQUENCE) {
+        return dea_reader_refuse(reader, ref, node, "not a list");
+    }
+    if (node->count > DEA_PRONY_MAX) {
+        return dea_reader_refuse(reader, ref, node, "too many branches");
+    }
+    reader->scene->material.prony_count = node->count;
+    for (const dea_node *branch = node->first; branch; branch = branch->next) {
+        const dea_status status = branch_read(reader, index++, branch);
+        if (status) {
+            return status;
+        }
+    }
+    return DEA_OK;
+}
+
+dea_status dea_read_moduli(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    static const char *const words[] = {"long-term", "instantaneous", NULL};
+    size_t index = 0;
+    const dea_status status = dea_reader_word(reader, ref, node, words, &index);
+    reader->scene->material.instantaneous = status ? false : index == 1;
+    return status;
+}

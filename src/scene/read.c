@@ -1,0 +1,296 @@
+/* Reading of keys that need no more than their own value. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "deaspice/model.h"
+#include "scene/reader.h"
+
+char *dea_reader_show(const dea_node *node, char out[DEA_TEXT_ROOM])
+{
+    if (node->kind == DEA_NODE_SCALAR) {
+        return dea_text_clip(node->text, DEA_TEXT_SHOWN, out, DEA_TEXT_ROOM);
+    }
+    snprintf(out, DEA_TEXT_ROOM, "%s", node->kind == DEA_NODE_MAPPING ? "a mapping" : "a list");
+    return out;
+}
+
+dea_status dea_reader_refuse(dea_reader *reader, const dea_ref *ref, const dea_node *node, const char *what)
+{
+    char shown[DEA_TEXT_ROOM];
+    dea_reader_show(node, shown);
+    return dea_place_fail(&node->place, reader->error, ref->path, "%s%s%s%s; accepted: %s", what, shown[0] ? " (" : "", shown,
+                          shown[0] ? ")" : "", ref->key->accepted);
+}
+
+dea_status dea_reader_memory(dea_reader *reader)
+{
+    return dea_fail(reader->error, DEA_ERROR_MEMORY, "out of memory while reading the scene");
+}
+
+dea_given *dea_reader_given(dea_reader *reader, size_t offset)
+{
+    return &reader->given[offset / sizeof(double)];
+}
+
+static dea_status fail_unknown(dea_reader *reader, const char *path, const dea_node *node)
+{
+    char subject[DEA_TEXT_ROOM];
+    char shown[DEA_TEXT_ROOM];
+    char help[DEA_KEY_ROOM];
+    dea_text_clip(node->key, DEA_TEXT_SHOWN, shown, sizeof shown);
+    snprintf(subject, sizeof subject, "%s%s%.*s", path, path[0] ? "." : "", (int)(sizeof subject - DEA_NAME_LENGTH - 2), shown);
+    dea_key_suggest(path, node->key, help);
+    return dea_place_fail(&node->key_at, reader->error, subject, "unknown key%s", help);
+}
+
+dea_status dea_reader_children(dea_reader *reader, const char *path, const dea_node *node)
+{
+    for (const dea_node *child = node->first; child; child = child->next) {
+        char whole[DEA_NAME_LENGTH];
+        dea_ref ref;
+        const int length = snprintf(whole, sizeof whole, "%s%s%s", path, path[0] ? "." : "", child->key);
+        if (length < 0 || (size_t)length >= sizeof whole || strpbrk(child->key, ".#") || !dea_key_find(whole, &ref)) {
+            return fail_unknown(reader, path, child);
+        }
+        const dea_status status = ref.key->read(reader, &ref, child);
+        if (status) {
+            return status;
+        }
+    }
+    return DEA_OK;
+}
+
+dea_status dea_read_mapping(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    if (node->kind != DEA_NODE_MAPPING) {
+        return dea_reader_refuse(reader, ref, node, "not a mapping");
+    }
+    return dea_reader_children(reader, ref->path, node);
+}
+
+static dea_status kind_check(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    const bool lens = reader->scene->actuator.kind == DEA_LENS;
+    if (!reader->kind_known || ref->key->kinds & (lens ? DEA_KEY_LENS : DEA_KEY_DOT)) {
+        return DEA_OK;
+    }
+    const bool divide = dea_ref_offset(ref) == offsetof(dea_scene, actuator.divide_radius);
+    const char *instead = !divide ? ""
+                          : lens  ? "; accepted: lens_radius or coverage"
+                                  : "; accepted: electrode_radius or coverage";
+    return dea_place_fail(&node->key_at, reader->error, ref->path, "belongs to a %s, but the actuator is a %s%s",
+                          lens ? "dot" : "lens", lens ? "lens" : "dot", instead);
+}
+
+static bool in_range(const dea_key *key, double value)
+{
+    return key->open ? value > key->low && value < key->high : value >= key->low && value <= key->high;
+}
+
+dea_status dea_reader_number(dea_reader *reader, const dea_ref *ref, const dea_node *node, double *value)
+{
+    char reason[DEA_REASON_LENGTH];
+    const dea_status status = kind_check(reader, ref, node);
+    if (status) {
+        return status;
+    }
+    if (node->kind != DEA_NODE_SCALAR) {
+        return dea_reader_refuse(reader, ref, node, "not a number");
+    }
+    if (!dea_quantity_read(reader->units, node->text, ref->key->unit, value, reason)) {
+        return dea_reader_refuse(reader, ref, node, reason);
+    }
+    return in_range(ref->key, *value) ? DEA_OK : dea_reader_refuse(reader, ref, node, "out of range");
+}
+
+static dea_status fail_both(dea_reader *reader, const dea_ref *ref, const dea_node *node, const dea_given *other)
+{
+    if (other->node->place.origin->setting && !node->place.origin->setting) {
+        return dea_place_fail(&other->node->place, reader->error, other->ref.path,
+                              "contradicts %s, which the scene sweeps; set study.sweep too", ref->path);
+    }
+    return dea_place_fail(&node->key_at, reader->error, ref->path, "contradicts %s, which is %s too; give one of them",
+                          other->ref.path, other->swept ? "swept" : "given");
+}
+
+/* Coverage and the dividing radius say the same: a setting replaces the one of the file, else both together are an error. */
+static dea_status partner_settle(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    const size_t coverage = offsetof(dea_scene, actuator.coverage);
+    const size_t divide = offsetof(dea_scene, actuator.divide_radius);
+    const size_t own = dea_ref_offset(ref);
+    if (own != coverage && own != divide) {
+        return DEA_OK;
+    }
+    dea_given *other = dea_reader_given(reader, own == coverage ? divide : coverage);
+    if (!other->node) {
+        return DEA_OK;
+    }
+    if (other->swept || !node->place.origin->setting || other->node->place.origin->setting) {
+        return fail_both(reader, ref, node, other);
+    }
+    other->node = NULL;
+    *(own == coverage ? &reader->scene->actuator.divide_radius : &reader->scene->actuator.coverage) = NAN;
+    return DEA_OK;
+}
+
+dea_status dea_reader_claim(dea_reader *reader, const dea_ref *ref, const dea_node *node, bool swept)
+{
+    const dea_status status = partner_settle(reader, ref, node);
+    if (!status) {
+        *dea_reader_given(reader, dea_ref_offset(ref)) = (dea_given){.node = node, .ref = *ref, .swept = swept};
+    }
+    return status;
+}
+
+dea_status dea_read_scalar(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    double value = NAN;
+    dea_status status = dea_reader_number(reader, ref, node, &value);
+    if (!status) {
+        status = dea_reader_claim(reader, ref, node, false);
+    }
+    if (!status) {
+        memcpy((char *)reader->scene + dea_ref_offset(ref), &value, sizeof value);
+    }
+    return status;
+}
+
+dea_status dea_reader_word(dea_reader *reader, const dea_ref *ref, const dea_node *node, const char *const *words, size_t *index)
+{
+    char what[DEA_WORD_ROOM] = "unknown";
+    if (node->kind != DEA_NODE_SCALAR) {
+        return dea_reader_refuse(reader, ref, node, "not a word");
+    }
+    for (size_t i = 0; words[i]; i++) {
+        const size_t distance = dea_text_distance(node->text, words[i]);
+        if (strcmp(node->text, words[i]) == 0) {
+            *index = i;
+            return DEA_OK;
+        }
+        if (node->text[0] && dea_text_likely(words[i], distance)) {
+            snprintf(what, sizeof what, "unknown, did you mean %s?", words[i]);
+        }
+    }
+    return dea_reader_refuse(reader, ref, node, node->text[0] ? what : "has no value");
+}
+
+dea_status dea_read_kind(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    static const char *const words[] = {"dot", "lens", NULL};
+    size_t index = 0;
+    const dea_status status = dea_reader_word(reader, ref, node, words, &index);
+    if (!status) {
+        reader->scene->actuator.kind = index == 0 ? DEA_DOT : DEA_LENS;
+        reader->kind_known = true;
+    }
+    return status;
+}
+
+dea_status dea_read_title(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    if (node->kind != DEA_NODE_SCALAR) {
+        return dea_reader_refuse(reader, ref, node, "not a text");
+    }
+    size_t length = strlen(node->text);
+    length -= length > 0 && node->text[length - 1] == '\n';
+    if (length > 1000 || strcspn(node->text, "\n\r\t") < length) {
+        return dea_reader_refuse(reader, ref, node, length > 1000 ? "too long" : "more than one line");
+    }
+    char *title = strndup(node->text, length);
+    if (!title) {
+        return dea_reader_memory(reader);
+    }
+    free(reader->scene->title);
+    reader->scene->title = title;
+    return DEA_OK;
+}
+
+dea_status dea_read_later(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    (void)ref;
+    (void)node;
+    (void)reader;
+    return DEA_OK;
+}
+
+dea_status dea_read_unavailable(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    return dea_place_fail(&node->key_at, reader->error, ref->path, "is not available in this version; accepted: %s",
+                          ref->key->accepted);
+}
+
+static void model_names(bool lens, char *out, size_t room)
+{
+    size_t used = 0;
+    out[0] = '\0';
+    for (size_t i = 0; i < dea_model_count() && used < room; i++) {
+        const dea_model *model = dea_model_at(i);
+        if (!lens || model->lens) {
+            used += (size_t)snprintf(out + used, room - used, "%s%s", used ? ", " : "", model->name);
+        }
+    }
+}
+
+static dea_status model_fail(dea_reader *reader, const dea_node *node, const char *what, bool lens)
+{
+    char shown[DEA_TEXT_ROOM];
+    char names[DEA_KEY_ROOM];
+    char meant[DEA_KEY_ROOM] = "";
+    model_names(lens, names, sizeof names);
+    for (size_t i = 0; node->kind == DEA_NODE_SCALAR && !lens && i < dea_model_count(); i++) {
+        const char *name = dea_model_at(i)->name;
+        const size_t distance = dea_text_distance(name, node->text);
+        if (distance > 0 && dea_text_likely(name, distance)) {
+            snprintf(meant, sizeof meant, "did you mean %s? ", name);
+        }
+    }
+    return dea_place_fail(&node->place, reader->error, "model", "%s (%s); %saccepted: %s", what, dea_reader_show(node, shown),
+                          meant, names);
+}
+
+static dea_status model_add(dea_reader *reader, const dea_node *node)
+{
+    dea_scene *scene = reader->scene;
+    const dea_model *model = node->kind == DEA_NODE_SCALAR ? dea_model_find(node->text) : NULL;
+    if (!model) {
+        return model_fail(reader, node, "unknown model", false);
+    }
+    for (size_t i = 0; i < scene->model_count; i++) {
+        if (scene->models[i] == model) {
+            return model_fail(reader, node, "named twice", false);
+        }
+    }
+    if (scene->model_count == DEA_SCENE_MODELS) {
+        return model_fail(reader, node, "too many models", false);
+    }
+    if (scene->actuator.kind == DEA_LENS && !model->lens) {
+        return model_fail(reader, node, "cannot do a lens", true);
+    }
+    scene->models[scene->model_count++] = model;
+    return DEA_OK;
+}
+
+dea_status dea_read_model(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    (void)ref;
+    if (reader->model && node->place.origin != &reader->model_origin) {
+        return DEA_OK;
+    }
+    reader->scene->model_count = 0;
+    if (node->kind == DEA_NODE_SCALAR) {
+        return model_add(reader, node);
+    }
+    if (node->kind == DEA_NODE_MAPPING || node->count == 0) {
+        return model_fail(reader, node, "not a model name", false);
+    }
+    for (const dea_node *name = node->first; name; name = name->next) {
+        const dea_status status = model_add(reader, name);
+        if (status) {
+            return status;
+        }
+    }
+    return DEA_OK;
+}

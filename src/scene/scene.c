@@ -1,0 +1,155 @@
+/* The reading of a scene, step by step. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "deaspice/scene.h"
+#include "scene/file.h"
+#include "scene/reader.h"
+
+static dea_status scene_clear(dea_scene *scene)
+{
+    *scene = (dea_scene){
+        .title = calloc(1, 1),
+        .actuator = {.frame_radius = NAN,
+                     .coverage = NAN,
+                     .divide_radius = NAN,
+                     .film_thickness = NAN,
+                     .prestretch = NAN,
+                     .electrode_mass = NAN,
+                     .focal_length = NAN,
+                     .refractive_index = NAN},
+        .material = dea_material_default(),
+        .drive = {.voltage = NAN, .series_resistance = NAN, .leakage_resistance = NAN},
+        .accuracy = 1e-6,
+    };
+    return scene->title ? DEA_OK : DEA_ERROR_MEMORY;
+}
+
+/* The kind decides which keys there are, so it is read before its neighbours. */
+static dea_status kind_read(dea_reader *reader)
+{
+    dea_ref ref;
+    const dea_node *kind = dea_tree_child(dea_tree_child(reader->root, "actuator"), "kind");
+    return kind && dea_key_find("actuator.kind", &ref) ? dea_read_kind(reader, &ref, kind) : DEA_OK;
+}
+
+/* `--model a,b` stands in the place of the scene's model. */
+static dea_status model_override(dea_reader *reader)
+{
+    dea_ref ref;
+    if (!reader->model || !dea_key_find("model", &ref)) {
+        return DEA_OK;
+    }
+    reader->model_origin = (dea_origin){.name = "--model", .setting = true};
+    const dea_place place = {.origin = &reader->model_origin, .line = 1, .column = 1};
+    dea_node list = {.kind = DEA_NODE_SEQUENCE, .place = place, .key_at = place};
+    for (const char *name = reader->model; name; name = strchr(name, ',') ? strchr(name, ',') + 1 : NULL) {
+        const char *text = dea_arena_copy(&reader->arena, name, strcspn(name, ","));
+        dea_node *node = text ? dea_tree_scalar(&reader->arena, &reader->model_origin, text) : NULL;
+        if (!node) {
+            return dea_reader_memory(reader);
+        }
+        *(list.last ? &list.last->next : &list.first) = node;
+        list.last = node;
+        list.count++;
+    }
+    return dea_read_model(reader, &ref, &list);
+}
+
+static dea_status reader_run(dea_reader *reader, const char *text, size_t length, const dea_origin *origin,
+                             const dea_setting *settings, size_t count)
+{
+    dea_status status = dea_tree_parse(text, length, origin, &reader->arena, &reader->root, reader->error);
+    if (status) {
+        return status;
+    }
+    if (reader->root->kind != DEA_NODE_MAPPING) {
+        return dea_place_fail(&reader->root->place, reader->error, "scene",
+                              "not a mapping; accepted: keys such as actuator, material, drive");
+    }
+    status = dea_settings_graft(reader, settings, count);
+    status = status ? status : kind_read(reader);
+    status = status ? status : dea_reader_children(reader, "", reader->root);
+    status = status ? status : dea_settings_apply(reader);
+    status = status ? status : model_override(reader);
+    status = status ? status : dea_reader_study(reader);
+    return status ? status : dea_reader_finish(reader);
+}
+
+dea_status dea_scene_parse(const char *text, size_t length, const char *name, const char *folder, const dea_setting *settings,
+                           size_t setting_count, const char *model, dea_scene *scene, dea_error *error)
+{
+    char shown[10 * 256 + 8];
+    const dea_origin origin = {.name = dea_text_clip(name, 256, shown, sizeof shown), .folder = folder};
+    dea_reader *reader = calloc(1, sizeof *reader);
+    dea_units *units = dea_units_open();
+    dea_status status = scene_clear(scene);
+    if (!reader || !units || status) {
+        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while reading the scene");
+    } else {
+        reader->scene = scene;
+        reader->error = error;
+        reader->units = units;
+        reader->model = model;
+        status = reader_run(reader, text, length, &origin, settings, setting_count);
+    }
+    if (reader) {
+        dea_arena_free(&reader->arena);
+    }
+    free(reader);
+    dea_units_close(units);
+    if (status) {
+        dea_scene_free(scene);
+    }
+    return status;
+}
+
+dea_status dea_scene_read(const char *path, const dea_setting *settings, size_t setting_count, const char *model,
+                          dea_scene *scene, dea_error *error)
+{
+    char *text = NULL;
+    size_t length = 0;
+    char shown[10 * 256 + 8];
+    const bool input = strcmp(path, "-") == 0;
+    const char *slash = input ? NULL : strrchr(path, '/');
+    *scene = (dea_scene){0};
+    const char *refused = NULL;
+    const dea_status read = dea_file_read(path, true, &text, &length, &refused);
+    if (read) {
+        return dea_fail(error, read, "%s: cannot read the scene: %s",
+                        input ? "standard input" : dea_text_clip(path, 256, shown, sizeof shown), refused);
+    }
+    char *folder = slash ? strndup(path, slash == path ? 1 : (size_t)(slash - path)) : strdup(".");
+    dea_status status = DEA_ERROR_MEMORY;
+    if (folder) {
+        status = dea_scene_parse(text, length, input ? "standard input" : path, folder, settings, setting_count, model, scene,
+                                 error);
+    } else {
+        dea_fail(error, DEA_ERROR_MEMORY, "out of memory while reading the scene");
+    }
+    free(folder);
+    free(text);
+    return status;
+}
+
+void dea_scene_free(dea_scene *scene)
+{
+    if (scene) {
+        for (size_t i = 0; i < scene->axis_count; i++) {
+            free(scene->axes[i].values);
+        }
+        free(scene->axes);
+        free(scene->title);
+        *scene = (dea_scene){0};
+    }
+}
+
+size_t dea_scene_point_count(const dea_scene *scene)
+{
+    size_t count = 1;
+    for (size_t i = 0; i < scene->axis_count; i++) {
+        count *= scene->axes[i].count;
+    }
+    return count;
+}

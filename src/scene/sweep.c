@@ -1,0 +1,310 @@
+/* Reading of the study: the axes of a sweep. */
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/reader.h"
+
+/* Most points of one axis, values of all axes together, and points of a study. */
+#ifndef DEA_AXIS_VALUES_MAX
+#define DEA_AXIS_VALUES_MAX 100000000
+#endif
+#define AXIS_POINTS_MAX 1000000000
+#define STUDY_POINTS_MAX 1e12
+
+#define AXIS_ACCEPTED "a list of values or {from, to, points}, with spacing: log where wanted"
+
+/* An axis being read. */
+typedef struct axis_reader {
+    dea_reader *reader;
+    dea_ref ref;
+    dea_axis *axis;
+    const dea_node *node;
+} axis_reader;
+
+static dea_status axis_fail(const axis_reader *self, const dea_node *node, const char *what, const char *accepted)
+{
+    char subject[DEA_NAME_LENGTH + 16];
+    char shown[DEA_TEXT_ROOM];
+    snprintf(subject, sizeof subject, "study.sweep.%s", self->ref.path);
+    dea_reader_show(node, shown);
+    return dea_place_fail(&node->place, self->reader->error, subject, "%s (%s); accepted: %s", what, shown, accepted);
+}
+
+static dea_status values_new(const axis_reader *self, size_t count)
+{
+    const dea_scene *scene = self->reader->scene;
+    size_t total = count;
+    for (size_t i = 0; i < scene->axis_count; i++) {
+        total += scene->axes[i].count;
+    }
+    if (total > DEA_AXIS_VALUES_MAX) {
+        return axis_fail(self, self->node, "too many points", "100000000 values on all axes together");
+    }
+    self->axis->values = malloc(count * sizeof *self->axis->values);
+    if (!self->axis->values) {
+        return dea_reader_memory(self->reader);
+    }
+    self->axis->count = count;
+    return DEA_OK;
+}
+
+static dea_status list_read(const axis_reader *self)
+{
+    if (self->node->count == 0) {
+        return axis_fail(self, self->node, "an axis without a value", AXIS_ACCEPTED);
+    }
+    dea_status status = values_new(self, self->node->count);
+    size_t i = 0;
+    for (const dea_node *value = self->node->first; value && !status; value = value->next) {
+        status = dea_reader_number(self->reader, &self->ref, value, &self->axis->values[i++]);
+    }
+    return status;
+}
+
+/* values[i] = from + (to - from) i/(count - 1), or from (to/from)^(i/(count - 1)); the ends are exact. */
+static void values_space(dea_axis *axis, double from, double to, bool logarithmic)
+{
+    const double steps = axis->count > 1 ? (double)(axis->count - 1) : 1.0;
+    for (size_t i = 0; i < axis->count; i++) {
+        const double part = (double)i / steps;
+        axis->values[i] = logarithmic ? from * pow(to / from, part) : from + (to - from) * (double)i / steps;
+    }
+    axis->values[axis->count - 1] = axis->count > 1 ? to : from;
+    axis->uniform = !logarithmic && axis->count > 1;
+}
+
+static dea_status keys_check(const axis_reader *self)
+{
+    char shown[DEA_TEXT_ROOM];
+    char subject[DEA_TEXT_ROOM + DEA_NAME_LENGTH + 16];
+    for (const dea_node *child = self->node->first; child; child = child->next) {
+        const char *key = child->key;
+        if (strcmp(key, "from") != 0 && strcmp(key, "to") != 0 && strcmp(key, "points") != 0 && strcmp(key, "spacing") != 0) {
+            snprintf(subject, sizeof subject, "study.sweep.%s.%s", self->ref.path,
+                     dea_text_clip(key, DEA_TEXT_SHOWN, shown, sizeof shown));
+            return dea_place_fail(&child->key_at, self->reader->error, subject,
+                                  "unknown key; accepted: from, to, points, spacing");
+        }
+    }
+    return DEA_OK;
+}
+
+static dea_status spacing_read(const axis_reader *self, bool *logarithmic)
+{
+    const dea_node *node = dea_tree_child(self->node, "spacing");
+    *logarithmic = node && node->kind == DEA_NODE_SCALAR && strcmp(node->text, "log") == 0;
+    if (!node || *logarithmic || (node->kind == DEA_NODE_SCALAR && strcmp(node->text, "linear") == 0)) {
+        return DEA_OK;
+    }
+    return axis_fail(self, node, "unknown spacing", "linear, log");
+}
+
+static dea_status points_read(const axis_reader *self, size_t *count)
+{
+    const dea_node *node = dea_tree_child(self->node, "points");
+    if (!node) {
+        return axis_fail(self, self->node, "points is missing", AXIS_ACCEPTED);
+    }
+    if (node->kind != DEA_NODE_SCALAR || !dea_count_read(node->text, AXIS_POINTS_MAX, count)) {
+        return axis_fail(self, node, "points is out of range", "a whole number 1 ... 1000000000");
+    }
+    return DEA_OK;
+}
+
+/* Reads from and to; an axis of one point needs no `to`. */
+static dea_status ends_read(const axis_reader *self, size_t count, double *from, double *to)
+{
+    const dea_node *first = dea_tree_child(self->node, "from");
+    const dea_node *last = dea_tree_child(self->node, "to");
+    if (!first || (!last && count > 1)) {
+        return axis_fail(self, self->node, first ? "to is missing" : "from is missing", AXIS_ACCEPTED);
+    }
+    dea_status status = dea_reader_number(self->reader, &self->ref, first, from);
+    *to = *from;
+    if (!status && last) {
+        status = dea_reader_number(self->reader, &self->ref, last, to);
+    }
+    if (!status && count == 1 && *from != *to) {
+        status = axis_fail(self, last, "one point, but from and to differ", "2 points or more, or `to` left out");
+    }
+    return status;
+}
+
+static dea_status range_read(const axis_reader *self)
+{
+    size_t count = 0;
+    double from = NAN;
+    double to = NAN;
+    bool logarithmic = false;
+    dea_status status = keys_check(self);
+    status = status ? status : points_read(self, &count);
+    status = status ? status : ends_read(self, count, &from, &to);
+    status = status ? status : spacing_read(self, &logarithmic);
+    if (!status && logarithmic && !(to / from > 0.0 && isfinite(to / from))) {
+        status = axis_fail(self, self->node, "no logarithmic axis", "from and to of the same sign, neither of them 0");
+    }
+    if (!status && !isfinite(to - from)) {
+        status = axis_fail(self, self->node, "from and to are too far apart", "a difference of double precision");
+    }
+    status = status ? status : values_new(self, count);
+    if (!status) {
+        values_space(self->axis, from, to, logarithmic);
+    }
+    return status;
+}
+
+/* An axis gives its key as a scalar would. A setting of just this scalar would be lost under an axis of the scene: that is
+ * refused. */
+static dea_status axis_claim(const axis_reader *self)
+{
+    dea_reader *reader = self->reader;
+    const size_t offset = dea_ref_offset(&self->ref);
+    const dea_given *given = dea_reader_given(reader, offset);
+    if (given->swept) {
+        return dea_place_fail(&self->node->key_at, reader->error, self->ref.path, "is swept twice");
+    }
+    const bool scalar_set = given->node && given->node->place.origin->setting && !given->node->key;
+    if (scalar_set && !self->node->place.origin->setting) {
+        char shown[DEA_TEXT_ROOM];
+        return dea_place_fail(&given->node->place, reader->error, self->ref.path,
+                              "is swept by the scene; set study.sweep.%s=[%s] instead", self->ref.path,
+                              dea_reader_show(given->node, shown));
+    }
+    const bool known = given->node || !isnan(*(double *)((char *)reader->scene + offset));
+    const dea_status status = dea_reader_claim(reader, &self->ref, self->node, true);
+    if (!status && !known) {
+        memcpy((char *)reader->scene + offset, self->axis->values, sizeof(double));
+    }
+    return status;
+}
+
+/* What a key must be to be swept here. */
+static dea_status key_check(const axis_reader *self)
+{
+    const dea_material *material = &self->reader->scene->material;
+    if (self->ref.key->words == 0) {
+        return dea_place_fail(&self->node->key_at, self->reader->error, self->ref.path,
+                              "cannot be swept; accepted: any scalar, e.g. voltage");
+    }
+    if (strchr(self->ref.key->path, '#') && self->ref.index >= material->prony_count) {
+        return dea_place_fail(&self->node->key_at, self->reader->error, self->ref.path,
+                              "the material has %zu branches, counted from 0", material->prony_count);
+    }
+    if (strcmp(self->ref.path, "material.permittivity") == 0 && material->permittivity_per_stretch != 0.0) {
+        return dea_place_fail(&self->node->key_at, self->reader->error, self->ref.path,
+                              "has a slope here; sweep material.permittivity.constant or material.permittivity.per_stretch");
+    }
+    return DEA_OK;
+}
+
+static void axis_describe(const axis_reader *self)
+{
+    dea_axis *axis = self->axis;
+    snprintf(axis->key, sizeof axis->key, "%s", self->ref.path);
+    snprintf(axis->unit, sizeof axis->unit, "%s", self->ref.key->unit);
+    dea_ref_column(&self->ref, self->ref.key->words, axis->column);
+    axis->offset = dea_ref_offset(&self->ref);
+    axis->changes_film = strncmp(axis->key, "material.", 9) == 0 || axis->offset == offsetof(dea_scene, actuator.prestretch);
+}
+
+static dea_status axis_read(const axis_reader *self)
+{
+    dea_status status = key_check(self);
+    if (!status && self->node->kind == DEA_NODE_SCALAR) {
+        status = axis_fail(self, self->node, "not an axis", AXIS_ACCEPTED);
+    }
+    if (!status) {
+        status = self->node->kind == DEA_NODE_SEQUENCE ? list_read(self) : range_read(self);
+    }
+    if (!status) {
+        axis_describe(self);
+        status = axis_claim(self);
+    }
+    return status;
+}
+
+static dea_status fail_axis(dea_reader *reader, const dea_node *node)
+{
+    char shown[DEA_TEXT_ROOM];
+    char subject[DEA_TEXT_ROOM + 16];
+    char help[DEA_KEY_ROOM];
+    dea_key_suggest("study.sweep", node->key, help);
+    snprintf(subject, sizeof subject, "study.sweep.%s", dea_text_clip(node->key, DEA_TEXT_SHOWN, shown, sizeof shown));
+    return dea_place_fail(&node->key_at, reader->error, subject,
+                          "unknown key%s; accepted: any scalar of the scene, e.g. coverage, prestretch, voltage", help);
+}
+
+static dea_status sweep_read(dea_reader *reader, const dea_node *sweep)
+{
+    dea_scene *scene = reader->scene;
+    scene->axes = calloc(sweep->count + 1, sizeof *scene->axes);
+    if (!scene->axes) {
+        return dea_reader_memory(reader);
+    }
+    double points = 1.0;
+    for (const dea_node *node = sweep->first; node; node = node->next) {
+        axis_reader self = {.reader = reader, .axis = &scene->axes[scene->axis_count], .node = node};
+        if (!dea_key_resolve(node->key, &self.ref)) {
+            return fail_axis(reader, node);
+        }
+        const dea_status status = axis_read(&self);
+        scene->axis_count++;
+        if (status) {
+            return status;
+        }
+        points *= (double)self.axis->count;
+        if (points > STUDY_POINTS_MAX || points > (double)(SIZE_MAX / 2 / DEA_SCENE_MODELS)) {
+            return dea_place_fail(&node->key_at, reader->error, "study.sweep", "more than 1e12 points");
+        }
+    }
+    return DEA_OK;
+}
+
+static bool column_taken(const dea_scene *scene, size_t index)
+{
+    for (size_t i = 0; i < scene->axis_count; i++) {
+        if (i != index && strcmp(scene->axes[i].column, scene->axes[index].column) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Columns that clash take more of their path. */
+static void columns_part(dea_scene *scene)
+{
+    for (size_t i = 0; i < scene->axis_count; i++) {
+        dea_ref ref;
+        for (size_t words = 1; words < 6 && column_taken(scene, i) && dea_key_find(scene->axes[i].key, &ref); words++) {
+            dea_ref_column(&ref, ref.key->words + words, scene->axes[i].column);
+        }
+    }
+}
+
+dea_status dea_reader_study(dea_reader *reader)
+{
+    const dea_node *study = dea_tree_child(reader->root, "study");
+    const dea_node *sweep = dea_tree_child(study, "sweep");
+    dea_ref ref;
+    if (!study || !dea_key_find("study", &ref)) {
+        return dea_place_fail(&reader->root->place, reader->error, "study",
+                              "missing; write study: {sweep: {}} for the scene as one point");
+    }
+    dea_status status = dea_read_mapping(reader, &ref, study);
+    if (status) {
+        return status;
+    }
+    if (!sweep || !dea_key_find("study.sweep", &ref)) {
+        return dea_place_fail(&study->place, reader->error, "study",
+                              "asks for nothing; write {sweep: {}} for the scene as one point");
+    }
+    if (sweep->kind != DEA_NODE_MAPPING) {
+        return dea_reader_refuse(reader, &ref, sweep, "not a mapping");
+    }
+    status = sweep_read(reader, sweep);
+    columns_part(reader->scene);
+    return status;
+}

@@ -1,0 +1,580 @@
+/* Writers and pictures: what a file holds, when it appears, and what is refused. */
+#define _GNU_SOURCE /* posix_openpt */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <dirent.h>
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <locale.h>
+#include <math.h>
+#include <netcdf.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "deaspice/model.h"
+#include "deaspice/output.h"
+#include "deaspice/plot.h"
+#include "output/number.h"
+#include "output/progress.h"
+
+static char folder[64];
+
+static const char *in_folder(const char *name)
+{
+    static char path[4][384];
+    static int turn;
+    turn = (turn + 1) % 4;
+    snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
+    return path[turn];
+}
+
+static int folder_make(void **state)
+{
+    (void)state;
+    strcpy(folder, "/tmp/deaspice-test-XXXXXX");
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int folder_count(void)
+{
+    int count = 0;
+    DIR *open = opendir(folder);
+    for (const struct dirent *entry; open && (entry = readdir(open));) {
+        count += entry->d_name[0] != '.' || strlen(entry->d_name) > 2;
+    }
+    closedir(open);
+    return count;
+}
+
+static int folder_remove(void **state)
+{
+    (void)state;
+    DIR *open = opendir(folder);
+    for (const struct dirent *entry; open && (entry = readdir(open));) {
+        unlink(in_folder(entry->d_name));
+    }
+    closedir(open);
+    return rmdir(folder);
+}
+
+/* A scene of up to three axes, without the reader. */
+static dea_axis axes[3];
+static double values[3][200000];
+static const dea_model lumped = {.name = "lumped", .equation = "Eqs. 19-23"},
+                       coverage = {.name = "coverage", .equation = "Eq. 18"};
+static char title[4096];
+
+static dea_scene scene_make(size_t axis_count, const size_t *counts, size_t models)
+{
+    static const char *const keys[] = {"drive.voltage", "actuator.coverage", "actuator.prestretch"};
+    static const char *const columns[] = {"voltage_V", "coverage", "prestretch"}, *const units[] = {"V", "1", "1"};
+    static const double from[] = {0.0, 0.1, 1.1}, to[] = {4500.0, 0.9, 1.3};
+    const size_t offsets[] = {offsetof(dea_scene, drive.voltage), offsetof(dea_scene, actuator.coverage),
+                              offsetof(dea_scene, actuator.prestretch)};
+    for (size_t i = 0; i < axis_count; i++) {
+        axes[i] = (dea_axis){.unit = "", .offset = offsets[i], .uniform = true, .values = values[i], .count = counts[i]};
+        strcpy(axes[i].key, keys[i]);
+        strcpy(axes[i].column, columns[i]);
+        strcpy(axes[i].unit, units[i]);
+        for (size_t j = 0; j < counts[i]; j++) {
+            values[i][j] = counts[i] > 1 ? from[i] + (to[i] - from[i]) * (double)j / (double)(counts[i] - 1) : from[i];
+        }
+    }
+    strcpy(title, "test");
+    dea_scene scene = {.title = title, .accuracy = 1e-6, .models = {&lumped, &coverage}, .model_count = models, .axes = axes};
+    scene.axis_count = axis_count;
+    scene.actuator = (dea_actuator){DEA_DOT, 0.03, 0.5, NAN, 1e-4, 1.2, NAN, NAN, NAN};
+    scene.drive = (dea_drive){4500.0, NAN, NAN};
+    scene.material =
+        (dea_material){.name = "test film", .source = "nowhere", .yeoh = {178426.0, -6023.0, 4234.0}, .permittivity = 2.8};
+    scene.material.density = scene.material.retardation = scene.material.modulus = scene.material.breakdown = NAN;
+    return scene;
+}
+
+/* Numbers that tell their row. */
+static dea_row row_make(size_t number)
+{
+    const double x = (double)number;
+    return (dea_row){0.001 * x, 1e-5 * x, 0.25 + x, 1e6 / (1.0 + x), DEA_STATE_OK};
+}
+
+static dea_status rows_write(dea_writer *writer, size_t total, size_t block, dea_error *error)
+{
+    dea_row rows[1000];
+    dea_status status = DEA_OK;
+    for (size_t first = 0; first < total && status == DEA_OK; first += block) {
+        const size_t count = total - first < block ? total - first : block;
+        for (size_t i = 0; i < count; i++) {
+            rows[i] = row_make(first + i);
+        }
+        status = dea_writer_rows(writer, first, rows, count, error);
+    }
+    return status;
+}
+
+static char *file_text(const char *path)
+{
+    static char text[1 << 20];
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    return text;
+}
+
+static void numbers_print_as_printf_does(void **state)
+{
+    (void)state;
+    static const double special[] = {0.0,
+                                     -0.0,
+                                     1.0,
+                                     0.1,
+                                     1e-4,
+                                     9.9999999999999991e-5,
+                                     1e-5,
+                                     123456.0,
+                                     1e15,
+                                     1e16,
+                                     9999999999999998.0,
+                                     1e17,
+                                     1e-10,
+                                     4.5e-12,
+                                     5e-324,
+                                     1.7976931348623157e308,
+                                     0.3,
+                                     2.5,
+                                     1e22,
+                                     -4500.0,
+                                     INFINITY};
+    uint64_t seed = 88172645463325252u;
+    for (size_t i = 0; i < 200000; i++) {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        double value = (double)(seed >> 11) * pow(10.0, (int)(i % 40) - 30);
+        value = i < sizeof special / sizeof *special ? special[i] : i % 2 ? value : (double)(seed % 1000000) / 1000.0;
+        char ours[DEA_NUMBER_LENGTH + 1], theirs[64];
+        ours[dea_number_write(ours, value)] = '\0';
+        snprintf(theirs, sizeof theirs, "%.17g", value);
+        assert_string_equal(ours, theirs);
+    }
+}
+
+static void numbers_keep_their_point_whatever_the_locale(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE"};
+    locale_t comma = (locale_t)0;
+    for (size_t i = 0; i < 4 && !comma; i++) {
+        comma = newlocale(LC_ALL_MASK, names[i], (locale_t)0);
+    }
+    if (!comma) {
+        skip();
+    }
+    const locale_t before = uselocale(comma);
+    char text[DEA_NUMBER_LENGTH], tiny[DEA_NUMBER_LENGTH + 1];
+    dea_number_text(text, 1.5, 6);
+    tiny[dea_number_write(tiny, 1.5e-30)] = '\0';
+    uselocale(before);
+    freelocale(comma);
+    assert_string_equal(text, "1.5");
+    assert_string_equal(tiny, "1.4999999999999999e-30");
+}
+
+static void csv_holds_axes_then_numbers_then_the_state(void **state)
+{
+    (void)state;
+    const size_t counts[] = {2, 2};
+    const dea_scene scene = scene_make(2, counts, 1);
+    dea_error error = {0};
+    dea_writer *writer;
+    assert_int_equal(dea_writer_open(&scene, "direct", in_folder("a.csv"), NULL, &writer, &error), DEA_OK);
+    dea_row rows[4] = {row_make(0), row_make(1), row_make(2), {NAN, NAN, NAN, NAN, DEA_STATE_PULL_IN}};
+    rows[2].state = DEA_STATE_SLACK;
+    assert_int_equal(dea_writer_rows(writer, 0, rows, 4, &error), DEA_OK);
+    assert_int_equal(dea_writer_finish(writer, true, &error), DEA_OK);
+    assert_string_equal(file_text(in_folder("a.csv")),
+                        "voltage_V,coverage,strain,displacement_m,force_N,field_V_per_m,state\n"
+                        "0,0.10000000000000001,0,0,0.25,1000000,ok\n"
+                        "0,0.90000000000000002,0.001,1.0000000000000001e-05,1.25,500000,ok\n"
+                        "4500,0.10000000000000001,0.002,2.0000000000000002e-05,2.25,333333.33333333331,slack\n"
+                        "4500,0.90000000000000002,,,,,pull_in\n");
+}
+
+static void csv_names_the_model_where_there_are_several(void **state)
+{
+    (void)state;
+    const dea_scene scene = scene_make(0, NULL, 2);
+    dea_error error = {0};
+    dea_writer *writer;
+    assert_int_equal(dea_writer_open(&scene, "direct", in_folder("a.csv"), NULL, &writer, &error), DEA_OK);
+    assert_int_equal(rows_write(writer, 2, 1, &error), DEA_OK);
+    assert_int_equal(dea_writer_finish(writer, true, &error), DEA_OK);
+    assert_string_equal(file_text(in_folder("a.csv")), "model,strain,displacement_m,force_N,field_V_per_m,state\n"
+                                                       "lumped,0,0,0.25,1000000,ok\n"
+                                                       "coverage,0.001,1.0000000000000001e-05,1.25,500000,ok\n");
+}
+
+static void blocks_of_any_size_give_the_same_bytes(void **state)
+{
+    (void)state;
+    const size_t counts[] = {7, 11, 13};
+    static const char *const names[] = {"a.csv", "a.nc"};
+    const dea_scene scene = scene_make(3, counts, 2);
+    for (size_t format = 0; format < 2; format++) {
+        static char first[1 << 20];
+        for (size_t block = 1; block < 1000; block = block * 3 + 1) {
+            dea_error error = {0};
+            dea_writer *writer;
+            assert_int_equal(dea_writer_open(&scene, "direct", in_folder(names[format]), NULL, &writer, &error), DEA_OK);
+            assert_int_equal(rows_write(writer, 2002, block, &error), DEA_OK);
+            assert_int_equal(dea_writer_finish(writer, true, &error), DEA_OK);
+            const char *text = file_text(in_folder(names[format]));
+            if (block == 1) {
+                memcpy(first, text, sizeof first);
+            }
+            assert_memory_equal(first, text, 60000);
+        }
+    }
+}
+
+static void file_appears_when_it_is_finished_and_not_before(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"a.csv", "a.nc"};
+    const size_t counts[] = {3};
+    const dea_scene scene = scene_make(1, counts, 1);
+    for (size_t i = 0; i < 2; i++) {
+        dea_error error = {0};
+        dea_writer *writer;
+        assert_int_equal(dea_writer_open(&scene, "direct", in_folder(names[i]), NULL, &writer, &error), DEA_OK);
+        assert_int_equal(rows_write(writer, 3, 2, &error), DEA_OK);
+        assert_int_not_equal(access(in_folder(names[i]), F_OK), 0);
+        assert_int_equal(dea_writer_finish(writer, true, &error), DEA_OK);
+        assert_int_equal(access(in_folder(names[i]), F_OK), 0);
+        assert_int_equal(folder_count(), (int)i + 1);
+    }
+}
+
+static void discarded_file_leaves_the_old_one(void **state)
+{
+    (void)state;
+    const size_t counts[] = {3};
+    const dea_scene scene = scene_make(1, counts, 1);
+    FILE *old = fopen(in_folder("a.csv"), "w");
+    fputs("old", old);
+    fclose(old);
+    dea_error error = {0};
+    dea_writer *writer;
+    assert_int_equal(dea_writer_open(&scene, "direct", in_folder("a.csv"), NULL, &writer, &error), DEA_OK);
+    assert_int_equal(rows_write(writer, 3, 2, &error), DEA_OK);
+    assert_int_equal(dea_writer_finish(writer, false, &error), DEA_OK);
+    assert_string_equal(file_text(in_folder("a.csv")), "old");
+    assert_int_equal(folder_count(), 1);
+}
+
+static void missing_rows_make_no_file(void **state)
+{
+    (void)state;
+    const size_t counts[] = {3};
+    const dea_scene scene = scene_make(1, counts, 1);
+    dea_error error = {0};
+    dea_writer *writer;
+    assert_int_equal(dea_writer_open(&scene, "direct", in_folder("a.csv"), NULL, &writer, &error), DEA_OK);
+    assert_int_equal(rows_write(writer, 2, 2, &error), DEA_OK);
+    const dea_row row = row_make(2);
+    assert_int_equal(dea_writer_rows(writer, 1, &row, 1, &error), DEA_ERROR_USAGE);
+    assert_int_equal(dea_writer_rows(writer, 2, &row, 2, &error), DEA_ERROR_USAGE);
+    assert_int_equal(dea_writer_finish(writer, true, &error), DEA_ERROR_USAGE);
+    assert_int_equal(folder_count(), 0);
+}
+
+static void link_stays_a_link(void **state)
+{
+    (void)state;
+    const size_t counts[] = {3};
+    const dea_scene scene = scene_make(1, counts, 1);
+    FILE *old = fopen(in_folder("real.csv"), "w");
+    fclose(old);
+    assert_int_equal(symlink("real.csv", in_folder("link.csv")), 0);
+    dea_error error = {0};
+    dea_writer *writer;
+    assert_int_equal(dea_writer_open(&scene, "direct", in_folder("link.csv"), NULL, &writer, &error), DEA_OK);
+    assert_int_equal(rows_write(writer, 3, 2, &error), DEA_OK);
+    assert_int_equal(dea_writer_finish(writer, true, &error), DEA_OK);
+    struct stat about;
+    assert_int_equal(lstat(in_folder("link.csv"), &about), 0);
+    assert_true(S_ISLNK(about.st_mode));
+    assert_non_null(strstr(file_text(in_folder("real.csv")), "voltage_V"));
+}
+
+static void targets_that_cannot_be_written_are_refused_at_once(void **state)
+{
+    (void)state;
+    const dea_scene scene = scene_make(0, NULL, 1);
+    const struct {
+        const char *path, *format;
+        dea_status status;
+        const char *says;
+    } cases[] = {
+        {in_folder("none/a.csv"), NULL, DEA_ERROR_IO, "No such file or directory"},
+        {folder, "csv", DEA_ERROR_IO, "Is a directory"},
+        {in_folder("a.txt"), NULL, DEA_ERROR_USAGE, ".csv, .nc"},
+        {in_folder("a.csv"), "json", DEA_ERROR_USAGE, "unknown format \"json\""},
+        {"-", "nc", DEA_ERROR_USAGE, "regular file"},
+        {"/dev/null", "nc", DEA_ERROR_USAGE, "regular file"},
+        {"", "csv", DEA_ERROR_IO, "without a name"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        dea_error error = {0};
+        dea_writer *writer;
+        assert_int_equal(dea_writer_open(&scene, "direct", cases[i].path, cases[i].format, &writer, &error), cases[i].status);
+        assert_null(writer);
+        assert_non_null(strstr(error.message, cases[i].says));
+    }
+    assert_int_equal(folder_count(), 0);
+}
+
+static void full_disk_is_an_error(void **state)
+{
+    (void)state;
+    const size_t counts[] = {5000};
+    const dea_scene scene = scene_make(1, counts, 1);
+    dea_error error = {0};
+    dea_writer *writer;
+    assert_int_equal(dea_writer_open(&scene, "direct", "/dev/full", NULL, &writer, &error), DEA_OK);
+    assert_int_equal(rows_write(writer, 5000, 500, &error), DEA_ERROR_IO);
+    assert_non_null(strstr(error.message, "/dev/full: No space left on device"));
+    dea_writer_finish(writer, false, NULL);
+}
+
+/* Value of a variable at one place, by the library's own reader. */
+static double netcdf_value(void *library, const char *path, const char *variable, const size_t *place)
+{
+    __typeof__(&nc_open) open_file;
+    __typeof__(&nc_inq_varid) find;
+    __typeof__(&nc_get_var1_double) get;
+    __typeof__(&nc_close) close_file;
+    *(void **)&open_file = dlsym(library, "nc_open");
+    *(void **)&find = dlsym(library, "nc_inq_varid");
+    *(void **)&get = dlsym(library, "nc_get_var1_double");
+    *(void **)&close_file = dlsym(library, "nc_close");
+    int file, number;
+    double value = NAN;
+    assert_int_equal(open_file(path, NC_NOWRITE, &file), 0);
+    assert_int_equal(find(file, variable, &number), 0);
+    assert_int_equal(get(file, number, place, &value), 0);
+    close_file(file);
+    return value;
+}
+
+static void netcdf_holds_what_the_rows_held(void **state)
+{
+    (void)state;
+    const size_t counts[] = {7, 11, 13};
+    const dea_scene scene = scene_make(3, counts, 2);
+    dea_error error = {0};
+    dea_writer *writer;
+    assert_int_equal(dea_writer_open(&scene, "direct", in_folder("a.nc"), NULL, &writer, &error), DEA_OK);
+    assert_int_equal(rows_write(writer, 2002, 37, &error), DEA_OK);
+    assert_int_equal(dea_writer_finish(writer, true, &error), DEA_OK);
+    void *library = dlopen("libnetcdf.so.19", RTLD_NOW);
+    library = library ? library : dlopen("libnetcdf.so", RTLD_NOW);
+    assert_non_null(library);
+    for (size_t number = 0; number < 2002; number += 91) {
+        const size_t place[] = {number / 1001, number / 143 % 7, number / 13 % 11, number % 13};
+        const dea_row row = row_make(number);
+        assert_true(netcdf_value(library, in_folder("a.nc"), "strain", place) == row.strain);
+        assert_true(netcdf_value(library, in_folder("a.nc"), "field_V_per_m", place) == row.field);
+        assert_true(netcdf_value(library, in_folder("a.nc"), "coverage", &place[2]) == values[1][place[2]]);
+    }
+    dlclose(library);
+}
+
+/* Draws a study of the scene; strains are those of numbers that a picture can show. */
+static dea_status study_draw(const dea_scene *scene, const char *path, dea_error *error)
+{
+    dea_plot *plot;
+    dea_status status = dea_plot_begin(scene, path, &plot, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    const size_t total = dea_scene_point_count(scene) * scene->model_count;
+    for (size_t i = 0; i < total; i++) {
+        const double x = (double)i / (double)total;
+        const dea_row row = {0.1 * x, 1e-3 * x * (1.0 - x), 1.0, 1.0, DEA_STATE_OK};
+        dea_plot_rows(plot, i, &row, 1);
+    }
+    return dea_plot_finish(plot, true, error);
+}
+
+static void picture_shows_hostile_titles_as_text(void **state)
+{
+    (void)state;
+    const size_t counts[] = {50};
+    const dea_scene scene = scene_make(1, counts, 1);
+    dea_error error = {0};
+    snprintf(title, sizeof title, "`touch %s/x` $(id) @m \"q'z\" \\n <b> %%d 4.5 \xff\x01", folder);
+    assert_int_equal(study_draw(&scene, in_folder("a.svg"), &error), DEA_OK);
+    char shown[200];
+    snprintf(shown, sizeof shown, "`touch %s/x` $(id) @m \"q'z\" \\n &lt;b> %%d 4.5 <", folder);
+    assert_non_null(strstr(file_text(in_folder("a.svg")), shown));
+    assert_int_equal(folder_count(), 1);
+    memset(title, 'x', sizeof title - 1);
+    assert_int_equal(study_draw(&scene, in_folder("a.svg"), &error), DEA_OK);
+}
+
+static void long_curves_make_small_pictures(void **state)
+{
+    (void)state;
+    const size_t counts[] = {200000};
+    const dea_scene scene = scene_make(1, counts, 1);
+    dea_error error = {0};
+    struct stat about;
+    assert_int_equal(study_draw(&scene, in_folder("a.svg"), &error), DEA_OK);
+    assert_int_equal(stat(in_folder("a.svg"), &about), 0);
+    assert_in_range(about.st_size, 10000, 200000);
+}
+
+static void two_long_axes_make_a_map(void **state)
+{
+    (void)state;
+    const size_t counts[] = {40, 30};
+    const dea_scene scene = scene_make(2, counts, 1);
+    dea_error error = {0};
+    assert_int_equal(study_draw(&scene, in_folder("a.svg"), &error), DEA_OK);
+    assert_non_null(strstr(file_text(in_folder("a.svg")), "<image "));
+    assert_int_equal(study_draw(&scene, in_folder("a.png"), &error), DEA_OK);
+    assert_memory_equal(file_text(in_folder("a.png")), "\x89PNG", 4);
+}
+
+static void pictures_without_content_are_refused(void **state)
+{
+    (void)state;
+    const size_t one[] = {1}, many[] = {40, 30}, some[] = {5};
+    dea_error error = {0};
+    dea_scene scene = scene_make(1, one, 1);
+    assert_int_equal(study_draw(&scene, in_folder("a.svg"), &error), DEA_ERROR_USAGE);
+    assert_non_null(strstr(error.message, "nothing to draw"));
+    scene = scene_make(2, many, 2);
+    assert_int_equal(study_draw(&scene, in_folder("a.svg"), &error), DEA_ERROR_USAGE);
+    assert_non_null(strstr(error.message, "60 curves"));
+    scene = scene_make(1, some, 1);
+    assert_int_equal(study_draw(&scene, in_folder("a.pdf"), &error), DEA_ERROR_USAGE);
+    dea_plot *plot;
+    assert_int_equal(dea_plot_begin(&scene, in_folder("a.svg"), &plot, &error), DEA_OK);
+    assert_int_equal(dea_plot_finish(plot, true, &error), DEA_ERROR_USAGE);
+    assert_int_equal(folder_count(), 0);
+}
+
+static void gnuplot_failures_are_told_in_its_words(void **state)
+{
+    (void)state;
+    const size_t counts[] = {5};
+    const dea_scene scene = scene_make(1, counts, 1);
+    char path[4096];
+    snprintf(path, sizeof path, "%s", getenv("PATH"));
+    dea_error error = {0};
+    setenv("PATH", folder, 1);
+    const dea_status missing = study_draw(&scene, in_folder("a.svg"), &error);
+    FILE *fake = fopen(in_folder("gnuplot"), "w");
+    fputs("#!/bin/sh\necho bad weather >&2\nexit 3\n", fake);
+    fclose(fake);
+    chmod(in_folder("gnuplot"), 0755);
+    dea_error failure = {0};
+    const dea_status failed = study_draw(&scene, in_folder("a.svg"), &failure);
+    setenv("PATH", path, 1);
+    assert_int_equal(missing, DEA_ERROR_MISSING);
+    assert_non_null(strstr(error.message, "gnuplot-nox"));
+    assert_int_equal(failed, DEA_ERROR_ENGINE);
+    assert_non_null(strstr(failure.message, "exit status 3"));
+    assert_non_null(strstr(failure.message, "bad weather"));
+    assert_int_equal(folder_count(), 1);
+}
+
+/* Shows a bar often on the file @p target in place of standard error. */
+static bool progress_try(int target)
+{
+    const int before = dup(STDERR_FILENO);
+    dup2(target, STDERR_FILENO);
+    dea_progress *bar = dea_progress_begin();
+    nanosleep(&(struct timespec){.tv_nsec = 400000000}, NULL);
+    for (int i = 0; i < 1000; i++) {
+        dea_progress_show(bar, 50, 100);
+    }
+    dea_progress_end(bar);
+    dup2(before, STDERR_FILENO);
+    close(before);
+    return bar != NULL;
+}
+
+static void progress_shows_on_a_terminal_and_erases_itself(void **state)
+{
+    (void)state;
+    const int master = posix_openpt(O_RDWR | O_NOCTTY);
+    assert_true(master >= 0 && grantpt(master) == 0 && unlockpt(master) == 0);
+    const int terminal = open(ptsname(master), O_RDWR | O_NOCTTY);
+    setenv("TERM", "xterm", 1);
+    setenv("NO_COLOR", "1", 1);
+    assert_true(progress_try(terminal));
+    char text[4096] = "";
+    const ssize_t length = read(master, text, sizeof text - 1);
+    assert_in_range(length, 20, 200); /* one bar, not a thousand */
+    assert_non_null(strstr(text, " 50 %  50/100"));
+    assert_null(strstr(text, "\033[36m"));
+    assert_string_equal(text + length - 4, "\r\033[K");
+    setenv("TERM", "dumb", 1);
+    assert_false(progress_try(terminal));
+    close(terminal);
+    close(master);
+}
+
+static void progress_is_silent_without_a_terminal(void **state)
+{
+    (void)state;
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    assert_false(progress_try(ends[1]));
+    close(ends[1]);
+    char text[8];
+    assert_int_equal(read(ends[0], text, sizeof text), 0);
+    close(ends[0]);
+}
+
+#define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, folder_make, folder_remove)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(numbers_print_as_printf_does),
+        cmocka_unit_test(numbers_keep_their_point_whatever_the_locale),
+        IN_FOLDER(csv_holds_axes_then_numbers_then_the_state),
+        IN_FOLDER(csv_names_the_model_where_there_are_several),
+        IN_FOLDER(blocks_of_any_size_give_the_same_bytes),
+        IN_FOLDER(file_appears_when_it_is_finished_and_not_before),
+        IN_FOLDER(discarded_file_leaves_the_old_one),
+        IN_FOLDER(missing_rows_make_no_file),
+        IN_FOLDER(link_stays_a_link),
+        IN_FOLDER(targets_that_cannot_be_written_are_refused_at_once),
+        IN_FOLDER(full_disk_is_an_error),
+        IN_FOLDER(netcdf_holds_what_the_rows_held),
+        IN_FOLDER(picture_shows_hostile_titles_as_text),
+        IN_FOLDER(long_curves_make_small_pictures),
+        IN_FOLDER(two_long_axes_make_a_map),
+        IN_FOLDER(pictures_without_content_are_refused),
+        IN_FOLDER(gnuplot_failures_are_told_in_its_words),
+        cmocka_unit_test(progress_shows_on_a_terminal_and_erases_itself),
+        cmocka_unit_test(progress_is_silent_without_a_terminal),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,539 @@
+/* The runner: rows in order and complete, whatever an engine does. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <errno.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "engine/plan.h"
+#include "engine/pool.h"
+
+enum { POINTS = 500, BAD = 17 };
+
+static const dea_model first_model = {.name = "first"};
+static const dea_model second_model = {.name = "second"};
+
+/* What the fake engines share with the test: counters that survive a fork, and the trouble they are to make. */
+typedef struct fake {
+    int begins;
+    int sweeps;
+    int bad_begins; /* so many of the first begin() fail */
+    pid_t worker;   /* the last that began */
+} fake;
+
+static fake *shared;
+
+typedef struct listener {
+    size_t next;
+    size_t failed;
+    size_t wrong;
+    size_t progress;
+    size_t stop_after; /* rows, 0: never */
+    size_t refuse_after;
+    size_t lines;
+    char line[1024];
+} listener;
+
+static dea_scene scene_of(size_t points, size_t models)
+{
+    static dea_axis axis;
+    axis = (dea_axis){.column = "voltage_V", .count = points, .values = calloc(points, sizeof(double))};
+    for (size_t i = 0; i < points; i++)
+        axis.values[i] = (double)i;
+    dea_scene scene = {.axes = &axis, .axis_count = 1, .model_count = models, .models = {&first_model, &second_model}};
+    return scene;
+}
+
+static double expected_strain(const dea_model *model, size_t point)
+{
+    return (double)point + (model == &second_model ? 0.5 : 0.0);
+}
+
+static dea_status begin_fine(void **session, dea_error *error)
+{
+    int number = __atomic_add_fetch(&shared->begins, 1, __ATOMIC_SEQ_CST);
+    if (number <= shared->bad_begins)
+        return dea_fail(error, DEA_ERROR_MISSING, "no licence today");
+    *session = shared;
+    return DEA_OK;
+}
+
+static void end_fine(void *session)
+{
+    (void)session;
+}
+
+static dea_status solve(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count, dea_row *rows,
+                        dea_error *error)
+{
+    if (session != shared || scene->model_count == 0)
+        return dea_fail(error, DEA_ERROR_USAGE, "this is not my session");
+    __atomic_add_fetch(&shared->sweeps, 1, __ATOMIC_SEQ_CST);
+    for (size_t i = 0; i < count; i++)
+        rows[i] = (dea_row){.strain = expected_strain(model, first + i), .displacement = 1, .force = 2, .field = 3};
+    return DEA_OK;
+}
+
+static bool covers_bad_point(const dea_model *model, size_t first, size_t count)
+{
+    return model == &first_model && first <= BAD && BAD < first + count;
+}
+
+static dea_status sweep_crash(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count,
+                              dea_row *rows, dea_error *error)
+{
+    solve(session, scene, model, first, count, rows, error);
+    if (covers_bad_point(model, first, count))
+        raise(SIGSEGV);
+    return DEA_OK;
+}
+
+static dea_status sweep_hang(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count,
+                             dea_row *rows, dea_error *error)
+{
+    if (covers_bad_point(model, first, count))
+        pause();
+    return solve(session, scene, model, first, count, rows, error);
+}
+
+static dea_status sweep_error(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count,
+                              dea_row *rows, dea_error *error)
+{
+    solve(session, scene, model, first, count, rows, error);
+    return covers_bad_point(model, first, count) ? dea_fail(error, DEA_ERROR_ENGINE, "singular matrix") : DEA_OK;
+}
+
+static dea_status sweep_exit(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count,
+                             dea_row *rows, dea_error *error)
+{
+    printf("chatter of a foreign library\n");
+    if (covers_bad_point(model, first, count))
+        exit(3);
+    return solve(session, scene, model, first, count, rows, error);
+}
+
+/* Early blocks take longest, so that later ones are ready before them. */
+static dea_status sweep_backwards(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count,
+                                  dea_row *rows, dea_error *error)
+{
+    struct timespec nap = {.tv_nsec = first % 3 == 0 ? 20000000 : 100000};
+    nanosleep(&nap, NULL);
+    return solve(session, scene, model, first, count, rows, error);
+}
+
+static dea_status sweep_always_fails(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count,
+                                     dea_row *rows, dea_error *error)
+{
+    solve(session, scene, model, first, count, rows, error);
+    return dea_fail(error, DEA_ERROR_ENGINE, "broken");
+}
+
+static dea_status sweep_for_ever(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count,
+                                 dea_row *rows, dea_error *error)
+{
+    for (;;)
+        pause();
+    return solve(session, scene, model, first, count, rows, error);
+}
+
+static dea_engine engine_of(dea_status (*sweep)(void *, const dea_scene *, const dea_model *, size_t, size_t, dea_row *,
+                                                dea_error *),
+                            bool isolated)
+{
+    return (dea_engine){.name = "fake",
+                        .isolated = isolated,
+                        .patience = 1e-4,
+                        .block = 20,
+                        .begin = begin_fine,
+                        .sweep = sweep,
+                        .end = end_fine};
+}
+
+static dea_status take_rows(void *user, size_t first, const dea_row *rows, size_t count, dea_error *error)
+{
+    listener *heard = user;
+    heard->wrong += first != heard->next;
+    for (size_t i = 0; i < count; i++) {
+        size_t row = first + i;
+        double strain = row < POINTS ? (double)row : (double)(row - POINTS) + 0.5;
+        if (rows[i].state == DEA_STATE_FAILED) {
+            heard->failed++;
+            heard->wrong +=
+                !(isnan(rows[i].strain) && isnan(rows[i].displacement) && isnan(rows[i].force) && isnan(rows[i].field));
+        } else {
+            heard->wrong += !(fabs(rows[i].strain - strain) <= 0 && rows[i].state == DEA_STATE_OK);
+        }
+    }
+    heard->next = first + count;
+    if (heard->refuse_after > 0 && heard->next >= heard->refuse_after)
+        return dea_fail(error, DEA_ERROR_IO, "disk full");
+    return DEA_OK;
+}
+
+static void take_line(void *user, const char *line)
+{
+    listener *heard = user;
+    heard->lines++;
+    snprintf(heard->line, sizeof heard->line, "%s", line);
+}
+
+static void take_progress(void *user, size_t done, size_t total)
+{
+    listener *heard = user;
+    heard->wrong += done != heard->next || total < done;
+    heard->progress = done;
+}
+
+static bool wants_stop(void *user)
+{
+    const listener *heard = user;
+    return heard->stop_after > 0 && heard->next >= heard->stop_after;
+}
+
+static void check_no_child_left(void)
+{
+    errno = 0;
+    assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);
+    assert_int_equal(errno, ECHILD);
+}
+
+static dea_status run(const dea_scene *scene, const dea_engine *engine, size_t jobs, listener *heard, dea_error *error)
+{
+    dea_run_options options = {
+        .jobs = jobs, .rows = take_rows, .progress = take_progress, .log = take_line, .stop = wants_stop, .user = heard};
+    dea_status status = dea_study_run(scene, engine, &options, error);
+    free(scene->axes[0].values);
+    check_no_child_left();
+    return status;
+}
+
+/* The pool itself, with little time for a worker that hangs. */
+static dea_status run_impatiently(const dea_scene *scene, const dea_engine *engine, size_t jobs, listener *heard,
+                                  dea_error *error)
+{
+    dea_run_options options = {.jobs = jobs, .rows = take_rows, .log = take_line, .stop = wants_stop, .user = heard};
+    dea_plan plan;
+    assert_int_equal(dea_plan_make(scene, engine, &options, &plan, error), DEA_OK);
+    dea_status status = dea_pool_run(&plan, 0.2, error);
+    free(scene->axes[0].values);
+    check_no_child_left();
+    return status;
+}
+
+static void check_one_failed(const listener *heard, const char *why)
+{
+    assert_int_equal(heard->next, 2 * POINTS);
+    assert_int_equal(heard->wrong, 0);
+    assert_int_equal(heard->failed, 1);
+    assert_int_equal(heard->lines, 1);
+    assert_non_null(strstr(heard->line, "first, point 17 (voltage_V=17)"));
+    assert_non_null(strstr(heard->line, why));
+}
+
+static const size_t all_jobs[] = {1, 2, 4};
+
+static void rows_come_in_order_and_complete(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < 6; i++) {
+        dea_scene scene = scene_of(POINTS, 2);
+        dea_engine engine = engine_of(sweep_backwards, i < 3);
+        listener heard = {0};
+        assert_int_equal(run(&scene, &engine, all_jobs[i % 3], &heard, NULL), DEA_OK);
+        assert_int_equal(heard.next, 2 * POINTS);
+        assert_int_equal(heard.progress, 2 * POINTS);
+        assert_int_equal(heard.wrong, 0);
+        assert_int_equal(heard.failed, 0);
+    }
+}
+
+static void crash_costs_only_its_point(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < 3; i++) {
+        dea_scene scene = scene_of(POINTS, 2);
+        dea_engine engine = engine_of(sweep_crash, true);
+        listener heard = {0};
+        assert_int_equal(run(&scene, &engine, all_jobs[i], &heard, NULL), DEA_OK);
+        check_one_failed(&heard, "signal 11");
+    }
+}
+
+static void hang_costs_only_its_point(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < 3; i++) {
+        dea_scene scene = scene_of(POINTS, 2);
+        dea_engine engine = engine_of(sweep_hang, true);
+        listener heard = {0};
+        assert_int_equal(run_impatiently(&scene, &engine, all_jobs[i], &heard, NULL), DEA_OK);
+        check_one_failed(&heard, "no answer");
+    }
+}
+
+static void error_costs_only_its_point_and_is_told(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < 6; i++) {
+        dea_scene scene = scene_of(POINTS, 2);
+        dea_engine engine = engine_of(sweep_error, i < 3);
+        listener heard = {0};
+        assert_int_equal(run(&scene, &engine, all_jobs[i % 3], &heard, NULL), DEA_OK);
+        check_one_failed(&heard, "singular matrix");
+    }
+}
+
+static void exit_of_a_library_costs_only_its_point(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < 3; i++) {
+        dea_scene scene = scene_of(POINTS, 2);
+        dea_engine engine = engine_of(sweep_exit, true);
+        listener heard = {0};
+        assert_int_equal(run(&scene, &engine, all_jobs[i], &heard, NULL), DEA_OK);
+        check_one_failed(&heard, "exit status 3");
+    }
+}
+
+static void broken_engine_ends_in_bounded_time(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < 4; i++) {
+        dea_scene scene = scene_of(20000, 1);
+        dea_engine engine = engine_of(sweep_always_fails, i % 2 == 0);
+        listener heard = {0};
+        *shared = (fake){0};
+        assert_int_equal(run(&scene, &engine, i < 2 ? 1 : 4, &heard, NULL), DEA_OK);
+        assert_int_equal(heard.failed, 20000);
+        assert_true(shared->sweeps < 1500);
+        assert_true(heard.lines >= 64 && heard.lines <= 201);
+    }
+}
+
+static void hanging_engine_ends_in_bounded_time(void **state)
+{
+    (void)state;
+    dea_scene scene = scene_of(20000, 1);
+    dea_engine engine = engine_of(sweep_for_ever, true);
+    listener heard = {0};
+    dea_run_options options = {.jobs = 4, .rows = take_rows, .user = &heard};
+    dea_plan plan;
+    *shared = (fake){0};
+    assert_int_equal(dea_plan_make(&scene, &engine, &options, &plan, NULL), DEA_OK);
+    assert_int_equal(dea_pool_run(&plan, 0.02, NULL), DEA_OK);
+    free(scene.axes[0].values);
+    check_no_child_left();
+    assert_int_equal(heard.failed, 20000);
+    assert_true(shared->begins <= 40);
+}
+
+static void failed_begin_is_told_with_its_status(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < 4; i++) {
+        dea_scene scene = scene_of(POINTS, 1);
+        dea_engine engine = engine_of(solve, i % 2 == 0);
+        listener heard = {0};
+        dea_error error = {0};
+        *shared = (fake){.bad_begins = 4};
+        assert_int_equal(run(&scene, &engine, i < 2 ? 1 : 4, &heard, &error), DEA_ERROR_MISSING);
+        assert_non_null(strstr(error.message, "no licence today"));
+    }
+    *shared = (fake){0};
+}
+
+static void one_worker_that_cannot_begin_is_done_without(void **state)
+{
+    (void)state;
+    dea_scene scene = scene_of(POINTS, 1);
+    dea_engine engine = engine_of(solve, true);
+    listener heard = {0};
+    *shared = (fake){.bad_begins = 1};
+    assert_int_equal(run(&scene, &engine, 4, &heard, NULL), DEA_OK);
+    assert_int_equal(heard.next, POINTS);
+    assert_int_equal(heard.failed, 0);
+    assert_int_equal(heard.lines, 1);
+    assert_non_null(strstr(heard.line, "no licence today"));
+    *shared = (fake){0};
+}
+
+static void failing_listener_ends_the_run_with_its_status(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < 6; i++) {
+        dea_scene scene = scene_of(POINTS, 1);
+        dea_engine engine = engine_of(solve, i < 3);
+        listener heard = {.refuse_after = 100};
+        dea_error error = {0};
+        assert_int_equal(run(&scene, &engine, all_jobs[i % 3], &heard, &error), DEA_ERROR_IO);
+        assert_string_equal(error.message, "disk full");
+        assert_true(heard.next < 200);
+    }
+}
+
+static void stop_ends_the_run_soon(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < 6; i++) {
+        dea_scene scene = scene_of(POINTS, 1);
+        dea_engine engine = engine_of(sweep_backwards, i < 3);
+        listener heard = {.stop_after = 100};
+        assert_int_equal(run(&scene, &engine, all_jobs[i % 3], &heard, NULL), DEA_ERROR_INTERRUPTED);
+        assert_true(heard.next < 400);
+        assert_int_equal(heard.wrong, 0);
+    }
+}
+
+static const char *refuse_second(const dea_scene *scene, const dea_model *model)
+{
+    (void)scene;
+    return model == &second_model ? "it is too hard" : NULL;
+}
+
+static void refused_model_runs_nothing(void **state)
+{
+    (void)state;
+    dea_scene scene = scene_of(POINTS, 2);
+    dea_engine engine = engine_of(solve, true);
+    engine.refuses = refuse_second;
+    listener heard = {0};
+    dea_error error = {0};
+    *shared = (fake){0};
+    assert_int_equal(run(&scene, &engine, 2, &heard, &error), DEA_ERROR_UNSUPPORTED);
+    assert_non_null(strstr(error.message, "it is too hard"));
+    assert_int_equal(shared->begins, 0);
+}
+
+static void single_point_needs_one_worker(void **state)
+{
+    (void)state;
+    dea_scene scene = scene_of(1, 1);
+    dea_engine engine = engine_of(solve, true);
+    listener heard = {0};
+    *shared = (fake){0};
+    assert_int_equal(run(&scene, &engine, 64, &heard, NULL), DEA_OK);
+    assert_int_equal(heard.next, 1);
+    assert_int_equal(shared->begins, 1);
+}
+
+static void memory_does_not_grow_with_the_study(void **state)
+{
+    (void)state;
+    struct rusage before, after;
+    static dea_axis axis = {.column = "voltage_V", .count = 2000000};
+    dea_scene scene = {.axes = &axis, .axis_count = 1, .model_count = 1, .models = {&first_model}};
+    dea_engine engine = engine_of(solve, true);
+    engine.block = 256;
+    dea_run_options options = {.jobs = 2, .rows = take_rows, .user = &(listener){0}};
+    getrusage(RUSAGE_SELF, &before);
+    assert_int_equal(dea_study_run(&scene, &engine, &options, NULL), DEA_OK);
+    getrusage(RUSAGE_SELF, &after);
+    assert_true(after.ru_maxrss - before.ru_maxrss < 4096);
+    check_no_child_left();
+}
+
+static void wait_until_gone(pid_t worker)
+{
+    for (int i = 0; i < 200 && kill(worker, 0) == 0; i++) {
+        struct timespec nap = {.tv_nsec = 10000000};
+        nanosleep(&nap, NULL);
+    }
+}
+
+static dea_status begin_and_tell(void **session, dea_error *error)
+{
+    __atomic_store_n(&shared->worker, getpid(), __ATOMIC_SEQ_CST);
+    return begin_fine(session, error);
+}
+
+static void worker_dies_with_a_killed_parent(void **state)
+{
+    (void)state;
+    *shared = (fake){0};
+    pid_t parent = fork();
+    if (parent == 0) {
+        dea_scene scene = scene_of(POINTS, 1);
+        dea_engine engine = engine_of(sweep_for_ever, true);
+        engine.begin = begin_and_tell;
+        dea_run_options options = {.jobs = 1, .rows = take_rows, .user = &(listener){0}};
+        dea_study_run(&scene, &engine, &options, NULL);
+        _exit(0);
+    }
+    pid_t worker = 0;
+    for (int i = 0; i < 500 && worker == 0; i++) {
+        struct timespec nap = {.tv_nsec = 10000000};
+        nanosleep(&nap, NULL);
+        worker = __atomic_load_n(&shared->worker, __ATOMIC_SEQ_CST);
+    }
+    assert_true(worker > 0 && kill(worker, 0) == 0);
+    kill(parent, SIGKILL);
+    waitpid(parent, NULL, 0);
+    wait_until_gone(worker);
+    assert_int_equal(kill(worker, 0), -1);
+}
+
+static void halving_finds_every_bad_point(void **state)
+{
+    (void)state;
+    dea_run_options options = {0};
+    dea_engine engine = engine_of(solve, false);
+    dea_scene scene = scene_of(64, 1);
+    dea_plan plan = {.scene = &scene, .engine = &engine, .options = &options};
+    for (size_t a = 0; a < 64; a++) {
+        size_t b = (a * 37 + 5) % 64;
+        dea_row rows[64] = {{0}};
+        dea_damage damage = {0};
+        dea_span span = {.model = &first_model, .count = 64};
+        dea_attempt attempt = dea_attempt_start(64);
+        size_t tries = 0;
+        for (; !dea_attempt_over(&attempt); tries++) {
+            assert_true(attempt.end > attempt.next && attempt.end <= 64);
+            bool bad = (attempt.next <= a && a < attempt.end) || (attempt.next <= b && b < attempt.end);
+            if (bad)
+                dea_attempt_failed(&attempt, &plan, &span, rows, "bad", &damage);
+            else
+                dea_attempt_solved(&attempt, &damage);
+        }
+        assert_true(tries <= 2 * 8 + 1);
+        for (size_t i = 0; i < 64; i++)
+            assert_int_equal(rows[i].state == DEA_STATE_FAILED, i == a || i == b);
+    }
+    free(scene.axes[0].values);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rows_come_in_order_and_complete),
+        cmocka_unit_test(crash_costs_only_its_point),
+        cmocka_unit_test(hang_costs_only_its_point),
+        cmocka_unit_test(error_costs_only_its_point_and_is_told),
+        cmocka_unit_test(exit_of_a_library_costs_only_its_point),
+        cmocka_unit_test(broken_engine_ends_in_bounded_time),
+        cmocka_unit_test(hanging_engine_ends_in_bounded_time),
+        cmocka_unit_test(failed_begin_is_told_with_its_status),
+        cmocka_unit_test(one_worker_that_cannot_begin_is_done_without),
+        cmocka_unit_test(failing_listener_ends_the_run_with_its_status),
+        cmocka_unit_test(stop_ends_the_run_soon),
+        cmocka_unit_test(refused_model_runs_nothing),
+        cmocka_unit_test(single_point_needs_one_worker),
+        cmocka_unit_test(memory_does_not_grow_with_the_study),
+        cmocka_unit_test(worker_dies_with_a_killed_parent),
+        cmocka_unit_test(halving_finds_every_bad_point),
+    };
+    shared = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    return shared == MAP_FAILED ? 1 : cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,6 +1,6 @@
 #include "deaspice/fit.h"
 
-#include "output/number.h"
+#include "support/number.h"
 
 #include <math.h>
 

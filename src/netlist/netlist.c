@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "output/number.h"
+#include "support/number.h"
 
 typedef struct writer {
     const dea_pool *pool;

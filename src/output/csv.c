@@ -1,5 +1,5 @@
 /* CSV: one header row, full double precision, empty fields for numbers that are not there. */
-#include "output/number.h"
+#include "support/number.h"
 #include "output/writer.h"
 
 #include "deaspice/model.h"

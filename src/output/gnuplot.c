@@ -1,6 +1,6 @@
 #include "output/gnuplot.h"
 
-#include "output/number.h"
+#include "support/number.h"
 
 #include <ctype.h>
 #include <errno.h>

@@ -1,6 +1,6 @@
 #include "output/label.h"
 
-#include "output/number.h"
+#include "support/number.h"
 
 #include <ctype.h>
 #include <math.h>

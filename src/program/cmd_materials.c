@@ -5,7 +5,7 @@
 #include "deaspice/material.h"
 #include "deaspice/plot.h"
 #include "output/atomic.h"
-#include "output/number.h"
+#include "support/number.h"
 #include "program/program.h"
 
 enum { CURVE_POINTS = 101, MOST_MATERIALS = 64, CURVE_COLUMNS = 4 };

@@ -24,7 +24,7 @@
 #include "deaspice/model.h"
 #include "deaspice/output.h"
 #include "deaspice/plot.h"
-#include "output/number.h"
+#include "support/number.h"
 #include "output/progress.h"
 
 static char folder[64];

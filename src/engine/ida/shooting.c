@@ -89,6 +89,23 @@ static void note(dea_shooting *s)
     }
 }
 
+/* Jump of lambda_1 at the edge by its own Newton steps, only to start IDA's search near its goal. */
+static double jump_guess(const dea_shooting *s, double l)
+{
+    const double load = (s->disc_k - s->annulus_k) * l * l * l;
+    const double at_edge = stress_change(&s->point->film, l - s->point->film.prestretch, l - s->point->film.prestretch);
+    double jump = 0.0;
+    for (int i = 0; i < 4; i++) {
+        const double d1 = l - jump - s->point->film.prestretch;
+        const double slope = dea_yeoh_stress(s->point->film.yeoh, l - jump, l).w11 - s->annulus_k * l * l;
+        jump += (stress_change(&s->point->film, d1, l - s->point->film.prestretch) - at_edge + load + s->annulus_k * jump * l * l) / slope;
+        if (!(l - jump > 0.1 * l)) {
+            return 0.9 * l;
+        }
+    }
+    return jump;
+}
+
 /* Consistent start behind the edge; false where lambda_1 was not found. */
 static bool start(dea_shooting *s, double edge)
 {
@@ -97,7 +114,8 @@ static bool start(dea_shooting *s, double edge)
     const double sigma = stress_change(&s->point->film, edge, edge) - s->disc_k * l * l * l;
     sunrealtype *v = N_VGetArrayPointer(m->y);
     v[SIGMA] = sigma / s->stress;
-    v[HOOP] = v[RADIAL] = edge / s->strain;
+    v[HOOP] = edge / s->strain;
+    v[RADIAL] = (edge - jump_guess(s, l)) / s->strain;
     N_VConst(0.0, m->yp);
     if (IDAReInit(m->ida, 0.0, m->y, m->yp) != IDA_SUCCESS || IDASVtolerances(m->ida, s->tolerance, m->tolerance) != IDA_SUCCESS ||
         IDACalcIC(m->ida, IDA_YA_YDP_INIT, 1e-3) != IDA_SUCCESS || IDAGetConsistentIC(m->ida, m->y, m->yp) != IDA_SUCCESS) {

@@ -1,6 +1,6 @@
 /* Numbers as text, with '.' as decimal point whatever the locale. */
-#ifndef DEASPICE_OUTPUT_NUMBER_H
-#define DEASPICE_OUTPUT_NUMBER_H
+#ifndef DEA_SUPPORT_NUMBER_H
+#define DEA_SUPPORT_NUMBER_H
 
 #include <stddef.h>
 

@@ -1,7 +1,7 @@
 /* Shortest road to a correctly rounded %.17g: with |x| = m 2^e, m < 2^53, and X the decimal exponent of x, the 17 digits are
  * round(m 5^k 2^(e+k)) with k = 16 - X. For 0 <= k <= 27 the product is below 2^116, so 128-bit integers make it exact.
  * Everything else goes through snprintf. */
-#include "output/number.h"
+#include "support/number.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -22,10 +22,80 @@ PROGRAM_OBJECTS := $(PROGRAM_SOURCES:%.c=$(BUILD)/%.o)
 UNIT_SOURCES    := $(sort $(wildcard tests/unit/test_*.c))
 UNIT_PROGRAMS   := $(UNIT_SOURCES:tests/unit/%.c=$(BUILD)/tests/%)
 
+SANITIZE := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+
 .DELETE_ON_ERROR:
-.PHONY: all unit
+.PHONY: all unit demo check test asan fuzz clang bench examples-agree asan-run install uninstall clean packages packages-check
 
 all: $(BUILD)/deaspice $(BUILD)/libdeaspice.so
+
+packages:
+	@sh .ci/packages build
+packages-check:
+	@sh .ci/packages check
+
+# The main job on real input: the coverage sweep of the paper's Figure 10, as a table and as a picture.
+demo: packages
+	@$(MAKE) --no-print-directory all
+	@mkdir -p demo
+	$(BUILD)/deaspice run examples/figure10.yaml --engine direct -o demo/figure10.csv --plot demo/figure10.svg
+	$(BUILD)/deaspice check --quiet examples/figure10.yaml
+	@echo "demo/figure10.csv and demo/figure10.svg are made"
+
+# Everything that must hold: unit tests, engines against each other, examples, bad input, sanitizers, fuzzing, a second compiler.
+check: packages-check
+	@rm -f $(BUILD)/tally; mkdir -p $(BUILD)
+	@TALLY=$(abspath $(BUILD))/tally $(MAKE) --no-print-directory -k test examples-agree clang asan fuzz; \
+	status=$$?; \
+	awk -v status=$$status '{p += $$1; f += $$2} END {if (status && !f) f = 1; printf "%d passed, %d failed\n", p, f}' $(BUILD)/tally; \
+	exit $$status
+
+test: all unit
+	@DEASPICE=$(abspath $(BUILD))/deaspice tests/run test $(UNIT_PROGRAMS)
+
+examples-agree: all
+	@$(BUILD)/deaspice check --quiet examples/*.yaml && echo "1 0" >>$${TALLY:-/dev/null} || { echo "0 1" >>$${TALLY:-/dev/null}; exit 1; }
+
+clang:
+	@$(MAKE) --no-print-directory BUILD=$(BUILD)/clang CC=clang CFLAGS="-O1 -Werror" all unit
+
+asan:
+	@$(MAKE) --no-print-directory BUILD=$(BUILD)/asan CFLAGS="$(SANITIZE)" asan-run
+
+asan-run: all unit
+	@DEASPICE=$(abspath $(BUILD))/deaspice ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 \
+	LSAN_OPTIONS=suppressions=$(abspath tests/leaks.supp):print_suppressions=0 tests/run asan $(UNIT_PROGRAMS)
+
+# libFuzzer on the scene reader; SECONDS=n for longer.
+FUZZ_SECONDS ?= 60
+fuzz: $(BUILD)/fuzz/scene_fuzz
+	@mkdir -p $(BUILD)/fuzz/corpus
+	@UDUNITS2_XML_PATH=/nonexistent $(BUILD)/fuzz/scene_fuzz -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=2048 -verbosity=0 -print_final_stats=1 \
+	-artifact_prefix=$(BUILD)/fuzz/ $(BUILD)/fuzz/corpus tests/bad examples >$(BUILD)/fuzz/log 2>&1 \
+	&& { grep -h executed $(BUILD)/fuzz/log; echo "1 0" >>$${TALLY:-/dev/null}; } || { tail -n 40 $(BUILD)/fuzz/log; echo "0 1" >>$${TALLY:-/dev/null}; exit 1; }
+
+$(BUILD)/fuzz/scene_fuzz: tests/fuzz/scene_fuzz.c $(LIBRARY_SOURCES)
+	@mkdir -p $(@D)
+	clang $(filter-out -MMD -MP,$(ALL_CFLAGS)) -O1 -g -fsanitize=fuzzer,address,undefined -DDEA_AXIS_VALUES_MAX=100000 $^ -o $@ $(LIBS)
+
+install: all
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/pkgconfig $(DESTDIR)$(PREFIX)/include/deaspice $(DESTDIR)$(PREFIX)/share/man/man1
+	install -m 755 $(BUILD)/deaspice $(DESTDIR)$(PREFIX)/bin/
+	install -m 644 $(BUILD)/libdeaspice.a $(DESTDIR)$(PREFIX)/lib/
+	install -m 755 $(BUILD)/libdeaspice.so $(DESTDIR)$(PREFIX)/lib/libdeaspice.so.0
+	ln -sf libdeaspice.so.0 $(DESTDIR)$(PREFIX)/lib/libdeaspice.so
+	install -m 644 include/deaspice/*.h $(DESTDIR)$(PREFIX)/include/deaspice/
+	install -m 644 src/program/deaspice.1 $(DESTDIR)$(PREFIX)/share/man/man1/
+	printf 'prefix=%s\nlibdir=$${prefix}/lib\nincludedir=$${prefix}/include\n\nName: deaspice\nDescription: networks of dielectric elastomer actuators\nVersion: %s\nLibs: -L$${libdir} -ldeaspice\nLibs.private: %s\nCflags: -I$${includedir}\n' \
+	  '$(PREFIX)' '$(VERSION)' '$(LIBS)' >$(DESTDIR)$(PREFIX)/lib/pkgconfig/deaspice.pc
+
+uninstall:
+	rm -f $(DESTDIR)$(PREFIX)/bin/deaspice $(DESTDIR)$(PREFIX)/lib/libdeaspice.a $(DESTDIR)$(PREFIX)/lib/libdeaspice.so* \
+	  $(DESTDIR)$(PREFIX)/lib/pkgconfig/deaspice.pc $(DESTDIR)$(PREFIX)/share/man/man1/deaspice.1
+	rm -rf $(DESTDIR)$(PREFIX)/include/deaspice
+
+clean:
+	rm -rf $(BUILD) demo
 
 $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)

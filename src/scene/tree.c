@@ -195,6 +195,9 @@ static dea_status entry_read(parse *self, dea_node *parent, const dea_node *key,
     if (!status) {
         value->key = key->text;
         value->key_at = key->place;
+        if (value->kind == DEA_NODE_SCALAR && value->text[0] == '\0' && !value->quoted) {
+            value->place = key->place; /* where nothing stands, releases of libfyaml differ about its place */
+        }
         child_add(parent, value);
     }
     return status;

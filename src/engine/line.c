@@ -37,7 +37,8 @@ static void place(dea_scene *scene, size_t point)
     }
 }
 
-dea_status dea_lines_visit(const dea_scene *scene, size_t first, size_t count, dea_line_visit *visit, void *user, dea_error *error)
+dea_status dea_lines_visit(const dea_scene *scene, size_t first, size_t count, dea_line_visit *visit, void *user,
+                           dea_error *error)
 {
     dea_scene here = *scene; /* shares title and axes, changes only scalars */
     if (scene->axis_count == 0) {

@@ -18,8 +18,10 @@ typedef struct dea_line {
 /** Takes one line; @p scene has all axes at the line's first point. */
 typedef dea_status dea_line_visit(void *user, const dea_scene *scene, const dea_line *line, dea_error *error);
 
-/** Visits the lines of the points first ... first + count - 1; along the axis that makes them longest. Stops at the first failure. */
-dea_status dea_lines_visit(const dea_scene *scene, size_t first, size_t count, dea_line_visit *visit, void *user, dea_error *error);
+/** Visits the lines of the points first ... first + count - 1; along the axis that makes them longest. Stops at the first
+ * failure. */
+dea_status dea_lines_visit(const dea_scene *scene, size_t first, size_t count, dea_line_visit *visit, void *user,
+                           dea_error *error);
 
 /** Sets one scalar of a scene: the swept one of @p axis. */
 static inline void dea_axis_set(const dea_axis *axis, dea_scene *scene, double value)

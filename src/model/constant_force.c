@@ -1,5 +1,6 @@
 /* Eq. 13: hyperelastic film under a bias force that does not change. */
 #include "model/film_balance.h"
+#include "network/formula.h"
 #include "network/hyperelastic.h"
 
 static void solve(const dea_point *point, double accuracy, dea_row *row)
@@ -20,13 +21,13 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
 static void build(const dea_symbols *symbols, dea_network *network)
 {
     dea_pool *pool = symbols->pool;
-    const dea_ref area = dea_hyperelastic_area(symbols, network->strain);
+    const dea_expr area = dea_hyperelastic_area(symbols, network->strain);
     dea_network_add(network, DEA_ROLE_HYPERELASTIC, "n_disc", "disc, A (sigma - sigma_pre), Eq. 13 [N]",
-                    dea_mul(pool, area, dea_hyperelastic_change(symbols, network->strain)));
+                    MUL(area, dea_hyperelastic_change(symbols, network->strain)));
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force, A eps E^2, Eq. 13 [N]",
                     dea_hyperelastic_force(symbols, network->strain, network->strain));
     network->field = dea_hyperelastic_field(symbols, network->strain);
-    network->length = dea_mul(pool, symbols->coverage, symbols->frame_radius);
+    network->length = MUL(symbols->coverage, symbols->frame_radius);
 }
 
 const dea_model dea_model_constant_force = {

@@ -1,5 +1,6 @@
 /* Eq. 18: hyperelastic disc and annulus, each under its own equi-biaxial stretch. */
 #include "model/film_balance.h"
+#include "network/formula.h"
 #include "network/hyperelastic.h"
 
 static void solve(const dea_point *point, double accuracy, dea_row *row)
@@ -20,29 +21,31 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     const double square = stretch * stretch;
     const double area = dea_point_cross_section(point) / (1.0 + strain); /* A(lambda_a) = 2 pi r_a H/(lambda_pre^2 lambda_a) */
     const bool taut = point->film.prestretch * (1.0 + passive) > 1.0;
-    dea_row_fill(row, point, strain, dea_point_sign(point) * area * pressure * square * square, point->film.square * square, taut);
+    dea_row_fill(row, point, strain, dea_point_sign(point) * area * pressure * square * square, point->film.square * square,
+                 taut);
 }
 
-/* Edge equation of physics.md, section 5: A(lambda_a) times the stress differences to the pre-stretch, as two springs and a source. */
+/* Edge equation of physics.md, section 5: A(lambda_a) times the stress differences to the pre-stretch, as two springs and a
+ * source. */
 static void build(const dea_symbols *symbols, dea_network *network)
 {
     dea_pool *pool = symbols->pool;
     const bool dot = symbols->kind == DEA_DOT;
-    const dea_ref one = dea_number(pool, 1.0);
-    const dea_ref disc = network->strain;
-    const dea_ref annulus = dea_symbols_annulus_strain(symbols);
-    const dea_ref active = dot ? disc : annulus;
-    const dea_ref passive = dot ? annulus : disc;
-    const dea_ref area = dea_hyperelastic_area(symbols, disc);
+    const dea_expr one = NUM(1.0);
+    const dea_expr disc = network->strain;
+    const dea_expr annulus = dea_symbols_annulus_strain(symbols);
+    const dea_expr active = dot ? disc : annulus;
+    const dea_expr passive = dot ? annulus : disc;
+    const dea_expr area = dea_hyperelastic_area(symbols, disc);
     dea_network_add(network, DEA_ROLE_HYPERELASTIC, "n_disc", "disc, A (sigma - sigma_pre), Eq. 18 [N]",
-                    dea_mul(pool, area, dea_hyperelastic_change(symbols, disc)));
+                    MUL(area, dea_hyperelastic_change(symbols, disc)));
     dea_network_add(network, DEA_ROLE_HYPERELASTIC, "n_annulus", "annulus, A (sigma_pre - sigma), Eqs. 17, 18 [N]",
-                    dea_neg(pool, dea_mul(pool, area, dea_hyperelastic_change(symbols, annulus))));
+                    NEG(MUL(area, dea_hyperelastic_change(symbols, annulus))));
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force, A eps E^2, Eq. 18 [N]",
-                    dea_scale(pool, network->sign, dea_hyperelastic_force(symbols, disc, active)));
-    network->end = dot ? dea_symbols_annulus_width(symbols) : dea_mul(pool, symbols->coverage, symbols->frame_radius);
+                    SCALE(network->sign, dea_hyperelastic_force(symbols, disc, active)));
+    network->end = dot ? dea_symbols_annulus_width(symbols) : MUL(symbols->coverage, symbols->frame_radius);
     network->field = dea_hyperelastic_field(symbols, active);
-    dea_network_taut(network, dea_sub(pool, dea_mul(pool, symbols->prestretch, dea_add(pool, one, passive)), one));
+    dea_network_taut(network, SUB(MUL(symbols->prestretch, ADD(one, passive)), one));
 }
 
 const dea_model dea_model_coverage = {

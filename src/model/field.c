@@ -339,7 +339,8 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
         dea_row_refuse(row, DEA_STATE_FAILED);
         return;
     }
-    const double force = sign * 2.0 * DEA_PI * point->film_thickness * pressure * x.edge_force * dea_point_divide(point) / film->prestretch;
+    const double force =
+        sign * 2.0 * DEA_PI * point->film_thickness * pressure * x.edge_force * dea_point_divide(point) / film->prestretch;
     dea_row_fill(row, point, edge / film->prestretch, force, x.largest_area, x.least_stress > 0.0);
 }
 

@@ -1,4 +1,5 @@
-/* See film_balance.h. Stress differences to the pre-stretch are factored in the strain, so that a strain of 1e-12 keeps its digits. */
+/* See film_balance.h. Stress differences to the pre-stretch are factored in the strain, so that a strain of 1e-12 keeps its
+ * digits. */
 #include "model/film_balance.h"
 
 /* sigma(lambda_pre (1 + e)) - sigma(lambda_pre) and its first two derivatives over e. */
@@ -11,12 +12,12 @@ typedef struct stress_change {
 static inline stress_change change_of_stress(const dea_film *film, double e)
 {
     const double y0 = film->square;
-    const double d = y0 * e * (2.0 + e);      /* y - y0, y = lambda^2 */
+    const double d = y0 * e * (2.0 + e); /* y - y0, y = lambda^2 */
     const double y = y0 + d;
     const double inverse = 1.0 / (y * y);
     const double q = (y + y0) * inverse * film->inverse_fourth;
-    const double dg = d * (1.0 + q);          /* g - g0, g = y - y^-2 */
-    const double dj = d * (2.0 - q);          /* J - J0, J = 2 y + y^-2 - 3 */
+    const double dg = d * (1.0 + q); /* g - g0, g = y - y^-2 */
+    const double dj = d * (2.0 - q); /* J - J0, J = 2 y + y^-2 - 3 */
     const double c2 = 2.0 * film->yeoh[1];
     const double c3 = 3.0 * film->yeoh[2];
     const double dw = dj * (c2 + c3 * (2.0 * film->j + dj));
@@ -60,15 +61,18 @@ static double fourth(double x)
     return x * x * x * x;
 }
 
-/* Width in strain below which `fold` between two samples of like size is trusted to keep its sign: 5 % of stretch in either region. */
+/* Width in strain below which `fold` between two samples of like size is trusted to keep its sign: 5 % of stretch in either
+ * region. */
 static double trusted_width(double ratio, double e)
 {
     return 0.05 * (1.0 + e) / (1.0 + ratio);
 }
 
-/* Looks for a fold on [low, high], where `fold` has the values at_low > 0 and at_high. Returns true and a narrow bracket of the first
- * sample with fold <= 0, else false. Samples lie so close that `fold` at most halves, or moves by 5 % of stretch, between two of them. */
-static bool find_fold(const dea_film *film, double ratio, double low, double at_low, double high, double at_high, double *before, double *after)
+/* Looks for a fold on [low, high], where `fold` has the values at_low > 0 and at_high. Returns true and a narrow bracket of the
+ * first sample with fold <= 0, else false. Samples lie so close that `fold` at most halves, or moves by 5 % of stretch, between
+ * two of them. */
+static bool find_fold(const dea_film *film, double ratio, double low, double at_low, double high, double at_high, double *before,
+                      double *after)
 {
     double at = low;
     double fold = at_low;
@@ -95,7 +99,8 @@ static bool find_fold(const dea_film *film, double ratio, double low, double at_
     return false;
 }
 
-/* Root of N - m (1+e)^4 in [low, high], where it changes sign from - to +: Newton, with bisection where Newton leaves the bracket. */
+/* Root of N - m (1+e)^4 in [low, high], where it changes sign from - to +: Newton, with bisection where Newton leaves the
+ * bracket. */
 static double bracketed_root(const dea_film *film, double ratio, double m, double low, double high)
 {
     double e = 0.5 * (low + high);
@@ -158,8 +163,8 @@ static bool trace(const dea_film *film, double ratio, double m, double *strain)
     return false;
 }
 
-/* Halley's iteration from the second-order answer; false where it does not settle. Convergence is cubic, so the step after the next one
- * is foreseen as step^4/last^3, and where that is below rounding the present step was the last one needed. */
+/* Halley's iteration from the second-order answer; false where it does not settle. Convergence is cubic, so the step after the
+ * next one is foreseen as step^4/last^3, and where that is below rounding the present step was the last one needed. */
 static bool halley(const dea_film *film, double ratio, double m, double stiffness, double *strain, balance *at)
 {
     const double end = ratio > 0.0 ? 1.0 / ratio : 1e4;

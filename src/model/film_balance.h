@@ -1,6 +1,7 @@
 /* Equi-biaxial balance of an active and a passive film of equal pre-stretch, the equation behind Eqs. 13 and 18:
  *
- *     sigma(lambda_A) - sigma(lambda_P) = eps lambda_A^4 (U/H)^2,   lambda_A = lambda_pre (1 + e),   lambda_P = lambda_pre (1 - ratio e)
+ *     sigma(lambda_A) - sigma(lambda_P) = eps lambda_A^4 (U/H)^2,   lambda_A = lambda_pre (1 + e),   lambda_P = lambda_pre (1 -
+ * ratio e)
  *
  * ratio is the strain that the passive film gives back per strain of the active one: 0 for a constant bias force (Eq. 13),
  * B/(1 - B) for a dot (Eq. 17), (1 - B)/B for a lens, whose annulus is the active film.

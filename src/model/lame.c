@@ -1,5 +1,6 @@
 /* Plane elasticity about the pre-stretched film: Lame's disc and annulus, with electrostatic softening. */
 #include "model/film_balance.h"
+#include "network/formula.h"
 #include "network/network.h"
 
 /* Nominal stresses at one place of a region with moduli a, b under the changes d1, d2 of the radial and hoop stretch. */
@@ -49,28 +50,28 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
 
 /* Moduli of one region: W11, W12 and what the voltage takes off where it carries the electrode. */
 typedef struct region {
-    dea_ref a, b;  /* tangent moduli with softening [Pa] */
-    dea_ref rest;  /* nominal stress at rest under voltage [Pa] */
+    dea_expr a, b; /* tangent moduli with softening [Pa] */
+    dea_expr rest; /* nominal stress at rest under voltage [Pa] */
 } region;
 
 /* Smaller of the two in-plane stresses: both must stay positive. */
-static void limit_region(dea_pool *pool, dea_network *network, region r, dea_ref d1, dea_ref d2)
+static void limit_region(dea_pool *pool, dea_network *network, region r, dea_expr d1, dea_expr d2)
 {
-    dea_network_taut(network, dea_add(pool, r.rest, dea_add(pool, dea_mul(pool, r.a, d1), dea_mul(pool, r.b, d2))));
-    dea_network_taut(network, dea_add(pool, r.rest, dea_add(pool, dea_mul(pool, r.b, d1), dea_mul(pool, r.a, d2))));
+    dea_network_taut(network, ADD(r.rest, ADD(MUL(r.a, d1), MUL(r.b, d2))));
+    dea_network_taut(network, ADD(r.rest, ADD(MUL(r.b, d1), MUL(r.a, d2))));
 }
 
 static void limit_tension(const dea_symbols *symbols, dea_network *network, region disc, region annulus)
 {
     dea_pool *pool = symbols->pool;
-    const dea_ref one = dea_number(pool, 1.0);
-    const dea_ref b2 = dea_square(pool, symbols->coverage);
-    const dea_ref rest = dea_sub(pool, one, b2);
-    const dea_ref q = dea_div(pool, dea_add(pool, one, b2), rest);
-    const dea_ref change = dea_mul(pool, symbols->prestretch, network->strain);
+    const dea_expr one = NUM(1.0);
+    const dea_expr b2 = SQUARE(symbols->coverage);
+    const dea_expr rest = SUB(one, b2);
+    const dea_expr q = DIV(ADD(one, b2), rest);
+    const dea_expr change = MUL(symbols->prestretch, network->strain);
     limit_region(pool, network, disc, change, change);
-    limit_region(pool, network, annulus, dea_neg(pool, dea_mul(pool, q, change)), change);
-    limit_region(pool, network, annulus, dea_scale(pool, -2.0, dea_mul(pool, change, dea_div(pool, b2, rest))), dea_number(pool, 0.0));
+    limit_region(pool, network, annulus, NEG(MUL(q, change)), change);
+    limit_region(pool, network, annulus, SCALE(-2.0, MUL(change, DIV(b2, rest))), NUM(0.0));
 }
 
 /* Disc and annulus as springs, softening as a negative one, and the force of Eq. 21 over the circumference. */
@@ -78,34 +79,35 @@ static void build(const dea_symbols *symbols, dea_network *network)
 {
     dea_pool *pool = symbols->pool;
     const bool dot = symbols->kind == DEA_DOT;
-    const dea_ref one = dea_number(pool, 1.0);
+    const dea_expr one = NUM(1.0);
     const dea_yeoh_terms t = dea_symbols_yeoh(symbols);
-    const dea_ref l = symbols->prestretch;
-    const dea_ref y3 = dea_mul(pool, dea_square(pool, t.square), t.square);
-    const dea_ref slope = dea_add(pool, dea_scale(pool, 2.0, symbols->yeoh[1]), dea_mul(pool, dea_scale(pool, 6.0, symbols->yeoh[2]), t.j));
-    const dea_ref a1 = dea_scale(pool, 2.0, dea_div(pool, t.g, l)); /* a1 = a2 = 2 g/lambda at equal stretches */
-    const dea_ref bend = dea_mul(pool, slope, dea_square(pool, a1));
-    const dea_ref w11 = dea_add(pool, dea_mul(pool, t.w, dea_add(pool, dea_number(pool, 2.0), dea_div(pool, dea_number(pool, 6.0), y3))), bend);
-    const dea_ref w12 = dea_add(pool, dea_div(pool, dea_scale(pool, 4.0, t.w), y3), bend);
-    const dea_ref thickness = dea_scale(pool, 2.0 * DEA_PI, symbols->film_thickness);
-    const dea_ref b2 = dea_square(pool, symbols->coverage);
-    const dea_ref q = dea_div(pool, dea_add(pool, one, b2), dea_sub(pool, one, b2));
-    const dea_ref soft = dea_mul(pool, dea_symbols_pressure(symbols), t.square); /* M lambda_pre^2 */
-    const dea_ref maxwell = dea_mul(pool, soft, l);
-    const dea_ref rest = dea_mul(pool, t.w, a1);
+    const dea_expr l = symbols->prestretch;
+    const dea_expr y3 = MUL(SQUARE(t.square), t.square);
+    const dea_expr slope = ADD(SCALE(2.0, symbols->yeoh[1]), MUL(SCALE(6.0, symbols->yeoh[2]), t.j));
+    const dea_expr a1 = SCALE(2.0, DIV(t.g, l)); /* a1 = a2 = 2 g/lambda at equal stretches */
+    const dea_expr bend = MUL(slope, SQUARE(a1));
+    const dea_expr w11 = ADD(MUL(t.w, ADD(NUM(2.0), DIV(NUM(6.0), y3))), bend);
+    const dea_expr w12 = ADD(DIV(SCALE(4.0, t.w), y3), bend);
+    const dea_expr thickness = SCALE(2.0 * DEA_PI, symbols->film_thickness);
+    const dea_expr b2 = SQUARE(symbols->coverage);
+    const dea_expr q = DIV(ADD(one, b2), SUB(one, b2));
+    const dea_expr soft = MUL(dea_symbols_pressure(symbols), t.square); /* M lambda_pre^2 */
+    const dea_expr maxwell = MUL(soft, l);
+    const dea_expr rest = MUL(t.w, a1);
 
     dea_network_add(network, DEA_ROLE_SPRING, "n_disc", "compliance of the disc, 1/n = 2 pi H (W11 + W12) [m/N]",
-                    dea_mul(pool, thickness, dea_add(pool, w11, w12)));
-    dea_network_add(network, DEA_ROLE_SPRING, "n_annulus", "compliance of the annulus, 1/n = 2 pi H (W11 (1+B^2)/(1-B^2) - W12) [m/N]",
-                    dea_mul(pool, thickness, dea_sub(pool, dea_mul(pool, w11, q), w12)));
-    const dea_ref share = dot ? dea_number(pool, 3.0) : dea_sub(pool, q, dea_number(pool, 2.0));
+                    MUL(thickness, ADD(w11, w12)));
+    dea_network_add(network, DEA_ROLE_SPRING, "n_annulus",
+                    "compliance of the annulus, 1/n = 2 pi H (W11 (1+B^2)/(1-B^2) - W12) [m/N]",
+                    MUL(thickness, SUB(MUL(w11, q), w12)));
+    const dea_expr share = dot ? NUM(3.0) : SUB(q, NUM(2.0));
     dea_network_add(network, DEA_ROLE_SPRING, "n_el", "electrostatic softening, a negative compliance [m/N]",
-                    dea_neg(pool, dea_mul(pool, thickness, dea_mul(pool, soft, share))));
-    const dea_ref radius = dea_div(pool, dea_mul(pool, symbols->coverage, symbols->frame_radius), l); /* R_a */
+                    NEG(MUL(thickness, MUL(soft, share))));
+    const dea_expr radius = DIV(MUL(symbols->coverage, symbols->frame_radius), l); /* R_a */
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force 2 pi H M lambda_pre^3 R_a, Eq. 21 [N]",
-                    dea_scale(pool, network->sign, dea_mul(pool, thickness, dea_mul(pool, maxwell, radius))));
+                    SCALE(network->sign, MUL(thickness, MUL(maxwell, radius))));
     const region passive = {w11, w12, rest};
-    const region active = {dea_sub(pool, w11, soft), dea_sub(pool, w12, dea_scale(pool, 2.0, soft)), dea_sub(pool, rest, maxwell)};
+    const region active = {SUB(w11, soft), SUB(w12, SCALE(2.0, soft)), SUB(rest, maxwell)};
     limit_tension(symbols, network, dot ? active : passive, dot ? passive : active);
     dea_network_limit_area(symbols, network);
 }

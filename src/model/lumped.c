@@ -1,5 +1,6 @@
 /* Eqs. 19-23: two linear springs and a force source. */
 #include "model/film_balance.h"
+#include "network/formula.h"
 #include "network/network.h"
 
 static void solve(const dea_point *point, double accuracy, dea_row *row)
@@ -27,19 +28,19 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
 static void build(const dea_symbols *symbols, dea_network *network)
 {
     dea_pool *pool = symbols->pool;
-    const dea_ref one = dea_number(pool, 1.0);
-    const dea_ref section = dea_symbols_cross_section(symbols);
-    const dea_ref tensile = dea_mul(pool, symbols->modulus, section); /* Y A_cross */
-    const dea_ref divide = dea_mul(pool, symbols->frame_radius, symbols->coverage);
-    const dea_ref square = dea_square(pool, symbols->prestretch);
-    const dea_ref maxwell = dea_mul(pool, dea_symbols_pressure(symbols), dea_square(pool, square));
-    dea_network_add(network, DEA_ROLE_SPRING, "n_a", "compliance of the disc, Eq. 19 [m/N]", dea_div(pool, tensile, divide));
+    const dea_expr one = NUM(1.0);
+    const dea_expr section = dea_symbols_cross_section(symbols);
+    const dea_expr tensile = MUL(symbols->modulus, section); /* Y A_cross */
+    const dea_expr divide = MUL(symbols->frame_radius, symbols->coverage);
+    const dea_expr square = SQUARE(symbols->prestretch);
+    const dea_expr maxwell = MUL(dea_symbols_pressure(symbols), SQUARE(square));
+    dea_network_add(network, DEA_ROLE_SPRING, "n_a", "compliance of the disc, Eq. 19 [m/N]", DIV(tensile, divide));
     dea_network_add(network, DEA_ROLE_SPRING, "n_p", "compliance of the annulus, Eq. 20 [m/N]",
-                    dea_div(pool, tensile, dea_symbols_annulus_width(symbols)));
+                    DIV(tensile, dea_symbols_annulus_width(symbols)));
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force, Eq. 21 [N]",
-                    dea_scale(pool, network->sign, dea_mul(pool, maxwell, section)));
-    const dea_ref passive = symbols->kind == DEA_DOT ? dea_symbols_annulus_strain(symbols) : network->strain;
-    dea_network_taut(network, dea_sub(pool, dea_mul(pool, symbols->prestretch, dea_add(pool, one, passive)), one));
+                    SCALE(network->sign, MUL(maxwell, section)));
+    const dea_expr passive = symbols->kind == DEA_DOT ? dea_symbols_annulus_strain(symbols) : network->strain;
+    dea_network_taut(network, SUB(MUL(symbols->prestretch, ADD(one, passive)), one));
     dea_network_limit_area(symbols, network);
 }
 

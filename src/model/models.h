@@ -45,8 +45,8 @@ static inline void dea_row_refuse(dea_row *row, dea_state state)
     *row = (dea_row){NAN, NAN, NAN, NAN, state};
 }
 
-/* Fills a row. Strain, force [N] and stretch^2 of the electroded film (area ratio at its most stretched place) come from the model;
- * taut says whether every region is in tension. */
+/* Fills a row. Strain, force [N] and stretch^2 of the electroded film (area ratio at its most stretched place) come from the
+ * model; taut says whether every region is in tension. */
 static inline void dea_row_fill(dea_row *row, const dea_point *point, double strain, double force, double area_stretch, bool taut)
 {
     const double field = fabs(dea_point_nominal_field(point)) * area_stretch;

@@ -1,4 +1,5 @@
-/* Every number of a B source stands in a .param: literals inside B expressions keep 11 digits only. Expressions use + - * / alone. */
+/* Every number of a B source stands in a .param: literals inside B expressions keep 11 digits only. Expressions use + - * /
+ * alone. */
 #include "netlist/netlist.h"
 
 #include <math.h>
@@ -32,9 +33,9 @@ static int precedence(const dea_term *term)
     return term->operation == DEA_ADD || term->operation == DEA_SUB ? 1 : term->operation >= DEA_MUL ? 2 : 3;
 }
 
-static void expression(const writer *w, dea_ref ref, bool as_node);
+static void expression(const writer *w, dea_expr ref, bool as_node);
 
-static void operand(const writer *w, dea_ref ref, bool brackets)
+static void operand(const writer *w, dea_expr ref, bool brackets)
 {
     if (brackets && !w->named[ref]) {
         fputc('(', w->out);
@@ -46,7 +47,7 @@ static void operand(const writer *w, dea_ref ref, bool brackets)
 }
 
 /* Writes a term; as_node: by its node where it has one. A parameter is put in as text, so a negative one stands in brackets. */
-static void expression(const writer *w, dea_ref ref, bool as_node)
+static void expression(const writer *w, dea_expr ref, bool as_node)
 {
     const dea_term *term = &w->pool->terms[ref];
     if (term->operation == DEA_NUMBER) {
@@ -72,7 +73,7 @@ static void expression(const writer *w, dea_ref ref, bool as_node)
     }
 }
 
-static void count_uses(const writer *w, dea_ref ref)
+static void count_uses(const writer *w, dea_expr ref)
 {
     const dea_term *term = &w->pool->terms[ref];
     if (w->uses[ref]++ == 0 && term->operation >= DEA_ADD) {
@@ -81,8 +82,8 @@ static void count_uses(const writer *w, dea_ref ref)
     }
 }
 
-/* Terms that would otherwise be written out again get a node: ngspice differentiates every expression by each of its nodes, so short ones
- * are worth it, all but a mere number times another term. */
+/* Terms that would otherwise be written out again get a node: ngspice differentiates every expression by each of its nodes, so
+ * short ones are worth it, all but a mere number times another term. */
 static void name_shared(const writer *w)
 {
     for (int i = 0; i < w->pool->count; i++) {
@@ -151,8 +152,13 @@ static void write_axis(const writer *w, const dea_netlist_study *study)
     fputs(")\n", w->out);
 }
 
-static void write_forces(const writer *w, dea_ref elastic, dea_ref load, const dea_netlist_study *study)
+/* The springs are parallel and nobody asks for their single forces, so they are written as one. */
+static void write_forces(const writer *w, const dea_network *network, dea_expr elastic, dea_expr load,
+                         const dea_netlist_study *study)
 {
+    for (int i = 0; i < network->element_count; i++) {
+        fprintf(w->out, "* %s: %s\n", network->elements[i].name, network->elements[i].meaning);
+    }
     fputs("* elastic force of all springs [N], from the edge to the frame\nbspring edge 0 i=", w->out);
     expression(w, elastic, true);
     fputs("\n* electrostatic force f_dea [N], onto the edge\nbforce 0 edge i=", w->out);
@@ -183,13 +189,13 @@ static void write_start(const writer *w, const dea_netlist_study *study)
     fputc('\n', w->out);
 }
 
-static void write_all(writer *w, dea_ref elastic, dea_ref load, const dea_netlist_study *study)
+static void write_all(writer *w, const dea_network *network, dea_expr elastic, dea_expr load, const dea_netlist_study *study)
 {
     fputs("* dielectric elastomer actuator: v(edge) = displacement of the disc edge [m], current = force [N]\n", w->out);
     write_parameters(w);
     write_axis(w, study);
     write_shared(w);
-    write_forces(w, elastic, load, study);
+    write_forces(w, network, elastic, load, study);
     write_start(w, study);
     fputs(".options reltol=1e-10 itl1=60 itl2=60 gminsteps=0 srcsteps=0 vntol=", w->out);
     number(w->out, 1e-21 * study->length_scale);
@@ -202,8 +208,8 @@ static void write_all(writer *w, dea_ref elastic, dea_ref load, const dea_netlis
 
 dea_status dea_netlist_write(dea_network *network, const dea_netlist_study *study, char **text, dea_error *error)
 {
-    const dea_ref elastic = dea_network_elastic(network);
-    const dea_ref load = dea_network_load(network);
+    const dea_expr elastic = dea_network_elastic(network);
+    const dea_expr load = dea_network_load(network);
     const size_t size = (size_t)network->pool.count;
     size_t length = 0;
     writer w = {.pool = &network->pool};
@@ -218,7 +224,7 @@ dea_status dea_netlist_write(dea_network *network, const dea_netlist_study *stud
         count_uses(&w, load);
         name_shared(&w);
         dea_pool_values(w.pool, study->axis ? study->axis->values[study->from] : 0.0, 0.0, w.rest);
-        write_all(&w, elastic, load, study);
+        write_all(&w, network, elastic, load, study);
     }
     const bool written = w.out && !ferror(w.out) && fclose(w.out) == 0;
     free(w.uses);

@@ -8,9 +8,10 @@ enum { STRAIN, FORCE, FIELD, BREAKDOWN, LENGTH, END, IN_RANGE, TENSION = IN_RANG
 dea_status dea_balance_open(dea_network *network, dea_balance *balance, dea_error *error)
 {
     *balance = (dea_balance){.tension_count = network->tension_count, .sign = network->sign};
-    const dea_ref load = dea_network_load(network);
-    const dea_ref forces[] = {dea_network_elastic(network), load};
-    dea_ref limits[DEA_TAPE_OUTPUTS] = {network->strain, load, network->field, network->breakdown, network->length, network->end};
+    const dea_expr load = dea_network_load(network);
+    const dea_expr forces[] = {dea_network_elastic(network), load};
+    dea_expr limits[DEA_TAPE_OUTPUTS] = {network->strain, load,        network->field, network->breakdown,
+                                         network->length, network->end};
     for (int i = 0; i < DEA_NETWORK_RANGES; i++) {
         limits[IN_RANGE + i] = network->range[i];
     }
@@ -50,7 +51,8 @@ dea_forces dea_balance_forces(dea_balance *balance, double symbol, double u)
 {
     dea_tape *tape = &balance->forces;
     dea_tape_run(tape, symbol, u);
-    return (dea_forces){dea_tape_value(tape, ELASTIC), dea_tape_slope(tape, ELASTIC), dea_tape_value(tape, LOAD), dea_tape_slope(tape, LOAD)};
+    return (dea_forces){dea_tape_value(tape, ELASTIC), dea_tape_slope(tape, ELASTIC), dea_tape_value(tape, LOAD),
+                        dea_tape_slope(tape, LOAD)};
 }
 
 double dea_forces_stiffness(const dea_forces *f)
@@ -76,11 +78,11 @@ static double film_end(const dea_balance *balance)
     return end > 0.0 ? end * (1.0 - 1e-12) : 1e4 * dea_balance_length(balance);
 }
 
-/* First place on the way from `from` to `to` (distances from rest, where the stiffness is at_from and at_to) at which the stiffness is not
- * positive, found by samples so close that it at most halves, or the stretch moves by 5 %, between two of them. Returns true with a narrow
- * bracket, else false. */
-static bool find_softening(dea_balance *balance, double symbol, double from, double at_from, double to, double at_to, double *before,
-                           double *after)
+/* First place on the way from `from` to `to` (distances from rest, where the stiffness is at_from and at_to) at which the
+ * stiffness is not positive, found by samples so close that it at most halves, or the stretch moves by 5 %, between two of them.
+ * Returns true with a narrow bracket, else false. */
+static bool find_softening(dea_balance *balance, double symbol, double from, double at_from, double to, double at_to,
+                           double *before, double *after)
 {
     const double length = dea_balance_length(balance);
     double at = from;
@@ -164,7 +166,8 @@ static bool is_connected(dea_balance *balance, double symbol, double u, const de
 static dea_row row_of(const dea_balance *balance, double u)
 {
     const dea_tape *limits = &balance->limits;
-    dea_row row = {dea_tape_value(limits, STRAIN), u, dea_tape_value(limits, FORCE), fabs(dea_tape_value(limits, FIELD)), DEA_STATE_OK};
+    dea_row row = {dea_tape_value(limits, STRAIN), u, dea_tape_value(limits, FORCE), fabs(dea_tape_value(limits, FIELD)),
+                   DEA_STATE_OK};
     if (!(isfinite(row.strain) && isfinite(u) && isfinite(row.force) && isfinite(row.field))) {
         return dea_row_failed();
     }

@@ -1,17 +1,17 @@
 /* Equilibrium of a network with one edge: is a displacement the one that is connected to rest, and what is its result row.
  *
- * With R(u) the elastic force and F(u) the full load, the share of the load that holds u is t(u) = R/F. The equilibrium connected to
- * rest is the first u with t = 1 up to which t grows; t' has the sign of the stiffness R' - (R/F) F'. */
+ * With R(u) the elastic force and F(u) the full load, the share of the load that holds u is t(u) = R/F. The equilibrium connected
+ * to rest is the first u with t = 1 up to which t grows; t' has the sign of the stiffness R' - (R/F) F'. */
 #ifndef DEA_BALANCE_H
 #define DEA_BALANCE_H
 
 #include "network/network.h"
 
 typedef struct dea_balance {
-    dea_tape forces;    /* owned: R, F */
-    dea_tape limits;    /* owned: what a row and the ranges need */
+    dea_tape forces; /* owned: R, F */
+    dea_tape limits; /* owned: what a row and the ranges need */
     int tension_count;
-    double sign;        /* of u */
+    double sign; /* of u */
 } dea_balance;
 
 /* R, F and their slopes at one u. */
@@ -29,10 +29,11 @@ bool dea_balance_valid(dea_balance *balance, double symbol);
 dea_forces dea_balance_forces(dea_balance *balance, double symbol, double u);
 /* R' - (R/F) F' [N/m]. */
 double dea_forces_stiffness(const dea_forces *forces);
-/* Takes u as the answer of a point and fills its row, if u balances the forces to @p tolerance (relative, of u) and no fold lies between
- * rest and u; else false. */
+/* Takes u as the answer of a point and fills its row, if u balances the forces to @p tolerance (relative, of u) and no fold lies
+ * between rest and u; else false. */
 bool dea_balance_accept(dea_balance *balance, double symbol, double u, double tolerance, dea_row *row);
-/* Share of the load at which the equilibrium from rest folds, if that is below 1, and the displacement of the fold; else false. */
+/* Share of the load at which the equilibrium from rest folds, if that is below 1, and the displacement of the fold; else false.
+ */
 bool dea_balance_folds(dea_balance *balance, double symbol, double *share, double *u);
 /* Fills the row of equilibrium u. */
 void dea_balance_fill(dea_balance *balance, double symbol, double u, dea_row *row);

@@ -20,7 +20,7 @@ static bool same_term(const dea_term *x, const dea_term *y)
     return x->operation == DEA_NUMBER ? memcmp(&x->number, &y->number, sizeof x->number) == 0 : x->a == y->a && x->b == y->b;
 }
 
-static dea_ref intern(dea_pool *pool, dea_term term)
+static dea_expr intern(dea_pool *pool, dea_term term)
 {
     for (int i = 0; i < pool->count; i++) {
         if (same_term(&pool->terms[i], &term)) {
@@ -41,27 +41,27 @@ static dea_ref intern(dea_pool *pool, dea_term term)
     return pool->count++;
 }
 
-dea_ref dea_number(dea_pool *pool, double value)
+dea_expr dea_expr_number(dea_pool *pool, double value)
 {
     return intern(pool, (dea_term){.operation = DEA_NUMBER, .number = value});
 }
 
-dea_ref dea_symbol(dea_pool *pool, int index)
+dea_expr dea_expr_symbol(dea_pool *pool, int index)
 {
     return intern(pool, (dea_term){.operation = DEA_SYMBOL, .a = index, .varies = true});
 }
 
-dea_ref dea_node(dea_pool *pool, int index)
+dea_expr dea_expr_node(dea_pool *pool, int index)
 {
     return intern(pool, (dea_term){.operation = DEA_NODE, .a = index, .varies = true});
 }
 
-double dea_constant(const dea_pool *pool, dea_ref ref)
+double dea_expr_constant(const dea_pool *pool, dea_expr ref)
 {
     return pool->exhausted || pool->terms[ref].operation != DEA_NUMBER ? (double)NAN : pool->terms[ref].number;
 }
 
-static bool is_number(const dea_pool *pool, dea_ref ref, double value)
+static bool is_number(const dea_pool *pool, dea_expr ref, double value)
 {
     return pool->terms[ref].operation == DEA_NUMBER && pool->terms[ref].number == value;
 }
@@ -72,7 +72,7 @@ static double apply(dea_operation operation, double a, double b)
 }
 
 /* Neutral elements and products with 0 vanish; -1 where nothing does. */
-static dea_ref simplify(const dea_pool *pool, dea_operation operation, dea_ref a, dea_ref b)
+static dea_expr simplify(const dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
 {
     if ((operation == DEA_ADD || operation == DEA_SUB) && is_number(pool, b, 0.0)) {
         return a;
@@ -93,7 +93,7 @@ static dea_ref simplify(const dea_pool *pool, dea_operation operation, dea_ref a
 }
 
 /* (x y)/y and (x/y) y are x; -1 where nothing cancels. A 0/0 at the start of an iteration is thus kept out of netlists. */
-static dea_ref cancel(const dea_pool *pool, dea_operation operation, dea_ref a, dea_ref b)
+static dea_expr cancel(const dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
 {
     const dea_term *term = &pool->terms[a];
     if (operation == DEA_DIV && term->operation == DEA_MUL) {
@@ -109,24 +109,24 @@ static dea_ref cancel(const dea_pool *pool, dea_operation operation, dea_ref a, 
     return -1;
 }
 
-static dea_ref combine(dea_pool *pool, dea_operation operation, dea_ref a, dea_ref b)
+static dea_expr combine(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
 {
     if (pool->exhausted) {
         return 0;
     }
     if (pool->terms[a].operation == DEA_NUMBER && pool->terms[b].operation == DEA_NUMBER) {
-        return dea_number(pool, apply(operation, pool->terms[a].number, pool->terms[b].number));
+        return dea_expr_number(pool, apply(operation, pool->terms[a].number, pool->terms[b].number));
     }
     if (operation == DEA_DIV && a == b) {
-        return dea_number(pool, 1.0);
+        return dea_expr_number(pool, 1.0);
     }
-    const dea_ref cancelled = cancel(pool, operation, a, b);
-    const dea_ref simple = cancelled >= 0 ? cancelled : simplify(pool, operation, a, b);
+    const dea_expr cancelled = cancel(pool, operation, a, b);
+    const dea_expr simple = cancelled >= 0 ? cancelled : simplify(pool, operation, a, b);
     return simple >= 0 ? simple : intern(pool, (dea_term){.operation = operation, .a = a, .b = b, .varies = true});
 }
 
 /* Splits a product into its numeric factor, which always stands first, and the rest; *rest is -1 where there is none. */
-static double split(const dea_pool *pool, dea_ref ref, dea_ref *rest)
+static double split(const dea_pool *pool, dea_expr ref, dea_expr *rest)
 {
     const dea_term *term = &pool->terms[ref];
     if (term->operation == DEA_NUMBER) {
@@ -142,15 +142,15 @@ static double split(const dea_pool *pool, dea_ref ref, dea_ref *rest)
 }
 
 /* Products and quotients with their numeric factors drawn together in front. */
-static dea_ref multiply(dea_pool *pool, dea_operation operation, dea_ref a, dea_ref b)
+static dea_expr multiply(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
 {
     if (pool->exhausted) {
         return 0;
     }
-    dea_ref rest_a, rest_b;
+    dea_expr rest_a, rest_b;
     const double number_a = split(pool, a, &rest_a);
     const double number_b = split(pool, b, &rest_b);
-    const dea_ref number = dea_number(pool, apply(operation, number_a, number_b));
+    const dea_expr number = dea_expr_number(pool, apply(operation, number_a, number_b));
     if (rest_b < 0) {
         return rest_a < 0 ? number : combine(pool, DEA_MUL, number, rest_a);
     }
@@ -160,24 +160,24 @@ static dea_ref multiply(dea_pool *pool, dea_operation operation, dea_ref a, dea_
     return combine(pool, DEA_MUL, number, combine(pool, operation, rest_a, rest_b));
 }
 
-static dea_ref sum(dea_pool *pool, dea_operation operation, dea_ref a, dea_ref b);
+static dea_expr sum(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b);
 
 /* f c + g c, c the factor that both share, as (f + g) c; -1 where they share none. */
-static dea_ref draw_out(dea_pool *pool, dea_operation operation, dea_ref a, dea_ref b)
+static dea_expr draw_out(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
 {
-    dea_ref rest_a, rest_b;
+    dea_expr rest_a, rest_b;
     const double number_a = split(pool, a, &rest_a);
     const double number_b = split(pool, b, &rest_b);
     if (rest_a < 0 || rest_b < 0 || pool->terms[rest_a].operation != DEA_MUL || pool->terms[rest_b].operation != DEA_MUL) {
         return -1;
     }
-    const dea_ref of_a[] = {pool->terms[rest_a].a, pool->terms[rest_a].b};
-    const dea_ref of_b[] = {pool->terms[rest_b].a, pool->terms[rest_b].b};
+    const dea_expr of_a[] = {pool->terms[rest_a].a, pool->terms[rest_a].b};
+    const dea_expr of_b[] = {pool->terms[rest_b].a, pool->terms[rest_b].b};
     for (int i = 0; i < 4; i++) {
-        const dea_ref shared = of_a[i / 2];
+        const dea_expr shared = of_a[i / 2];
         if (shared == of_b[i % 2]) {
-            const dea_ref f = dea_scale(pool, number_a, of_a[1 - i / 2]);
-            const dea_ref g = dea_scale(pool, number_b, of_b[1 - i % 2]);
+            const dea_expr f = dea_expr_scale(pool, number_a, of_a[1 - i / 2]);
+            const dea_expr g = dea_expr_scale(pool, number_b, of_b[1 - i % 2]);
             return multiply(pool, DEA_MUL, shared, sum(pool, operation, f, g));
         }
     }
@@ -185,50 +185,51 @@ static dea_ref draw_out(dea_pool *pool, dea_operation operation, dea_ref a, dea_
 }
 
 /* Sums; a negative factor of the second term turns the sign instead. */
-static dea_ref sum(dea_pool *pool, dea_operation operation, dea_ref a, dea_ref b)
+static dea_expr sum(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
 {
-    dea_ref rest = -1;
+    dea_expr rest = -1;
     const double factor = pool->exhausted ? 1.0 : split(pool, b, &rest);
     if (rest >= 0 && factor < 0.0) {
-        return sum(pool, operation == DEA_ADD ? DEA_SUB : DEA_ADD, a, multiply(pool, DEA_MUL, dea_number(pool, -factor), rest));
+        return sum(pool, operation == DEA_ADD ? DEA_SUB : DEA_ADD, a,
+                   multiply(pool, DEA_MUL, dea_expr_number(pool, -factor), rest));
     }
-    const dea_ref drawn = pool->exhausted ? -1 : draw_out(pool, operation, a, b);
+    const dea_expr drawn = pool->exhausted ? -1 : draw_out(pool, operation, a, b);
     return drawn >= 0 ? drawn : combine(pool, operation, a, b);
 }
 
-dea_ref dea_add(dea_pool *pool, dea_ref a, dea_ref b)
+dea_expr dea_expr_add(dea_pool *pool, dea_expr a, dea_expr b)
 {
     return sum(pool, DEA_ADD, a, b);
 }
 
-dea_ref dea_sub(dea_pool *pool, dea_ref a, dea_ref b)
+dea_expr dea_expr_sub(dea_pool *pool, dea_expr a, dea_expr b)
 {
     return sum(pool, DEA_SUB, a, b);
 }
 
-dea_ref dea_mul(dea_pool *pool, dea_ref a, dea_ref b)
+dea_expr dea_expr_mul(dea_pool *pool, dea_expr a, dea_expr b)
 {
     return multiply(pool, DEA_MUL, a, b);
 }
 
-dea_ref dea_div(dea_pool *pool, dea_ref a, dea_ref b)
+dea_expr dea_expr_div(dea_pool *pool, dea_expr a, dea_expr b)
 {
     return multiply(pool, DEA_DIV, a, b);
 }
 
-dea_ref dea_square(dea_pool *pool, dea_ref a)
+dea_expr dea_expr_square(dea_pool *pool, dea_expr a)
 {
-    return dea_mul(pool, a, a);
+    return dea_expr_mul(pool, a, a);
 }
 
-dea_ref dea_scale(dea_pool *pool, double factor, dea_ref a)
+dea_expr dea_expr_scale(dea_pool *pool, double factor, dea_expr a)
 {
-    return dea_mul(pool, dea_number(pool, factor), a);
+    return dea_expr_mul(pool, dea_expr_number(pool, factor), a);
 }
 
-dea_ref dea_neg(dea_pool *pool, dea_ref a)
+dea_expr dea_expr_neg(dea_pool *pool, dea_expr a)
 {
-    return dea_scale(pool, -1.0, a);
+    return dea_expr_scale(pool, -1.0, a);
 }
 
 /* Values of the terms from number @p first on. */
@@ -248,7 +249,7 @@ void dea_pool_values(const dea_pool *pool, double symbol, double node, double *v
     evaluate(pool->terms, 0, pool->count, symbol, node, values);
 }
 
-static void mark_needed(const dea_pool *pool, const dea_ref *refs, int count, bool *needed)
+static void mark_needed(const dea_pool *pool, const dea_expr *refs, int count, bool *needed)
 {
     for (int i = 0; i < count; i++) {
         needed[refs[i]] = true;
@@ -285,7 +286,7 @@ static void lay_out(const dea_pool *pool, const bool *needed, int *place, dea_ta
     }
 }
 
-dea_status dea_tape_compile(const dea_pool *pool, const dea_ref *refs, int count, dea_tape *tape, dea_error *error)
+dea_status dea_tape_compile(const dea_pool *pool, const dea_expr *refs, int count, dea_tape *tape, dea_error *error)
 {
     *tape = (dea_tape){0};
     if (count > DEA_TAPE_OUTPUTS) {

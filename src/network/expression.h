@@ -1,7 +1,7 @@
 /* Expressions of a network: one definition from which the netlist text, the value and the exact derivative are made.
  *
- * An expression is an index into its pool. Numbers fold while an expression is built, equal expressions share one index, and operands
- * always come before what uses them, so that one pass over the pool evaluates everything. */
+ * An expression is an index into its pool. Numbers fold while an expression is built, equal expressions share one index, and
+ * operands always come before what uses them, so that one pass over the pool evaluates everything. */
 #ifndef DEA_EXPRESSION_H
 #define DEA_EXPRESSION_H
 
@@ -10,42 +10,42 @@
 
 #include "deaspice/status.h"
 
-typedef int dea_ref;
+typedef int dea_expr;
 
 typedef enum dea_operation { DEA_NUMBER, DEA_SYMBOL, DEA_NODE, DEA_ADD, DEA_SUB, DEA_MUL, DEA_DIV } dea_operation;
 
 typedef struct dea_term {
     dea_operation operation;
-    dea_ref a, b;    /* operands; of a symbol and a node: a is its index */
-    double number;   /* of a number */
-    bool varies;     /* holds a symbol or a node */
+    dea_expr a, b; /* operands; of a symbol and a node: a is its index */
+    double number; /* of a number */
+    bool varies;   /* holds a symbol or a node */
 } dea_term;
 
 typedef struct dea_pool {
     dea_term *terms; /* owned */
     int count;
     int capacity;
-    bool exhausted;  /* memory ran out: the pool is unusable, but safe to build on and to free */
+    bool exhausted; /* memory ran out: the pool is unusable, but safe to build on and to free */
 } dea_pool;
 
 void dea_pool_free(dea_pool *pool);
 
-dea_ref dea_number(dea_pool *pool, double value);
+dea_expr dea_expr_number(dea_pool *pool, double value);
 /* Symbol @p index stands for a number that is known only at evaluation: the swept scalar. */
-dea_ref dea_symbol(dea_pool *pool, int index);
+dea_expr dea_expr_symbol(dea_pool *pool, int index);
 /* Node @p index is an unknown of the network: a displacement. */
-dea_ref dea_node(dea_pool *pool, int index);
-dea_ref dea_add(dea_pool *pool, dea_ref a, dea_ref b);
-dea_ref dea_sub(dea_pool *pool, dea_ref a, dea_ref b);
-dea_ref dea_mul(dea_pool *pool, dea_ref a, dea_ref b);
-dea_ref dea_div(dea_pool *pool, dea_ref a, dea_ref b);
-dea_ref dea_square(dea_pool *pool, dea_ref a);
+dea_expr dea_expr_node(dea_pool *pool, int index);
+dea_expr dea_expr_add(dea_pool *pool, dea_expr a, dea_expr b);
+dea_expr dea_expr_sub(dea_pool *pool, dea_expr a, dea_expr b);
+dea_expr dea_expr_mul(dea_pool *pool, dea_expr a, dea_expr b);
+dea_expr dea_expr_div(dea_pool *pool, dea_expr a, dea_expr b);
+dea_expr dea_expr_square(dea_pool *pool, dea_expr a);
 /* factor times a. */
-dea_ref dea_scale(dea_pool *pool, double factor, dea_ref a);
-dea_ref dea_neg(dea_pool *pool, dea_ref a);
+dea_expr dea_expr_scale(dea_pool *pool, double factor, dea_expr a);
+dea_expr dea_expr_neg(dea_pool *pool, dea_expr a);
 
 /* A number, or NAN where the expression varies. */
-double dea_constant(const dea_pool *pool, dea_ref ref);
+double dea_expr_constant(const dea_pool *pool, dea_expr ref);
 
 /* Values of all terms of the pool at symbol 0 and node 0, into an array of pool->count. */
 void dea_pool_values(const dea_pool *pool, double symbol, double node, double *values);
@@ -54,17 +54,17 @@ enum { DEA_TAPE_OUTPUTS = 20 };
 
 /* What a set of expressions needs, in order, ready to evaluate with the derivative over node 0. */
 typedef struct dea_tape {
-    dea_term *terms;    /* owned; operands renumbered to this tape */
-    double *values;     /* owned: computed by dea_tape_run() */
-    double *slopes;     /* owned: computed by dea_tape_run(): derivative over node 0 */
+    dea_term *terms; /* owned; operands renumbered to this tape */
+    double *values;  /* owned: computed by dea_tape_run() */
+    double *slopes;  /* owned: computed by dea_tape_run(): derivative over node 0 */
     int count;
-    int moving;         /* terms from this one on depend on node or symbol; those before hold their values already */
+    int moving; /* terms from this one on depend on node or symbol; those before hold their values already */
     int outputs[DEA_TAPE_OUTPUTS];
     int output_count;
 } dea_tape;
 
 /* Compiles @p count expressions (at most DEA_TAPE_OUTPUTS) to a tape that the caller ends with dea_tape_free(). */
-dea_status dea_tape_compile(const dea_pool *pool, const dea_ref *refs, int count, dea_tape *tape, dea_error *error);
+dea_status dea_tape_compile(const dea_pool *pool, const dea_expr *refs, int count, dea_tape *tape, dea_error *error);
 void dea_tape_free(dea_tape *tape);
 /* Evaluates all outputs at symbol 0 = @p symbol and node 0 = @p node, with slopes or without. */
 void dea_tape_run(dea_tape *tape, double symbol, double node);

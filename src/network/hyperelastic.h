@@ -5,13 +5,13 @@
 #include "network/network.h"
 
 /* sigma(lambda_pre (1 + e)) - sigma(lambda_pre) [Pa], factored in e so that a small strain keeps its digits. */
-dea_ref dea_hyperelastic_change(const dea_symbols *symbols, dea_ref e);
+dea_expr dea_hyperelastic_change(const dea_symbols *symbols, dea_expr e);
 
 /* A(lambda_a) = 2 pi r_a H/(lambda_pre^2 (1 + s)) [m^2]. */
-dea_ref dea_hyperelastic_area(const dea_symbols *symbols, dea_ref strain);
+dea_expr dea_hyperelastic_area(const dea_symbols *symbols, dea_expr strain);
 
 /* A(lambda_a) eps E^2 [N] and the true field E = U lambda^2/H [V/m] of the electroded region at lambda = lambda_pre (1 + e). */
-dea_ref dea_hyperelastic_force(const dea_symbols *symbols, dea_ref strain, dea_ref e);
-dea_ref dea_hyperelastic_field(const dea_symbols *symbols, dea_ref e);
+dea_expr dea_hyperelastic_force(const dea_symbols *symbols, dea_expr strain, dea_expr e);
+dea_expr dea_hyperelastic_field(const dea_symbols *symbols, dea_expr e);
 
 #endif

@@ -1,7 +1,7 @@
 /* The network of an actuator: the one description from which netlists are written and the IDA residual is made.
  *
- * Displacement form, for statics: the one node `edge` carries the displacement u of the disc edge [m], every element acts between it and the
- * frame (ground). At equilibrium the elastic forces balance the sources. */
+ * Displacement form, for statics: the one node `edge` carries the displacement u of the disc edge [m], every element acts between
+ * it and the frame (ground). At equilibrium the elastic forces balance the sources. */
 #ifndef DEA_NETWORK_H
 #define DEA_NETWORK_H
 
@@ -14,15 +14,15 @@ enum { DEA_NETWORK_ELEMENTS = 8, DEA_NETWORK_TENSIONS = 6, DEA_NETWORK_RANGES = 
 typedef struct dea_symbols {
     dea_pool *pool;
     dea_kind kind;
-    dea_ref frame_radius;              /* r [m] */
-    dea_ref coverage;                  /* B [1] */
-    dea_ref film_thickness;            /* H [m] */
-    dea_ref prestretch;                /* lambda_pre [1] */
-    dea_ref yeoh[DEA_YEOH_TERMS];      /* long-term constants [Pa] */
-    dea_ref modulus;                   /* Y [Pa]: the scene's, or dsigma/dlambda at the pre-stretch */
-    dea_ref permittivity;              /* absolute [F/m] */
-    dea_ref breakdown;                 /* breakdown strength [V/m], +inf: none */
-    dea_ref voltage;                   /* across the film [V] */
+    dea_expr frame_radius;         /* r [m] */
+    dea_expr coverage;             /* B [1] */
+    dea_expr film_thickness;       /* H [m] */
+    dea_expr prestretch;           /* lambda_pre [1] */
+    dea_expr yeoh[DEA_YEOH_TERMS]; /* long-term constants [Pa] */
+    dea_expr modulus;              /* Y [Pa]: the scene's, or dsigma/dlambda at the pre-stretch */
+    dea_expr permittivity;         /* absolute [F/m] */
+    dea_expr breakdown;            /* breakdown strength [V/m], +inf: none */
+    dea_expr voltage;              /* across the film [V] */
 } dea_symbols;
 
 typedef enum dea_role { DEA_ROLE_SPRING, DEA_ROLE_HYPERELASTIC, DEA_ROLE_SOURCE } dea_role;
@@ -32,54 +32,55 @@ typedef struct dea_element {
     dea_role role;
     const char *name;    /* netlist name, e.g. "n_a" */
     const char *meaning; /* what it is, with its unit and equation */
-    dea_ref value;       /* spring: stiffness 1/n [N/m]; hyperelastic spring: restoring force [N]; source: outward force [N] */
+    dea_expr value;      /* spring: stiffness 1/n [N/m]; hyperelastic spring: restoring force [N]; source: outward force [N] */
 } dea_element;
 
 typedef struct dea_network {
     dea_pool pool;
     dea_element elements[DEA_NETWORK_ELEMENTS];
     int element_count;
-    dea_ref edge;                           /* u [m] */
-    dea_ref strain;                         /* s [1] */
-    dea_ref field;                          /* true field, signed as U [V/m] */
-    dea_ref tension[DEA_NETWORK_TENSIONS];  /* one per region and place: > 0 while taut */
+    dea_expr edge;                          /* u [m] */
+    dea_expr strain;                        /* s [1] */
+    dea_expr field;                         /* true field, signed as U [V/m] */
+    dea_expr tension[DEA_NETWORK_TENSIONS]; /* one per region and place: > 0 while taut */
     int tension_count;
-    dea_ref length;                         /* displacement that changes the stretch of the more strained region by its own size [m] */
-    dea_ref end;                            /* distance at which a region has vanished [m], 0: there is none */
-    dea_ref breakdown;                      /* breakdown strength [V/m], > 0 */
-    dea_ref range[DEA_NETWORK_RANGES];      /* each must be > 0 for the point to make sense: B, 1 - B, permittivity, C1 */
-    double sign;                            /* of u: +1 dot, -1 lens */
+    dea_expr length;    /* displacement that changes the stretch of the more strained region by its own size [m] */
+    dea_expr end;       /* distance at which a region has vanished [m], 0: there is none */
+    dea_expr breakdown; /* breakdown strength [V/m], > 0 */
+    dea_expr range[DEA_NETWORK_RANGES]; /* each must be > 0 for the point to make sense: B, 1 - B, permittivity, C1 */
+    double sign;                        /* of u: +1 dot, -1 lens */
 } dea_network;
 
 /* Builds the network of @p model for the scene; @p axis (may be NULL) is the scalar that stays symbol 0.
  * The caller frees it with dea_network_free(), also after a failure. */
-dea_status dea_network_build(const dea_scene *scene, const dea_model *model, const dea_axis *axis, dea_network *network, dea_error *error);
+dea_status dea_network_build(const dea_scene *scene, const dea_model *model, const dea_axis *axis, dea_network *network,
+                             dea_error *error);
 void dea_network_free(dea_network *network);
 /* Adds an element; names and meanings are borrowed for the life of the network. */
-void dea_network_add(dea_network *network, dea_role role, const char *name, const char *meaning, dea_ref value);
+void dea_network_add(dea_network *network, dea_role role, const char *name, const char *meaning, dea_expr value);
 
 /* Adds something that is positive while the film is taut. */
-void dea_network_taut(dea_network *network, dea_ref tension);
+void dea_network_taut(dea_network *network, dea_expr tension);
 /* Sets the true field from the area that disc (dot) or annulus (lens) has at u: U lambda_pre^2/H times the area ratio. */
 void dea_network_limit_area(const dea_symbols *symbols, dea_network *network);
 
 /* Sum of the elastic forces (restoring) and of the sources (outward) as expressions of u [N]. */
-dea_ref dea_network_elastic(dea_network *network);
-dea_ref dea_network_load(dea_network *network);
+dea_expr dea_network_elastic(dea_network *network);
+dea_expr dea_network_load(dea_network *network);
 
 /* Shared pieces of the models' networks. */
 typedef struct dea_yeoh_terms {
-    dea_ref square, g, j, w; /* y = lambda^2, y - y^-2, I - 3, dW/dI */
+    dea_expr square, g, j, w; /* y = lambda^2, y - y^-2, I - 3, dW/dI */
 } dea_yeoh_terms;
 dea_yeoh_terms dea_symbols_yeoh(const dea_symbols *symbols);
 /* M = eps (U/H)^2 [Pa]. */
-dea_ref dea_symbols_pressure(const dea_symbols *symbols);
+dea_expr dea_symbols_pressure(const dea_symbols *symbols);
 /* A_cross = 2 pi r_a H/lambda_pre^2 [m^2]. */
-dea_ref dea_symbols_cross_section(const dea_symbols *symbols);
+dea_expr dea_symbols_cross_section(const dea_symbols *symbols);
 /* Radial strain of the disc, u/r_a, and of the annulus, -u/(r - r_a) (Eq. 17) [1]. */
-dea_ref dea_symbols_disc_strain(const dea_symbols *symbols);
-dea_ref dea_symbols_annulus_strain(const dea_symbols *symbols);
+dea_expr dea_symbols_disc_strain(const dea_symbols *symbols);
+dea_expr dea_symbols_annulus_strain(const dea_symbols *symbols);
 /* r - r_a [m]. */
-dea_ref dea_symbols_annulus_width(const dea_symbols *symbols);
+dea_expr dea_symbols_annulus_width(const dea_symbols *symbols);
 
 #endif

@@ -34,6 +34,8 @@ size_t *dea_plot_order(const dea_axis *axis, const dea_thinning *thinning);
 void dea_plot_colour(size_t number, size_t count, char colour[8]);
 /* Colours of a map and of many curves, dark to light, 0 <= share <= 1. */
 void dea_plot_gradient(double share, char colour[8]);
+/* Writes the line style of curves of one kind, from 1; number 1 is solid. */
+void dea_plot_dash(FILE *script, size_t number);
 /* Lines of a script that every picture begins with: tics, grid, border. */
 void dea_plot_style(FILE *script);
 

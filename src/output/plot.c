@@ -85,9 +85,16 @@ void dea_plot_colour(size_t number, size_t count, char colour[8])
     }
 }
 
+void dea_plot_dash(FILE *script, size_t number)
+{
+    static const char *const dashes[] = {"solid", "(9, 4)", "(2, 3)", "(9, 3, 2, 3)", "(16, 5)", "(9, 3, 2, 3, 2, 3)", "(4, 3)", "(16, 3, 4, 3)"};
+    fprintf(script, "dashtype %s", dashes[(number - 1) % (sizeof dashes / sizeof *dashes)]);
+}
+
 void dea_plot_style(FILE *script)
 {
-    fputs("set border 15 linewidth 0.8 linecolor '#404040'\n"
+    fputs("set format '%h'\n"
+          "set border 15 linewidth 0.8 linecolor '#404040'\n"
           "set tics nomirror in scale 0.6 textcolor '#202020'\n"
           "set grid linetype 1 linewidth 0.5 linecolor '#e2e2e2'\n"
           "set xlabel textcolor '#202020'\nset ylabel textcolor '#202020'\n",

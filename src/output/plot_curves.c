@@ -1,5 +1,6 @@
 /* Strain and displacement side by side: one colour for each value of the other axes, one dash for each model. */
 #include "output/label.h"
+#include "output/legend.h"
 #include "output/picture.h"
 
 #include "deaspice/model.h"
@@ -8,7 +9,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 960, PANEL = 300, TITLE = 54, NO_TITLE = 28, LEGEND_ROW = 20, MARKS_PER_CURVE = 20, FEW_POINTS = 25, MARKS = 3 };
+enum {
+    WIDTH = 960,
+    PANEL = 300,
+    PANEL_WIDTH = 358,
+    TITLE = 54,
+    NO_TITLE = 28,
+    LABELS = 56, /* below a panel */
+    MARGIN = 20,
+    MARKS_PER_CURVE = 20,
+    FEW_POINTS = 25,
+    MARKS = 3,
+    KINDS = 3, /* of legend entries: groups, models, marks */
+    ENTRIES = 64
+};
 
 /* Marks on curves: limits that a point is past. */
 static const struct {
@@ -30,7 +44,7 @@ typedef struct sheet {
     size_t groups; /* curves of one model */
     bool seen[MARKS];
     double low[2], high[2]; /* of strain and displacement as drawn, 0 included */
-    int height, legend_rows, legend_columns;
+    int height;
 } sheet;
 
 static const dea_dot *sheet_dot(const sheet *page, size_t curve, size_t place)
@@ -167,9 +181,9 @@ static void write_curves(const sheet *page, FILE *script, int column)
     for (size_t curve = 0; curve < plot->curves; curve++) {
         char colour[8];
         curve_colour(page, curve / page->groups, curve % page->groups, colour);
-        fprintf(script,
-                "%s$curve%zu using 1:%d with %s dashtype %zu linewidth 1.8 linecolor '%s' pointtype 7 pointsize 0.4 notitle",
-                curve > 0 ? ", \\\n " : "", curve, column, few ? "linespoints" : "lines", curve / page->groups + 1, colour);
+        fprintf(script, "%s$curve%zu using 1:%d with %s ", curve > 0 ? ", \\\n " : "", curve, column, few ? "linespoints" : "lines");
+        dea_plot_dash(script, curve / page->groups + 1);
+        fprintf(script, " linewidth 1.8 linecolor '%s' pointtype 7 pointsize 0.4 notitle", colour);
     }
     for (size_t curve = 0; curve < plot->curves; curve++) {
         write_marks(page, script, curve, column);
@@ -180,13 +194,13 @@ static void write_curves(const sheet *page, FILE *script, int column)
 /* One panel: its place on the canvas, its labels, its curves. */
 static void write_panel(const sheet *page, FILE *script, int number)
 {
-    const double left = number == 0 ? 88.0 : 580.0;
+    const double left = number == 0 ? 82.0 : 578.0;
     const double top = page->plot->scene->title[0] ? TITLE : NO_TITLE;
     char label[DEA_LABEL_LENGTH + 24];
     fputs("set lmargin at screen ", script);
     dea_gnuplot_number(script, left / WIDTH);
     fputs("\nset rmargin at screen ", script);
-    dea_gnuplot_number(script, (left + 364.0) / WIDTH);
+    dea_gnuplot_number(script, (left + PANEL_WIDTH) / WIDTH);
     fputs("\nset tmargin at screen ", script);
     dea_gnuplot_number(script, 1.0 - top / page->height);
     fputs("\nset bmargin at screen ", script);
@@ -201,74 +215,92 @@ static void write_panel(const sheet *page, FILE *script, int number)
     write_curves(page, script, number + 2);
 }
 
-/* Entries of the legend, counted where @p script is NULL; @p widest is their longest text. */
-static int legend_entries(const sheet *page, FILE *script, size_t *widest)
+/* Entries of the legend, in the order groups, models, marks; kinds[i] is the first of kind i. */
+static size_t legend_list(const sheet *page, dea_legend_entry entries[ENTRIES], size_t kinds[KINDS + 1])
 {
     const dea_scene *scene = page->plot->scene;
     const size_t groups = page->groups > 1 ? page->groups : 0, models = scene->model_count > 1 ? scene->model_count : 0;
-    int entries = 0;
-    *widest = 0;
-    for (size_t i = 0; i < groups + models + MARKS; i++) {
-        char label[2 * DEA_LABEL_LENGTH] = "", colour[8] = "#404040", style[96];
-        if (i < groups) {
-            group_label(page, i, label, sizeof label);
-            curve_colour(page, 0, i, colour);
-            snprintf(style, sizeof style, "lines dashtype 1 linewidth 1.8");
-        } else if (i < groups + models) {
-            model_label(scene, i - groups, label);
-            if (groups == 0) {
-                curve_colour(page, i - groups, 0, colour);
-            }
-            snprintf(style, sizeof style, "lines dashtype %zu linewidth 1.8", i - groups + 1);
-        } else {
-            const size_t mark = i - groups - models;
-            snprintf(label, sizeof label, "%s", page->seen[mark] ? marks[mark].legend : "");
-            snprintf(style, sizeof style, "points pointtype %d pointsize 0.8 linewidth 1.2", marks[mark].symbol);
-        }
-        const size_t length = strlen(label);
-        *widest = length > *widest ? length : *widest;
-        entries += length > 0;
-        if (script && length > 0) {
-            fprintf(script, "%sNaN with %s linecolor '%s' title ", entries > 1 ? ", \\\n " : "plot ", style, colour);
-            dea_gnuplot_text(script, label);
+    size_t count = 0;
+    kinds[0] = 0;
+    for (size_t i = 0; i < groups; i++) {
+        dea_legend_entry *entry = &entries[count++];
+        *entry = (dea_legend_entry){.dash = 1};
+        group_label(page, i, entry->label, sizeof entry->label);
+        curve_colour(page, 0, i, entry->colour);
+    }
+    kinds[1] = count;
+    for (size_t i = 0; i < models; i++) {
+        dea_legend_entry *entry = &entries[count++];
+        *entry = (dea_legend_entry){.dash = i + 1, .colour = "#404040"};
+        model_label(scene, i, entry->label);
+        if (groups == 0) {
+            curve_colour(page, i, 0, entry->colour);
         }
     }
-    return entries;
+    kinds[2] = count;
+    for (size_t i = 0; i < MARKS; i++) {
+        if (page->seen[i]) {
+            dea_legend_entry *entry = &entries[count++];
+            *entry = (dea_legend_entry){.symbol = marks[i].symbol, .colour = "#404040"};
+            snprintf(entry->label, sizeof entry->label, "%s", marks[i].legend);
+        }
+    }
+    kinds[3] = count;
+    return count;
 }
 
-/* A panel of its own, without axes, below the others. */
-static void write_legend(const sheet *page, FILE *script)
+static double legend_room(const dea_legend_entry *entries, size_t from, size_t to)
 {
-    if (page->legend_rows == 0) {
-        return;
+    double room = 0.0;
+    for (size_t i = from; i < to; i++) {
+        room += dea_legend_room(&entries[i]);
     }
-    size_t widest;
-    fputs("unset label\nunset xlabel\nunset ylabel\nunset border\nunset tics\nunset grid\nunset logscale\n"
-          "set xrange [0:1]\nset yrange [0:1]\n"
-          "set lmargin at screen 0\nset rmargin at screen 1\nset bmargin at screen 0\nset tmargin at screen ",
-          script);
-    const double share = (LEGEND_ROW * page->legend_rows + 10.0) / page->height;
-    dea_gnuplot_number(script, share);
-    fputs("\nset key at screen 0.5, screen ", script);
-    dea_gnuplot_number(script, share / 2.0);
-    fprintf(script, " center center horizontal Left reverse samplen 3 spacing 1.1 maxcols %d textcolor '#202020'\n",
-            page->legend_columns);
-    legend_entries(page, script, &widest);
-    fputc('\n', script);
+    return room;
+}
+
+/* End of the row that begins with entry @p from: all that is left where it fits, else as much of one kind as fits. */
+static size_t legend_row_end(const dea_legend_entry *entries, const size_t kinds[KINDS + 1], size_t from)
+{
+    const size_t count = kinds[KINDS];
+    if (legend_room(entries, from, count) <= WIDTH - MARGIN) {
+        return count;
+    }
+    size_t end = count;
+    for (int kind = KINDS; kind > 0 && kinds[kind] > from; kind--) {
+        end = kinds[kind];
+    }
+    while (end > from + 1 && legend_room(entries, from, end) > WIDTH - MARGIN) {
+        end--;
+    }
+    return end;
+}
+
+/* Rows of the legend, centred, from the top down; counted where @p legend is NULL. */
+static int legend_rows(const sheet *page, dea_legend *legend)
+{
+    dea_legend_entry entries[ENTRIES];
+    size_t kinds[KINDS + 1];
+    const size_t count = legend_list(page, entries, kinds);
+    double y = page->height - (page->plot->scene->title[0] ? TITLE : NO_TITLE) - PANEL - LABELS - DEA_LEGEND_ROW / 2.0;
+    int rows = 0;
+    for (size_t from = 0; from < count; rows++) {
+        const size_t end = legend_row_end(entries, kinds, from);
+        double x = 0.5 * (WIDTH + MARGIN - legend_room(entries, from, end));
+        for (; from < end; from++) {
+            if (legend) {
+                dea_legend_put(legend, &entries[from], x, y);
+            }
+            x += dea_legend_room(&entries[from]);
+        }
+        y -= DEA_LEGEND_ROW;
+    }
+    return rows;
 }
 
 static void sheet_layout(sheet *page)
 {
-    size_t widest;
-    const int entries = legend_entries(page, NULL, &widest);
-    const int fits = WIDTH / (int)(70 + 8 * widest);
-    page->legend_columns = entries < fits ? entries : fits < 1 ? 1 : fits;
-    if (page->legend_columns > 0) {
-        page->legend_rows = (entries + page->legend_columns - 1) / page->legend_columns;
-        page->legend_columns = (entries + page->legend_rows - 1) / page->legend_rows; /* rows of even length */
-    }
-    page->height = (page->plot->scene->title[0] ? TITLE : NO_TITLE) + PANEL + 56 +
-                   (page->legend_rows > 0 ? LEGEND_ROW * page->legend_rows + 10 : 0);
+    const int rows = legend_rows(page, NULL);
+    page->height = (page->plot->scene->title[0] ? TITLE : NO_TITLE) + PANEL + LABELS + (rows > 0 ? DEA_LEGEND_ROW * rows + 8 : 0);
 }
 
 /* Positive values with a constant ratio over two decades or more ask for a logarithmic axis. */
@@ -328,10 +360,12 @@ dea_status dea_plot_draw_curves(dea_plot *plot, dea_error *error)
     dea_gnuplot_size(&plot->picture, WIDTH, page.height);
     write_data(&page, script);
     write_frame(&page, script);
+    dea_legend legend = {.script = script, .width = WIDTH, .height = page.height};
+    legend_rows(&page, &legend);
     write_panel(&page, script, 0);
     fputs("unset label 2\n", script);
+    dea_legend_clear(&legend);
     write_panel(&page, script, 1);
-    write_legend(&page, script);
     fputs("unset multiplot\nunset output\n", script);
     free(order);
     return DEA_OK;

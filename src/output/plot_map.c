@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { WIDTH = 760, HEIGHT = 540, COLUMNS = 240, ROWS = 180, HATCH_X = 44, HATCH_Y = 30, STOPS = 9, HATCHES = 2 };
+enum { WIDTH = 760, HEIGHT = 540, PLAIN_WIDTH = 540, PLAIN_HEIGHT = 405, COLUMNS = 240, ROWS = 180, HATCH_STEP = 14, HATCH_SAMPLES = 400, STOPS = 9, HATCHES = 2 };
 
 /* Hatches: rising for slack, falling for breakdown. */
 static const struct {
@@ -110,23 +110,34 @@ static void write_grid(chart *map, FILE *script)
     fputs("END\n", script);
 }
 
-/* One diagonal in every cell past the limit: together they are the hatch. */
+/* One diagonal of the hatch: x - y = c for a rising one, in units of the canvas with the map at [0, PLAIN_WIDTH] x [0, PLAIN_HEIGHT]; it is
+ * drawn where its limit is passed. */
+static void write_diagonal(chart *map, FILE *script, int number, double c)
+{
+    const double from = fmax(0.0, c), to = fmin(PLAIN_WIDTH, c + PLAIN_HEIGHT);
+    bool drawing = false;
+    for (int i = 0; i <= HATCH_SAMPLES; i++) {
+        const double along = from + (to - from) * i / HATCH_SAMPLES;
+        const double up = fmin(fmax((along - c) / PLAIN_HEIGHT, 0.0), 1.0);
+        const double x = map->x.from + (map->x.to - map->x.from) * along / PLAIN_WIDTH;
+        const double y = map->y.from + (map->y.to - map->y.from) * (hatches[number].rising ? up : 1.0 - up);
+        const bool past = chart_sample(map, x, y).state == hatches[number].state;
+        if (past) {
+            write_triple(script, x * map->x.scale.factor, y * map->y.scale.factor, 0.0);
+        } else if (drawing) {
+            fputc('\n', script);
+        }
+        drawing = past;
+        map->hatched[number] = map->hatched[number] || past;
+    }
+    fputs("\n", script);
+}
+
 static void write_hatch(chart *map, FILE *script, int number)
 {
     fprintf(script, "$hatch%d << END\n", number);
-    for (int j = 0; j < HATCH_Y; j++) {
-        for (int i = 0; i < HATCH_X; i++) {
-            const double x0 = side_at(&map->x, i, HATCH_X + 1), x1 = side_at(&map->x, i + 1, HATCH_X + 1);
-            const double y0 = side_at(&map->y, j, HATCH_Y + 1), y1 = side_at(&map->y, j + 1, HATCH_Y + 1);
-            if (chart_sample(map, 0.5 * (x0 + x1), 0.5 * (y0 + y1)).state != hatches[number].state) {
-                continue;
-            }
-            const bool rising = hatches[number].rising;
-            map->hatched[number] = true;
-            write_triple(script, x0 * map->x.scale.factor, (rising ? y0 : y1) * map->y.scale.factor, 0.0);
-            write_triple(script, x1 * map->x.scale.factor, (rising ? y1 : y0) * map->y.scale.factor, 0.0);
-            fputc('\n', script);
-        }
+    for (int c = HATCH_STEP - PLAIN_HEIGHT; c < PLAIN_WIDTH; c += HATCH_STEP) {
+        write_diagonal(map, script, number, c);
     }
     fputs("END\n", script);
 }

@@ -1,12 +1,15 @@
 /* Pictures of a material and of a fit: stress and modulus over stretch. */
 #include "output/picture.h"
 
-#include "output/label.h"
+#include "output/legend.h"
 
 #include <math.h>
 #include <string.h>
 
 enum { WIDTH = 960, HEIGHT = 420, FIT_WIDTH = 640, FIT_HEIGHT = 440, CURVE_STEPS = 200, POINTS_MAX = 2000 };
+
+/* Place of the axes that carry a legend, as shares of the canvas. */
+static const double LEFT = 0.095, TOP = 0.865;
 
 static const char *const load_colours[DEA_LOAD_COUNT] = {"#0072b2", "#d55e00"};
 static const char *const load_titles[DEA_LOAD_COUNT] = {"uniaxial", "equi-biaxial"};
@@ -38,6 +41,15 @@ static void write_pair(FILE *script, double x, double y)
     fputc('\n', script);
 }
 
+/* Puts the next entry into the upper left corner of the axes, below those that are there. */
+static void put_entry(dea_legend *legend, int load, const char *label, size_t dash, int symbol)
+{
+    dea_legend_entry entry = {.dash = dash, .symbol = symbol};
+    snprintf(entry.label, sizeof entry.label, "%s", label);
+    snprintf(entry.colour, sizeof entry.colour, "%s", load_colours[load]);
+    dea_legend_put(legend, &entry, LEFT * legend->width + 16.0, TOP * legend->height - 20.0 - DEA_LEGEND_ROW * legend->next);
+}
+
 /* Data block $fit<load> of nominal stress [kPa] over stretch. */
 static void write_stress(FILE *script, const double yeoh[DEA_YEOH_TERMS], dea_load load, double from, double to)
 {
@@ -63,21 +75,24 @@ static void write_material(const dea_material *material, FILE *script)
     }
     fputs("END\n", script);
     dea_plot_style(script);
-    fputs("set multiplot\nset xrange [1:2]\nset yrange [0:*]\nset key top left Left reverse samplen 3\nset label 1 '(a)' at "
-          "graph 0, graph 1.045\n",
-          script);
+    fputs("unset key\nset multiplot\nset xrange [1:2]\nset yrange [0:*]\nset label 1 '(a)' at graph 0, graph 1.045\n", script);
     write_setting(script, "label 2", material->name);
     fprintf(script, "set label 2 at screen 0.5, screen 0.96 center\n");
     write_setting(script, "xlabel", "Stretch λ");
     write_setting(script, "ylabel", "Engineering stress P [kPa]");
-    write_place(script, 0.095, 0.48, 0.15, 0.865);
+    write_place(script, LEFT, 0.48, 0.15, TOP);
+    dea_legend legend = {.script = script, .width = WIDTH, .height = HEIGHT};
     for (int load = 0; load < DEA_LOAD_COUNT; load++) {
-        fprintf(script, "%s$fit%d with lines linewidth 1.8 dashtype %d linecolor '%s' title '%s'", load > 0 ? ", " : "plot ",
-                load, load + 1, load_colours[load], load_titles[load]);
+        put_entry(&legend, load, load_titles[load], (size_t)load + 1, 0);
+    }
+    for (int load = 0; load < DEA_LOAD_COUNT; load++) {
+        fprintf(script, "%s$fit%d with lines linewidth 1.8 linecolor '%s' ", load > 0 ? ", " : "plot ", load, load_colours[load]);
+        dea_plot_dash(script, (size_t)load + 1);
     }
     fputs("\nunset label 2\nset label 1 '(b)' at graph 0, graph 1.045\n", script);
+    dea_legend_clear(&legend);
     write_setting(script, "ylabel", "Operating modulus Y [MPa]");
-    write_place(script, 0.59, 0.975, 0.15, 0.865);
+    write_place(script, 0.59, 0.975, 0.15, TOP);
     fprintf(script, "plot $modulus with lines linewidth 1.8 linecolor '%s' notitle\nunset multiplot\nunset output\n",
             load_colours[DEA_LOAD_EQUIBIAXIAL]);
 }
@@ -112,7 +127,7 @@ static void write_fit(const dea_fit *fit, const dea_fit_data *data, FILE *script
 {
     const double from = fmin(fit->stretch_min, 1.0), to = fmax(fit->stretch_max, 1.0);
     dea_plot_style(script);
-    fputs("set key top left Left reverse samplen 2\nset xrange [", script);
+    fputs("unset key\nset xrange [", script);
     dea_gnuplot_number(script, from);
     fputc(':', script);
     dea_gnuplot_number(script, to);
@@ -125,13 +140,20 @@ static void write_fit(const dea_fit *fit, const dea_fit_data *data, FILE *script
             write_points(script, data, fit, (dea_load)load);
         }
     }
+    write_place(script, LEFT + 0.03, 0.97, 0.13, TOP + 0.1);
+    dea_legend legend = {.script = script, .width = FIT_WIDTH, .height = FIT_HEIGHT};
+    for (int load = 0; load < DEA_LOAD_COUNT; load++) {
+        if (fit->count[load] > 0) {
+            char label[DEA_LEGEND_LABEL];
+            snprintf(label, sizeof label, "%s: measured, Yeoh fit", load_titles[load]);
+            put_entry(&legend, load, label, 1, 6);
+        }
+    }
     const char *before = "plot ";
     for (int load = 0; load < DEA_LOAD_COUNT; load++) {
         if (fit->count[load] > 0) {
-            fprintf(script, "%s$data%d with points pointtype 6 pointsize 0.7 linewidth 1 linecolor '%s' title '%s, measured'",
-                    before, load, load_colours[load], load_titles[load]);
-            fprintf(script, ", $fit%d with lines linewidth 1.8 linecolor '%s' title '%s, Yeoh fit'", load, load_colours[load],
-                    load_titles[load]);
+            fprintf(script, "%s$data%d with points pointtype 6 pointsize 0.7 linewidth 1 linecolor '%s'", before, load, load_colours[load]);
+            fprintf(script, ", $fit%d with lines linewidth 1.8 linecolor '%s'", load, load_colours[load]);
             before = ", ";
         }
     }

@@ -6,8 +6,8 @@
 const char *dea_status_text(dea_status status)
 {
     switch (status) {
-#define X(name, value, text) \
-    case name:               \
+#define X(name, value, text)                                                                                                     \
+    case name:                                                                                                                   \
         return text;
         DEA_STATUS_LIST(X)
 #undef X

@@ -9,8 +9,10 @@ typedef struct visit_state {
 
 static const char *refuses(const dea_scene *scene, const dea_model *model)
 {
-    (void)scene;
-    return model->solve ? NULL : "it has no equation of its own";
+    if (!model->solve) {
+        return "it has no equation of its own";
+    }
+    return scene->accuracy < 1e-12 ? "double precision ends at 1e-12, the scene wants more" : NULL;
 }
 
 static dea_status begin(void **session, dea_error *error)

@@ -7,7 +7,7 @@
 #include "network/balance.h"
 
 typedef struct session_state {
-    SUNContext context;     /* owned, as all */
+    SUNContext context; /* owned, as all */
     dea_ramp *ramp;
     dea_shooting *shooting;
 } session_state;
@@ -20,8 +20,10 @@ typedef struct visit_state {
 
 static const char *refuses(const dea_scene *scene, const dea_model *model)
 {
-    (void)scene;
-    return model->network || model->membrane ? NULL : "it is neither a network nor a membrane that IDA could solve";
+    if (!model->network && !model->membrane) {
+        return "it is neither a network nor a membrane that IDA could solve";
+    }
+    return scene->accuracy < 1e-9 ? "its answers are good to 1e-9, the scene wants more" : NULL;
 }
 
 static void end(void *session)

@@ -53,7 +53,8 @@ dea_status dea_integrator_open(SUNContext context, sunindextype n, IDAResFn resi
     N_VConst(0.0, m->yp);
     N_VConst(1.0, m->id);
     N_VConst(1.0, m->tolerance);
-    if (IDAInit(m->ida, residual, 0.0, m->y, m->yp) != IDA_SUCCESS || IDASVtolerances(m->ida, 1e-6, m->tolerance) != IDA_SUCCESS ||
+    if (IDAInit(m->ida, residual, 0.0, m->y, m->yp) != IDA_SUCCESS ||
+        IDASVtolerances(m->ida, 1e-6, m->tolerance) != IDA_SUCCESS ||
         IDASetLinearSolver(m->ida, m->solver, m->matrix) != IDA_SUCCESS || IDASetMaxNumSteps(m->ida, 100000) != IDA_SUCCESS) {
         return dea_fail(error, DEA_ERROR_ENGINE, "IDA did not start");
     }

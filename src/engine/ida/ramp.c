@@ -2,8 +2,9 @@
  *
  *     [ R(u) - t F(u) ] / (K_0 l) = 0,   y = u/l,
  *
- * IDA follows u(t) from rest; K_0 is the stiffness at rest and l the size of the film, so that no tolerance depends on the actuator's
- * size. The stiffness (R' - t F')/K_0 is watched as a root function: where it vanishes the equilibrium folds, which is pull-in. */
+ * IDA follows u(t) from rest; K_0 is the stiffness at rest and l the size of the film, so that no tolerance depends on the
+ * actuator's size. The stiffness (R' - t F')/K_0 is watched as a root function: where it vanishes the equilibrium folds, which is
+ * pull-in. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -14,8 +15,8 @@ struct dea_ramp {
     dea_integrator integrator;
     dea_balance *balance; /* borrowed for one solve, as all below */
     double symbol;
-    double length;        /* l [m] */
-    double stiffness;     /* K_0 [N/m] */
+    double length;    /* l [m] */
+    double stiffness; /* K_0 [N/m] */
 };
 
 static int residual(sunrealtype t, N_Vector y, N_Vector yp, N_Vector r, void *user)
@@ -33,8 +34,8 @@ static double relative_stiffness(dea_ramp *ramp, double t, double y)
     return (f.elastic_slope - t * f.load_slope) / ramp->stiffness;
 }
 
-static int jacobian(sunrealtype t, sunrealtype cj, N_Vector y, N_Vector yp, N_Vector r, SUNMatrix matrix, void *user, N_Vector work1,
-                    N_Vector work2, N_Vector work3)
+static int jacobian(sunrealtype t, sunrealtype cj, N_Vector y, N_Vector yp, N_Vector r, SUNMatrix matrix, void *user,
+                    N_Vector work1, N_Vector work2, N_Vector work3)
 {
     (void)cj, (void)yp, (void)r, (void)work1, (void)work2, (void)work3;
     SM_ELEMENT_D(matrix, 0, 0) = relative_stiffness(user, t, N_VGetArrayPointer(y)[0]);
@@ -82,8 +83,8 @@ static bool start(dea_ramp *ramp, double slope, double tolerance)
     N_VGetArrayPointer(m->y)[0] = 0.0;
     N_VGetArrayPointer(m->yp)[0] = slope;
     N_VGetArrayPointer(m->tolerance)[0] = tolerance * fabs(slope); /* of the size of the answer */
-    return IDAReInit(m->ida, 0.0, m->y, m->yp) == IDA_SUCCESS && IDASVtolerances(m->ida, tolerance, m->tolerance) == IDA_SUCCESS &&
-           IDASetStopTime(m->ida, 1.0) == IDA_SUCCESS;
+    return IDAReInit(m->ida, 0.0, m->y, m->yp) == IDA_SUCCESS &&
+           IDASVtolerances(m->ida, tolerance, m->tolerance) == IDA_SUCCESS && IDASetStopTime(m->ida, 1.0) == IDA_SUCCESS;
 }
 
 void dea_ramp_solve(dea_ramp *ramp, dea_balance *balance, double symbol, double accuracy, dea_row *row)

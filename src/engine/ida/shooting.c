@@ -95,13 +95,12 @@ static double jump_guess(const dea_shooting *s, double l)
     const double load = (s->disc_k - s->annulus_k) * l * l * l;
     const double at_edge = stress_change(&s->point->film, l - s->point->film.prestretch, l - s->point->film.prestretch);
     double jump = 0.0;
-    for (int i = 0; i < 4; i++) {
+    double step = l;
+    for (int i = 0; i < 40 && fabs(step) > 1e-6 * fabs(jump); i++) {
         const double d1 = l - jump - s->point->film.prestretch;
         const double slope = dea_yeoh_stress(s->point->film.yeoh, l - jump, l).w11 - s->annulus_k * l * l;
-        jump += (stress_change(&s->point->film, d1, l - s->point->film.prestretch) - at_edge + load + s->annulus_k * jump * l * l) / slope;
-        if (!(l - jump > 0.1 * l)) {
-            return 0.9 * l;
-        }
+        step = (stress_change(&s->point->film, d1, l - s->point->film.prestretch) - at_edge + load + s->annulus_k * jump * l * l) / slope;
+        jump = jump + step < l ? jump + step : 0.5 * (jump + l); /* keeps lambda_1 positive */
     }
     return jump;
 }

@@ -18,17 +18,18 @@
 
 /* An IDA integrator of n unknowns with a dense matrix. Zeroed is empty. */
 typedef struct dea_integrator {
-    SUNContext context;  /* borrowed */
-    void *ida;           /* owned, as all below */
-    N_Vector y, yp;      /* solution and derivative */
-    N_Vector id;         /* 1: differential, 0: algebraic */
-    N_Vector tolerance;  /* absolute, per component */
+    SUNContext context; /* borrowed */
+    void *ida;          /* owned, as all below */
+    N_Vector y, yp;     /* solution and derivative */
+    N_Vector id;        /* 1: differential, 0: algebraic */
+    N_Vector tolerance; /* absolute, per component */
     SUNMatrix matrix;
     SUNLinearSolver solver;
 } dea_integrator;
 
 /* Makes an integrator for @p residual; the caller ends it with dea_integrator_close(), also after a failure. */
-dea_status dea_integrator_open(SUNContext context, sunindextype n, IDAResFn residual, dea_integrator *integrator, dea_error *error);
+dea_status dea_integrator_open(SUNContext context, sunindextype n, IDAResFn residual, dea_integrator *integrator,
+                               dea_error *error);
 void dea_integrator_close(dea_integrator *integrator);
 
 /* A context that prints nothing. */

@@ -15,11 +15,11 @@
 enum { LOG_SIZE = 3000, LINE_SIZE = 160 };
 
 struct dea_ngspice {
-    char log[LOG_SIZE];        /* first lines of what the library said since the last run, repeats left out */
-    char last[LINE_SIZE];      /* last line of the log */
-    bool complained;           /* a line of the log names an error */
-    bool lost;                 /* the library asked to be detached */
-    bool loaded;               /* a circuit is loaded */
+    char log[LOG_SIZE];   /* first lines of what the library said since the last run, repeats left out */
+    char last[LINE_SIZE]; /* last line of the log */
+    bool complained;      /* a line of the log names an error */
+    bool lost;            /* the library asked to be detached */
+    bool loaded;          /* a circuit is loaded */
 };
 
 /* Words of a line that names a failure; texts differ from version to version. */
@@ -68,13 +68,15 @@ static int on_detach(int code, bool immediate, bool quit, int id, void *user)
     return 0;
 }
 
-/* A private folder with empty start-up files: no .spiceinit or spinit of anybody else is run. The folder goes at once after start-up. */
+/* A private folder with empty start-up files: no .spiceinit or spinit of anybody else is run. The folder goes at once after
+ * start-up. */
 static dea_status enter_private_folder(char *folder, size_t size, dea_error *error)
 {
     const char *base = getenv("TMPDIR");
     snprintf(folder, size, "%s/deaspice-XXXXXX", base && base[0] == '/' ? base : "/tmp");
     if (!mkdtemp(folder) || chdir(folder) != 0) {
-        return dea_fail(error, DEA_ERROR_IO, "no private start-up folder for ngspice under %s", base && base[0] == '/' ? base : "/tmp");
+        return dea_fail(error, DEA_ERROR_IO, "no private start-up folder for ngspice under %s",
+                        base && base[0] == '/' ? base : "/tmp");
     }
     static const char *const files[] = {".spiceinit", "scripts/spinit"};
     bool written = mkdir("scripts", 0700) == 0;
@@ -196,7 +198,8 @@ static dea_status copy(const char *plot_before, const char *vector, dea_ngspice_
     return DEA_OK;
 }
 
-dea_status dea_ngspice_run(dea_ngspice *library, const char *netlist, const char *vector, dea_ngspice_result *result, dea_error *error)
+dea_status dea_ngspice_run(dea_ngspice *library, const char *netlist, const char *vector, dea_ngspice_result *result,
+                           dea_error *error)
 {
     char before[64];
     *result = (dea_ngspice_result){0};

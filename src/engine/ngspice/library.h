@@ -17,8 +17,10 @@ typedef struct dea_ngspice_result {
 dea_status dea_ngspice_open(dea_ngspice **library, dea_error *error);
 void dea_ngspice_close(dea_ngspice *library);
 
-/* Loads a netlist (one card a line), runs its analysis and copies vector @p vector of the new plot. A run that ends early is no failure
- * of this call: it gives the points before its end. DEA_ERROR_ENGINE with the library's log: the netlist was refused, or the library is lost. */
-dea_status dea_ngspice_run(dea_ngspice *library, const char *netlist, const char *vector, dea_ngspice_result *result, dea_error *error);
+/* Loads a netlist (one card a line), runs its analysis and copies vector @p vector of the new plot. A run that ends early is no
+ * failure of this call: it gives the points before its end. DEA_ERROR_ENGINE with the library's log: the netlist was refused, or
+ * the library is lost. */
+dea_status dea_ngspice_run(dea_ngspice *library, const char *netlist, const char *vector, dea_ngspice_result *result,
+                           dea_error *error);
 
 #endif

@@ -1,6 +1,6 @@
-/* Engine `ngspice`: the network in libngspice. A line of points is one circuit and one DC sweep over the index of the points; each answer
- * is then checked against the network (force balance, no fold between rest and it). What does not pass is solved again alone, with the load
- * growing from rest. */
+/* Engine `ngspice`: the network in libngspice. A line of points is one circuit and one DC sweep over the index of the points;
+ * each answer is then checked against the network (force balance, no fold between rest and it). What does not pass is solved
+ * again alone, with the load growing from rest. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -29,8 +29,10 @@ typedef struct line_job {
 
 static const char *refuses(const dea_scene *scene, const dea_model *model)
 {
-    (void)scene;
-    return model->network ? NULL : "it has no network form that ngspice could solve";
+    if (!model->network) {
+        return "it has no network form that ngspice could solve";
+    }
+    return scene->accuracy < 1e-9 ? "its answers are good to 1e-9, the scene wants more" : NULL;
 }
 
 static dea_status begin(void **session, dea_error *error)
@@ -148,8 +150,8 @@ static dea_status sweep_stretch(line_job *job, size_t from, size_t count, size_t
     return status;
 }
 
-/* The whole line. Where a sweep breaks off, or leaves the branch that is connected to rest, the point is solved alone and a new sweep starts
- * behind it: a short one, in case of more such points, then longer ones again. */
+/* The whole line. Where a sweep breaks off, or leaves the branch that is connected to rest, the point is solved alone and a new
+ * sweep starts behind it: a short one, in case of more such points, then longer ones again. */
 static dea_status solve_points(line_job *job, dea_error *error)
 {
     const dea_axis *axis = job->line->axis;

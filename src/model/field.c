@@ -12,8 +12,14 @@
 
 enum { GBS_COLUMNS = 7 };
 
-/* Longest step in x: the extrapolation error per step is then below 1e-13 of D. */
+/* Longest step in x: the extrapolation error per step is then below 1e-13 of D. Where less than 1e-6 is wanted of the result, the
+ * step shrinks with the 14th root, as the order has it, so that the result can be compared with itself on a finer mesh. */
 static const double longest_step = 0.35;
+
+static double step_for(double accuracy)
+{
+    return longest_step * fmin(1.0, pow(accuracy / 1e-6, 1.0 / 14.0));
+}
 
 typedef struct radial_state {
     double d; /* D = lambda_2 - lambda_1 */
@@ -26,6 +32,7 @@ typedef struct membrane {
     double disc_k;    /* Maxwell pressure in the disc: M of a dot, 0 of a lens [Pa] */
     double annulus_k; /* and in the annulus [Pa] */
     double length;    /* ln(1/B) */
+    double step;      /* longest in x */
 } membrane;
 
 /* What an integration collects for the limits of the film and the force on the edge. */
@@ -111,10 +118,8 @@ static double jump_at_edge(const membrane *m, double l)
         const dea_stress here = dea_yeoh_stress(m->film->yeoh, l - d, l);
         const double residual = stress_drop(m->film->yeoh, l, d) + jump + m->annulus_k * d * l * l;
         const double step = residual / (here.w11 - m->annulus_k * l * l);
-        double next = d + step;
-        if (!(next < l)) {
-            next = 0.5 * (d + l); /* keeps lambda_1 positive */
-        }
+        const double most = 0.25 * (l - d); /* lambda_1 moves by a quarter at most: the first root from lambda_2 on is meant */
+        const double next = d + fmax(-most, fmin(most, step));
         const double change = fabs(next - d);
         d = next;
         if (change <= 1e-9 * fabs(d)) { /* quadratic */
@@ -144,7 +149,7 @@ static double miss_at_frame(const membrane *m, double edge, extremes *x)
         return NAN;
     }
     radial_state s = {jump_at_edge(m, l), edge};
-    const int steps = (int)ceil(m->length / longest_step);
+    const int steps = (int)ceil(m->length / m->step);
     const double step = m->length / steps;
     if (x) {
         const double disc = dea_yeoh_stress(m->film->yeoh, l, l).p1 - m->disc_k * l * l * l;
@@ -230,27 +235,29 @@ static double share_at(const membrane *full, double edge, double guess)
     return NAN;
 }
 
-/* Root of the miss at full load between two edges on either side of it (Illinois variant of regula falsi). */
-static double bracketed_edge(const membrane *m, double low, double high)
+/* Edge that the full load holds, between one that less holds and one that more does (Illinois variant of regula falsi on the
+ * share). */
+static double bracketed_edge(const membrane *full, double low, double share_low, double high, double share_high)
 {
-    double miss_low = miss_at_frame(m, low, NULL);
-    double miss_high = miss_at_frame(m, high, NULL);
+    double miss_low = share_low - 1.0;
+    double miss_high = share_high - 1.0;
     double edge = high;
-    for (int i = 0; i < 100 && fabs(high - low) > 4e-16 * fabs(high); i++) {
+    for (int i = 0; i < 100 && miss_high != 0.0 && fabs(high - low) > 4e-16 * fabs(high); i++) {
         edge = (low * miss_high - high * miss_low) / (miss_high - miss_low);
-        const double miss = miss_at_frame(m, edge, NULL);
-        if (miss == 0.0 || !isfinite(miss)) {
+        const double miss = share_at(full, edge, 1.0) - 1.0;
+        if (!isfinite(miss)) {
             break;
         }
         if ((miss > 0.0) == (miss_high > 0.0)) {
-            high = edge;
-            miss_high = miss;
             miss_low *= 0.5;
         } else {
             low = high;
             miss_low = miss_high;
-            high = edge;
-            miss_high = miss;
+        }
+        high = edge;
+        miss_high = miss;
+        if (fabs(miss) <= 1e-14) {
+            break;
         }
     }
     return edge;
@@ -290,13 +297,18 @@ static bool trace(const membrane *full, double sign, double end, double *edge)
     double before = 0.0;
     double last = 0.0;
     double share = 0.0;
-    while (fabs(last) < fabs(end)) {
-        const double step = 0.03 * (sign > 0.0 ? pre + last : pre);
-        const double here = sign * fmin(fabs(end), fabs(last) + step);
+    double share_before = 0.0;
+    double step = 0.03;
+    while (fabs(last) < fabs(end) && step > 1e-5) {
+        const double here = sign * fmin(fabs(end), fabs(last) + step * (pre + fmax(0.0, last)));
         const double guess = share > 0.0 ? share * fabs(here / last) : 0.1;
         const double next = share_at(full, here, guess);
+        if (isnan(next)) {
+            step *= 0.5; /* the film ends here, or the step was too long */
+            continue;
+        }
         if (next >= 1.0) {
-            *edge = bracketed_edge(full, last, here);
+            *edge = bracketed_edge(full, last, share, here, next);
             return true;
         }
         if (!(next > share)) {
@@ -305,10 +317,11 @@ static bool trace(const membrane *full, double sign, double end, double *edge)
             if (!(largest >= 1.0)) {
                 return false;
             }
-            *edge = bracketed_edge(full, before, top);
+            *edge = bracketed_edge(full, before, share_before, top, largest);
             return true;
         }
         before = last;
+        share_before = share;
         last = here;
         share = next;
     }
@@ -317,13 +330,12 @@ static bool trace(const membrane *full, double sign, double end, double *edge)
 
 static void solve(const dea_point *point, double accuracy, dea_row *row)
 {
-    (void)accuracy;
     const dea_film *film = &point->film;
     const bool dot = point->kind == DEA_DOT;
     const double nominal = dea_point_nominal_field(point);
     const double pressure = film->permittivity * nominal * nominal; /* M */
     const double b = point->coverage;
-    const membrane m = {film, dot ? pressure : 0.0, dot ? 0.0 : pressure, -log(b)};
+    const membrane m = {film, dot ? pressure : 0.0, dot ? 0.0 : pressure, -log(b), step_for(accuracy)};
     const double sign = dea_point_sign(point);
     double edge = 0.0;
 

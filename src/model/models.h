@@ -49,7 +49,7 @@ static inline void dea_row_refuse(dea_row *row, dea_state state)
  * model; taut says whether every region is in tension. */
 static inline void dea_row_fill(dea_row *row, const dea_point *point, double strain, double force, double area_stretch, bool taut)
 {
-    const double field = fabs(dea_point_nominal_field(point)) * area_stretch;
+    const double field = fabs(dea_point_nominal_field(point) * area_stretch);
     const double displacement = strain * dea_point_divide(point);
     if (!(isfinite(strain) && isfinite(displacement) && isfinite(force) && isfinite(field))) {
         dea_row_refuse(row, DEA_STATE_FAILED);

@@ -8,7 +8,13 @@ static const double apart = 8.0;     /* from the line to its text */
 static const double gap = 26.0;      /* from a text to the next line */
 static const double character = 8.2; /* mean width of one */
 
-enum { FIRST_TAG = 100 };
+dea_legend_entry *dea_legend_add(dea_legend *legend)
+{
+    legend->count += legend->count < DEA_LEGEND_ENTRIES;
+    dea_legend_entry *entry = &legend->entries[legend->count - 1];
+    *entry = (dea_legend_entry){.label = ""};
+    return entry;
+}
 
 double dea_legend_room(const dea_legend_entry *entry)
 {
@@ -19,43 +25,54 @@ double dea_legend_room(const dea_legend_entry *entry)
     return sample + apart + character * (double)letters + gap;
 }
 
-static void write_place(const dea_legend *legend, double x, double y)
+static void write_pair(FILE *script, double x, double y, const char *end)
 {
-    fputs(" screen ", legend->script);
-    dea_gnuplot_number(legend->script, x / legend->width);
-    fputs(", screen ", legend->script);
-    dea_gnuplot_number(legend->script, y / legend->height);
+    dea_gnuplot_number(script, x);
+    fputc(' ', script);
+    dea_gnuplot_number(script, y);
+    fputs(end, script);
 }
 
-void dea_legend_put(dea_legend *legend, const dea_legend_entry *entry, double x, double y)
+/* Data of one entry: the middle of its sample, then its ends. */
+static void write_sample(FILE *script, const dea_legend_entry *entry, size_t number)
 {
-    FILE *script = legend->script;
-    const int tag = FIRST_TAG + 2 * legend->next++;
-    if (entry->dash > 0) {
-        fprintf(script, "set arrow %d from", tag);
-        write_place(legend, x, y);
-        fputs(" to", script);
-        write_place(legend, x + sample, y);
-        fputs(" nohead front ", script);
-        dea_plot_dash(script, entry->dash);
-        fprintf(script, " linewidth 1.8 linecolor '%s'\n", entry->colour);
-    }
-    if (entry->symbol > 0) {
-        fprintf(script, "set label %d '' at", tag);
-        write_place(legend, x + sample / 2.0, y);
-        fprintf(script, " point pointtype %d pointsize 0.8 linewidth 1.3 linecolor '%s'\n", entry->symbol, entry->colour);
-    }
-    fprintf(script, "set label %d ", tag + 1);
+    fprintf(script, "$point%zu << END\n", number);
+    write_pair(script, entry->x + sample / 2.0, entry->y, "\nEND\n");
+    fprintf(script, "$line%zu << END\n", number);
+    write_pair(script, entry->x, entry->y, "\n");
+    write_pair(script, entry->x + sample, entry->y, "\nEND\n");
+    fprintf(script, "set label %zu ", number + 1);
     dea_gnuplot_text(script, entry->label);
-    fputs(" at", script);
-    write_place(legend, x + sample + apart, y);
-    fputs(" left front textcolor '#202020'\n", script);
+    fputs(" at ", script);
+    dea_gnuplot_number(script, entry->x + sample + apart);
+    fputs(", ", script);
+    dea_gnuplot_number(script, entry->y);
+    fputs(" left textcolor '#202020'\n", script);
 }
 
-void dea_legend_clear(dea_legend *legend)
+void dea_legend_draw(const dea_legend *legend, FILE *script, int width, int height)
 {
-    for (int tag = FIRST_TAG; tag < FIRST_TAG + 2 * legend->next; tag++) {
-        fprintf(legend->script, "unset arrow %d\nunset label %d\n", tag, tag);
+    fprintf(script,
+            "unset label\nunset title\nunset xlabel\nunset ylabel\nunset border\nunset tics\nunset grid\nunset logscale\nunset key\n"
+            "set xrange [0:%d]\nset yrange [0:%d]\n"
+            "set lmargin at screen 0\nset rmargin at screen 1\nset bmargin at screen 0\nset tmargin at screen 1\n",
+            width, height);
+    for (size_t i = 0; i < legend->count; i++) {
+        write_sample(script, &legend->entries[i], i);
     }
-    legend->next = 0;
+    const char *before = "plot ";
+    for (size_t i = 0; i < legend->count; i++) {
+        const dea_legend_entry *entry = &legend->entries[i];
+        if (entry->dash > 0) {
+            fprintf(script, "%s$line%zu using 1:2 with lines linewidth 1.8 linecolor '%s' ", before, i, entry->colour);
+            dea_plot_dash(script, entry->dash);
+            before = ", \\\n ";
+        }
+        if (entry->symbol > 0) {
+            fprintf(script, "%s$point%zu using 1:2 with points pointtype %d pointsize 0.8 linewidth 1.3 linecolor '%s'", before, i,
+                    entry->symbol, entry->colour);
+            before = ", \\\n ";
+        }
+    }
+    fputc('\n', script);
 }

@@ -1,10 +1,10 @@
-/* Entries of a legend, placed one by one: gnuplot's own key neither wraps where it should nor leaves the grid below it whole. */
+/* A legend, placed entry by entry: gnuplot's own key neither wraps where it should nor leaves the grid below it whole. */
 #ifndef DEASPICE_OUTPUT_LEGEND_H
 #define DEASPICE_OUTPUT_LEGEND_H
 
 #include <stdio.h>
 
-enum { DEA_LEGEND_LABEL = 320, DEA_LEGEND_ROW = 21 };
+enum { DEA_LEGEND_LABEL = 320, DEA_LEGEND_ROW = 21, DEA_LEGEND_ENTRIES = 64 };
 
 /* One entry: a line, a point or both, and what it means. */
 typedef struct dea_legend_entry {
@@ -12,21 +12,19 @@ typedef struct dea_legend_entry {
     char colour[8];
     size_t dash; /* as dea_plot_dash() numbers them, from 1; 0: no line */
     int symbol;  /* point type of gnuplot; 0: no point */
+    double x, y; /* left end and middle line on the canvas, in units of 1/100 inch, y upward */
 } dea_legend_entry;
 
-/* Where entries go: a canvas in units of 1/100 inch, y upward. */
 typedef struct dea_legend {
-    FILE *script;
-    double width, height;
-    int next; /* tag of the next entry */
+    dea_legend_entry entries[DEA_LEGEND_ENTRIES];
+    size_t count;
 } dea_legend;
 
+/* Next entry of the legend, empty; the last one again where there is no room. */
+dea_legend_entry *dea_legend_add(dea_legend *legend);
 /* Room that an entry takes along x, with the gap behind it. */
 double dea_legend_room(const dea_legend_entry *entry);
-/* Puts one entry with its left end and its middle line at x, y; it shows in every following plot command until
- * dea_legend_clear(). */
-void dea_legend_put(dea_legend *legend, const dea_legend_entry *entry, double x, double y);
-/* Takes all entries away again. */
-void dea_legend_clear(dea_legend *legend);
+/* Draws the entries over a canvas of that size, as the last plot of a multiplot. */
+void dea_legend_draw(const dea_legend *legend, FILE *script, int width, int height);
 
 #endif

@@ -15,13 +15,12 @@ enum {
     PANEL_WIDTH = 358,
     TITLE = 54,
     NO_TITLE = 28,
-    LABELS = 56, /* below a panel */
+    LABELS = 58, /* below a panel */
     MARGIN = 20,
     MARKS_PER_CURVE = 20,
     FEW_POINTS = 25,
     MARKS = 3,
-    KINDS = 3, /* of legend entries: groups, models, marks */
-    ENTRIES = 64
+    KINDS = 3 /* of legend entries: groups, models, marks */
 };
 
 /* Marks on curves: limits that a point is past. */
@@ -215,92 +214,86 @@ static void write_panel(const sheet *page, FILE *script, int number)
     write_curves(page, script, number + 2);
 }
 
-/* Entries of the legend, in the order groups, models, marks; kinds[i] is the first of kind i. */
-static size_t legend_list(const sheet *page, dea_legend_entry entries[ENTRIES], size_t kinds[KINDS + 1])
+/* Entries in the order groups, models, marks; kinds[i] is the first of kind i. */
+static void legend_list(const sheet *page, dea_legend *legend, size_t kinds[KINDS + 1])
 {
     const dea_scene *scene = page->plot->scene;
     const size_t groups = page->groups > 1 ? page->groups : 0, models = scene->model_count > 1 ? scene->model_count : 0;
-    size_t count = 0;
     kinds[0] = 0;
     for (size_t i = 0; i < groups; i++) {
-        dea_legend_entry *entry = &entries[count++];
-        *entry = (dea_legend_entry){.dash = 1};
+        dea_legend_entry *entry = dea_legend_add(legend);
+        entry->dash = 1;
         group_label(page, i, entry->label, sizeof entry->label);
         curve_colour(page, 0, i, entry->colour);
     }
-    kinds[1] = count;
+    kinds[1] = legend->count;
     for (size_t i = 0; i < models; i++) {
-        dea_legend_entry *entry = &entries[count++];
-        *entry = (dea_legend_entry){.dash = i + 1, .colour = "#404040"};
+        dea_legend_entry *entry = dea_legend_add(legend);
+        entry->dash = i + 1;
         model_label(scene, i, entry->label);
         if (groups == 0) {
             curve_colour(page, i, 0, entry->colour);
+        } else {
+            snprintf(entry->colour, sizeof entry->colour, "#404040");
         }
     }
-    kinds[2] = count;
+    kinds[2] = legend->count;
     for (size_t i = 0; i < MARKS; i++) {
         if (page->seen[i]) {
-            dea_legend_entry *entry = &entries[count++];
-            *entry = (dea_legend_entry){.symbol = marks[i].symbol, .colour = "#404040"};
+            dea_legend_entry *entry = dea_legend_add(legend);
+            entry->symbol = marks[i].symbol;
+            snprintf(entry->colour, sizeof entry->colour, "#404040");
             snprintf(entry->label, sizeof entry->label, "%s", marks[i].legend);
         }
     }
-    kinds[3] = count;
-    return count;
+    kinds[3] = legend->count;
 }
 
-static double legend_room(const dea_legend_entry *entries, size_t from, size_t to)
+static double legend_room(const dea_legend *legend, size_t from, size_t to)
 {
     double room = 0.0;
     for (size_t i = from; i < to; i++) {
-        room += dea_legend_room(&entries[i]);
+        room += dea_legend_room(&legend->entries[i]);
     }
     return room;
 }
 
 /* End of the row that begins with entry @p from: all that is left where it fits, else as much of one kind as fits. */
-static size_t legend_row_end(const dea_legend_entry *entries, const size_t kinds[KINDS + 1], size_t from)
+static size_t legend_row_end(const dea_legend *legend, const size_t kinds[KINDS + 1], size_t from)
 {
     const size_t count = kinds[KINDS];
-    if (legend_room(entries, from, count) <= WIDTH - MARGIN) {
+    if (legend_room(legend, from, count) <= WIDTH - MARGIN) {
         return count;
     }
     size_t end = count;
     for (int kind = KINDS; kind > 0 && kinds[kind] > from; kind--) {
         end = kinds[kind];
     }
-    while (end > from + 1 && legend_room(entries, from, end) > WIDTH - MARGIN) {
+    while (end > from + 1 && legend_room(legend, from, end) > WIDTH - MARGIN) {
         end--;
     }
     return end;
 }
 
-/* Rows of the legend, centred, from the top down; counted where @p legend is NULL. */
-static int legend_rows(const sheet *page, dea_legend *legend)
+/* Places the entries in centred rows below the panels; this settles the height of the canvas. */
+static void sheet_layout(sheet *page, dea_legend *legend)
 {
-    dea_legend_entry entries[ENTRIES];
     size_t kinds[KINDS + 1];
-    const size_t count = legend_list(page, entries, kinds);
-    double y = page->height - (page->plot->scene->title[0] ? TITLE : NO_TITLE) - PANEL - LABELS - DEA_LEGEND_ROW / 2.0;
-    int rows = 0;
-    for (size_t from = 0; from < count; rows++) {
-        const size_t end = legend_row_end(entries, kinds, from);
-        double x = 0.5 * (WIDTH + MARGIN - legend_room(entries, from, end));
+    legend_list(page, legend, kinds);
+    double y = 0.0;
+    for (size_t from = 0; from < legend->count; y -= DEA_LEGEND_ROW) {
+        const size_t end = legend_row_end(legend, kinds, from);
+        double x = 0.5 * (WIDTH + MARGIN - legend_room(legend, from, end));
         for (; from < end; from++) {
-            if (legend) {
-                dea_legend_put(legend, &entries[from], x, y);
-            }
-            x += dea_legend_room(&entries[from]);
+            legend->entries[from].x = x;
+            legend->entries[from].y = y;
+            x += dea_legend_room(&legend->entries[from]);
         }
-        y -= DEA_LEGEND_ROW;
     }
-    return rows;
-}
-
-static void sheet_layout(sheet *page)
-{
-    const int rows = legend_rows(page, NULL);
-    page->height = (page->plot->scene->title[0] ? TITLE : NO_TITLE) + PANEL + LABELS + (rows > 0 ? DEA_LEGEND_ROW * rows + 8 : 0);
+    page->height = (page->plot->scene->title[0] ? TITLE : NO_TITLE) + PANEL + LABELS + (int)-y + (y < 0.0 ? 8 : 0);
+    for (size_t i = 0; i < legend->count; i++) {
+        legend->entries[i].y += 8.0 - y - DEA_LEGEND_ROW / 2.0;
+    }
 }
 
 /* Positive values with a constant ratio over two decades or more ask for a logarithmic axis. */
@@ -355,17 +348,18 @@ dea_status dea_plot_draw_curves(dea_plot *plot, dea_error *error)
     page.across = dea_scale_axis(page.axis);
     page.groups = plot->curves / plot->scene->model_count;
     sheet_scan(&page);
-    sheet_layout(&page);
+    dea_legend legend = {.count = 0};
+    sheet_layout(&page, &legend);
     FILE *script = plot->picture.script;
     dea_gnuplot_size(&plot->picture, WIDTH, page.height);
     write_data(&page, script);
     write_frame(&page, script);
-    dea_legend legend = {.script = script, .width = WIDTH, .height = page.height};
-    legend_rows(&page, &legend);
     write_panel(&page, script, 0);
     fputs("unset label 2\n", script);
-    dea_legend_clear(&legend);
     write_panel(&page, script, 1);
+    if (legend.count > 0) {
+        dea_legend_draw(&legend, script, WIDTH, page.height);
+    }
     fputs("unset multiplot\nunset output\n", script);
     free(order);
     return DEA_OK;

@@ -195,7 +195,7 @@ static void write_chart(chart *map, FILE *script)
     write_side(script, &map->x, 'x');
     write_side(script, &map->y, 'y');
     snprintf(label, sizeof label, "Displacement u [%s]", map->colour.unit);
-    fputs("set cblabel ", script);
+    fputs("set cblabel offset 1,0 textcolor '#202020' ", script);
     dea_gnuplot_text(script, label);
     fputs("\nset title ", script);
     dea_gnuplot_text(script, map->plot->scene->title);

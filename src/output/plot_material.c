@@ -8,9 +8,6 @@
 
 enum { WIDTH = 960, HEIGHT = 420, FIT_WIDTH = 640, FIT_HEIGHT = 440, CURVE_STEPS = 200, POINTS_MAX = 2000 };
 
-/* Place of the axes that carry a legend, as shares of the canvas. */
-static const double LEFT = 0.095, TOP = 0.865;
-
 static const char *const load_colours[DEA_LOAD_COUNT] = {"#0072b2", "#d55e00"};
 static const char *const load_titles[DEA_LOAD_COUNT] = {"uniaxial", "equi-biaxial"};
 
@@ -41,13 +38,17 @@ static void write_pair(FILE *script, double x, double y)
     fputc('\n', script);
 }
 
-/* Puts the next entry into the upper left corner of the axes, below those that are there. */
-static void put_entry(dea_legend *legend, int load, const char *label, size_t dash, int symbol)
+/* Adds an entry below those that are there, from the corner x, y down. */
+static void add_entry(dea_legend *legend, int load, const char *what, size_t dash, int symbol, double x, double y)
 {
-    dea_legend_entry entry = {.dash = dash, .symbol = symbol};
-    snprintf(entry.label, sizeof entry.label, "%s", label);
-    snprintf(entry.colour, sizeof entry.colour, "%s", load_colours[load]);
-    dea_legend_put(legend, &entry, LEFT * legend->width + 16.0, TOP * legend->height - 20.0 - DEA_LEGEND_ROW * legend->next);
+    const double row = (double)legend->count;
+    dea_legend_entry *entry = dea_legend_add(legend);
+    snprintf(entry->label, sizeof entry->label, "%s%s", load_titles[load], what);
+    snprintf(entry->colour, sizeof entry->colour, "%s", load_colours[load]);
+    entry->dash = dash;
+    entry->symbol = symbol;
+    entry->x = x + 16.0;
+    entry->y = y - 18.0 - DEA_LEGEND_ROW * row;
 }
 
 /* Data block $fit<load> of nominal stress [kPa] over stretch. */
@@ -80,21 +81,21 @@ static void write_material(const dea_material *material, FILE *script)
     fprintf(script, "set label 2 at screen 0.5, screen 0.96 center\n");
     write_setting(script, "xlabel", "Stretch λ");
     write_setting(script, "ylabel", "Engineering stress P [kPa]");
-    write_place(script, LEFT, 0.48, 0.15, TOP);
-    dea_legend legend = {.script = script, .width = WIDTH, .height = HEIGHT};
+    write_place(script, 0.095, 0.48, 0.15, 0.865);
+    dea_legend legend = {.count = 0};
     for (int load = 0; load < DEA_LOAD_COUNT; load++) {
-        put_entry(&legend, load, load_titles[load], (size_t)load + 1, 0);
+        add_entry(&legend, load, "", (size_t)load + 1, 0, 0.095 * WIDTH, 0.865 * HEIGHT);
     }
     for (int load = 0; load < DEA_LOAD_COUNT; load++) {
         fprintf(script, "%s$fit%d with lines linewidth 1.8 linecolor '%s' ", load > 0 ? ", " : "plot ", load, load_colours[load]);
         dea_plot_dash(script, (size_t)load + 1);
     }
     fputs("\nunset label 2\nset label 1 '(b)' at graph 0, graph 1.045\n", script);
-    dea_legend_clear(&legend);
     write_setting(script, "ylabel", "Operating modulus Y [MPa]");
-    write_place(script, 0.59, 0.975, 0.15, TOP);
-    fprintf(script, "plot $modulus with lines linewidth 1.8 linecolor '%s' notitle\nunset multiplot\nunset output\n",
-            load_colours[DEA_LOAD_EQUIBIAXIAL]);
+    write_place(script, 0.59, 0.975, 0.15, 0.865);
+    fprintf(script, "plot $modulus with lines linewidth 1.8 linecolor '%s' notitle\n", load_colours[DEA_LOAD_EQUIBIAXIAL]);
+    dea_legend_draw(&legend, script, WIDTH, HEIGHT);
+    fputs("unset multiplot\nunset output\n", script);
 }
 
 dea_status dea_plot_material(const dea_material *material, const char *path, dea_error *error)
@@ -127,7 +128,7 @@ static void write_fit(const dea_fit *fit, const dea_fit_data *data, FILE *script
 {
     const double from = fmin(fit->stretch_min, 1.0), to = fmax(fit->stretch_max, 1.0);
     dea_plot_style(script);
-    fputs("unset key\nset xrange [", script);
+    fputs("unset key\nset multiplot\nset xrange [", script);
     dea_gnuplot_number(script, from);
     fputc(':', script);
     dea_gnuplot_number(script, to);
@@ -140,13 +141,12 @@ static void write_fit(const dea_fit *fit, const dea_fit_data *data, FILE *script
             write_points(script, data, fit, (dea_load)load);
         }
     }
-    write_place(script, LEFT + 0.03, 0.97, 0.13, TOP + 0.1);
-    dea_legend legend = {.script = script, .width = FIT_WIDTH, .height = FIT_HEIGHT};
+    write_place(script, 0.125, 0.97, 0.13, 0.965);
+    dea_legend legend = {.count = 0};
     for (int load = 0; load < DEA_LOAD_COUNT; load++) {
         if (fit->count[load] > 0) {
-            char label[DEA_LEGEND_LABEL];
-            snprintf(label, sizeof label, "%s: measured, Yeoh fit", load_titles[load]);
-            put_entry(&legend, load, label, 1, 6);
+            add_entry(&legend, load, ", measured", 0, 6, 0.125 * FIT_WIDTH, 0.965 * FIT_HEIGHT);
+            add_entry(&legend, load, ", Yeoh fit", 1, 0, 0.125 * FIT_WIDTH, 0.965 * FIT_HEIGHT);
         }
     }
     const char *before = "plot ";
@@ -157,7 +157,9 @@ static void write_fit(const dea_fit *fit, const dea_fit_data *data, FILE *script
             before = ", ";
         }
     }
-    fputs("\nunset output\n", script);
+    fputc('\n', script);
+    dea_legend_draw(&legend, script, FIT_WIDTH, FIT_HEIGHT);
+    fputs("unset multiplot\nunset output\n", script);
 }
 
 dea_status dea_plot_fit(const dea_fit *fit, const dea_fit_data *data, const char *path, dea_error *error)

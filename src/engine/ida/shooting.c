@@ -3,8 +3,8 @@
  *
  *     dSigma/dx + (s1 - s2) = 0,   dd2/dx - (d1 - d2) = 0,   p1(lambda_1, lambda_2) - p_pre - k lambda_1 lambda_2^2 - Sigma = 0.
  *
- * IDA finds lambda_1 behind the edge itself, from the continuity of s1; KINSOL finds the edge, from d2 = 0 at the frame. Unknowns are
- * scaled by the load, so that no tolerance depends on its size. */
+ * IDA finds lambda_1 behind the edge itself, from the continuity of s1; KINSOL finds the edge, from d2 = 0 at the frame. Unknowns
+ * are scaled by the load, so that no tolerance depends on its size. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -16,22 +16,27 @@ static const double pi = 3.14159265358979323846;
 
 enum { SIGMA, HOOP, RADIAL, UNKNOWNS };
 
+/* Steps along the radius after which a guess is taken as hopeless; a good one takes some hundreds. */
+enum { MOST_STEPS = 3000 };
+
 struct dea_shooting {
     dea_integrator integrator;
-    void *kinsol;          /* owned */
-    N_Vector edge;         /* owned: d2 at r_a over `strain` */
-    N_Vector ones;         /* owned */
+    void *kinsol;           /* owned */
+    N_Vector edge;          /* owned: d2 at r_a over `strain` */
+    N_Vector ones;          /* owned */
     const dea_point *point; /* borrowed for one solve */
-    double share;          /* of the load */
-    double pressure;       /* M at full load [Pa] */
-    double disc_k;         /* Maxwell pressure in the disc at this share [Pa] */
-    double annulus_k;      /* and in the annulus [Pa] */
-    double stress;         /* scale of Sigma [Pa] */
-    double strain;         /* scale of d1, d2 [1] */
+    int search;             /* what KINSOL searches now */
+    double share;           /* of the load that KINSOL's 1 stands for [1] */
+    double held;            /* edge that is held while the load is searched, or a size of the edge [1] */
+    double pressure;        /* M at full load [Pa] */
+    double disc_k;          /* Maxwell pressure in the disc at this share [Pa] */
+    double annulus_k;       /* and in the annulus [Pa] */
+    double stress;          /* scale of Sigma [Pa] */
+    double strain;          /* scale of d1, d2 [1] */
     double tolerance;
-    double least_stress;   /* of the last integration [Pa] */
-    double largest_area;   /* largest lambda_1 lambda_2 of the electroded region [1] */
-    double edge_force;     /* lambda_1 lambda_2^2 of the electroded side at r_a [1] */
+    double least_stress; /* of the last integration [Pa] */
+    double largest_area; /* largest lambda_1 lambda_2 of the electroded region [1] */
+    double edge_force;   /* lambda_1 lambda_2^2 of the electroded side at r_a [1] */
 };
 
 /* p1(l + d1, l + d2) - p1(l, l), factored in d1 and d2. */
@@ -45,8 +50,9 @@ static double stress_change(const dea_film *film, double d1, double d2)
     const double p2 = d2 * (l2 + l);
     const double fourth = 1.0 / (l1 * l1 * l2 * l2);
     const double fifth = fourth / l1;
-    const double drop4 = (l1 * l1 * p2 + y * p1) * fourth * film->inverse_fourth;                                       /* l^-4 - l1^-2 l2^-2 */
-    const double drop5 = (l1 * l1 * l1 * p2 + y * d1 * (l1 * l1 + l1 * l + y)) * fifth * film->inverse_fourth / l; /* l^-5 - l1^-3 l2^-2 */
+    const double drop4 = (l1 * l1 * p2 + y * p1) * fourth * film->inverse_fourth; /* l^-4 - l1^-2 l2^-2 */
+    const double drop5 =
+        (l1 * l1 * l1 * p2 + y * d1 * (l1 * l1 + l1 * l + y)) * fifth * film->inverse_fourth / l; /* l^-5 - l1^-3 l2^-2 */
     const double dj = p1 + p2 - drop4;
     const double dw = dj * (2.0 * film->yeoh[1] + 3.0 * film->yeoh[2] * (2.0 * film->j + dj));
     return 2.0 * (film->w + dw) * (d1 + drop5) + dw * 2.0 * film->g / l;
@@ -76,6 +82,21 @@ static int residual(sunrealtype x, N_Vector y, N_Vector yp, N_Vector r, void *us
     return 0;
 }
 
+/* Scales of the unknowns for a share of the load. */
+static void set_scales(dea_shooting *s, double share)
+{
+    const double l = s->point->film.prestretch;
+    s->stress = share * s->pressure * l * l * l;
+    s->strain = s->stress / s->point->film.w11;
+}
+
+static void set_load(dea_shooting *s, double share)
+{
+    const bool dot = s->point->kind == DEA_DOT;
+    s->disc_k = dot ? share * s->pressure : 0.0;
+    s->annulus_k = dot ? 0.0 : share * s->pressure;
+}
+
 /* Notes stresses and area at one place of the annulus. */
 static void note(dea_shooting *s)
 {
@@ -83,7 +104,8 @@ static void note(dea_shooting *s)
     const double l1 = s->point->film.prestretch + s->strain * v[RADIAL];
     const double l2 = s->point->film.prestretch + s->strain * v[HOOP];
     const dea_stress stress = dea_yeoh_stress(s->point->film.yeoh, l1, l2);
-    s->least_stress = fmin(s->least_stress, fmin(stress.p1 - s->annulus_k * l1 * l2 * l2, stress.p2 - s->annulus_k * l2 * l1 * l1));
+    s->least_stress =
+        fmin(s->least_stress, fmin(stress.p1 - s->annulus_k * l1 * l2 * l2, stress.p2 - s->annulus_k * l2 * l1 * l1));
     if (s->annulus_k > 0.0) {
         s->largest_area = fmax(s->largest_area, l1 * l2);
     }
@@ -92,15 +114,16 @@ static void note(dea_shooting *s)
 /* Jump of lambda_1 at the edge by its own Newton steps, only to start IDA's search near its goal. */
 static double jump_guess(const dea_shooting *s, double l)
 {
+    const dea_film *film = &s->point->film;
+    const double edge = l - film->prestretch;
     const double load = (s->disc_k - s->annulus_k) * l * l * l;
-    const double at_edge = stress_change(&s->point->film, l - s->point->film.prestretch, l - s->point->film.prestretch);
+    const double at_edge = stress_change(film, edge, edge);
     double jump = 0.0;
-    double step = l;
-    for (int i = 0; i < 40 && fabs(step) > 1e-6 * fabs(jump); i++) {
-        const double d1 = l - jump - s->point->film.prestretch;
-        const double slope = dea_yeoh_stress(s->point->film.yeoh, l - jump, l).w11 - s->annulus_k * l * l;
-        step = (stress_change(&s->point->film, d1, l - s->point->film.prestretch) - at_edge + load + s->annulus_k * jump * l * l) / slope;
-        jump = jump + step < l ? jump + step : 0.5 * (jump + l); /* keeps lambda_1 positive */
+    for (int i = 0; i < 12; i++) {
+        const double slope = dea_yeoh_stress(film->yeoh, l - jump, l).w11 - s->annulus_k * l * l;
+        const double excess = stress_change(film, edge - jump, edge) - at_edge + load + s->annulus_k * jump * l * l;
+        const double most = 0.25 * (l - jump); /* lambda_1 moves by a quarter at most: the first root is meant */
+        jump += fmax(-most, fmin(most, excess / slope));
     }
     return jump;
 }
@@ -116,7 +139,8 @@ static bool start(dea_shooting *s, double edge)
     v[HOOP] = edge / s->strain;
     v[RADIAL] = (edge - jump_guess(s, l)) / s->strain;
     N_VConst(0.0, m->yp);
-    if (IDAReInit(m->ida, 0.0, m->y, m->yp) != IDA_SUCCESS || IDASVtolerances(m->ida, s->tolerance, m->tolerance) != IDA_SUCCESS ||
+    if (IDAReInit(m->ida, 0.0, m->y, m->yp) != IDA_SUCCESS ||
+        IDASVtolerances(m->ida, s->tolerance, m->tolerance) != IDA_SUCCESS ||
         IDACalcIC(m->ida, IDA_YA_YDP_INIT, 1e-3) != IDA_SUCCESS || IDAGetConsistentIC(m->ida, m->y, m->yp) != IDA_SUCCESS) {
         return false;
     }
@@ -139,7 +163,7 @@ static double miss_at_frame(dea_shooting *s, double edge)
         return NAN;
     }
     int code = IDA_SUCCESS;
-    while (code == IDA_SUCCESS) {
+    for (int i = 0; i < MOST_STEPS && code == IDA_SUCCESS; i++) {
         code = IDASolve(m->ida, length, &x, m->y, m->yp, IDA_ONE_STEP);
         if (code >= 0) {
             note(s);
@@ -148,16 +172,23 @@ static double miss_at_frame(dea_shooting *s, double edge)
     return code == IDA_TSTOP_RETURN ? N_VGetArrayPointer(m->y)[HOOP] : NAN;
 }
 
-/* Fixed point of the edge: edge - miss(edge); the slope of the miss is near 1, and Anderson's acceleration takes care of the rest. */
-static int next_edge(N_Vector edge, N_Vector next, void *user)
+/* What KINSOL searches. */
+typedef enum search { SEARCH_EDGE, SEARCH_SHARE } search;
+
+/* Fixed points for KINSOL: of the edge at a load, edge - miss, or of the load at an edge, share + miss. Both slopes are near 1
+ * for a small strain, and Anderson's acceleration takes care of the rest. */
+static int next_guess(N_Vector guess, N_Vector next, void *user)
 {
     dea_shooting *s = user;
-    const double at = N_VGetArrayPointer(edge)[0];
-    const double miss = miss_at_frame(s, at * s->strain);
+    const double at = N_VGetArrayPointer(guess)[0];
+    if (s->search == SEARCH_SHARE) {
+        set_load(s, at * s->share);
+    }
+    const double miss = miss_at_frame(s, s->search == SEARCH_EDGE ? at * s->strain : s->held) * s->strain / s->held;
     if (isnan(miss)) {
         return -1;
     }
-    N_VGetArrayPointer(next)[0] = at - miss;
+    N_VGetArrayPointer(next)[0] = s->search == SEARCH_EDGE ? at - miss * s->held / s->strain : at + miss;
     return 0;
 }
 
@@ -180,8 +211,8 @@ static bool open_kinsol(SUNContext context, dea_shooting *s)
 #if SUNDIALS_VERSION_MAJOR < 7
     KINSetErrHandlerFn(s->kinsol, ignore_message, NULL);
 #endif
-    return KINSetMAA(s->kinsol, 1) == KIN_SUCCESS && KINInit(s->kinsol, next_edge, s->edge) == KIN_SUCCESS &&
-           KINSetUserData(s->kinsol, s) == KIN_SUCCESS && KINSetNumMaxIters(s->kinsol, 40) == KIN_SUCCESS;
+    return KINSetMAA(s->kinsol, 1) == KIN_SUCCESS && KINInit(s->kinsol, next_guess, s->edge) == KIN_SUCCESS &&
+           KINSetUserData(s->kinsol, s) == KIN_SUCCESS && KINSetNumMaxIters(s->kinsol, 20) == KIN_SUCCESS;
 }
 
 dea_status dea_shooting_open(SUNContext context, dea_shooting **out, dea_error *error)
@@ -220,58 +251,123 @@ void dea_shooting_close(dea_shooting *s)
     }
 }
 
-static void set_share(dea_shooting *s, double share)
+/* Runs KINSOL from v = start on; NAN where it does not settle. */
+static double search_from(dea_shooting *s, search what, double start)
 {
-    const bool dot = s->point->kind == DEA_DOT;
-    const double l = s->point->film.prestretch;
-    s->share = share;
-    s->disc_k = dot ? share * s->pressure : 0.0;
-    s->annulus_k = dot ? 0.0 : share * s->pressure;
-    s->stress = share * s->pressure * l * l * l;
-    s->strain = s->stress / s->point->film.w11;
+    s->search = what;
     N_VConst(s->tolerance, s->integrator.tolerance);
-}
-
-/* Edge at this share of the load from a guess; true where KINSOL settled on a stable one. *edge is in and out, absolute. */
-static bool settle(dea_shooting *s, double share, double *edge, double *stiffness)
-{
-    set_share(s, share);
-    N_VGetArrayPointer(s->edge)[0] = *edge / s->strain;
-    KINSetFuncNormTol(s->kinsol, 100.0 * s->tolerance * fabs(*edge / s->strain));
+    N_VGetArrayPointer(s->edge)[0] = start;
+    KINSetFuncNormTol(s->kinsol, 100.0 * s->tolerance * fabs(start));
     const int code = KINSol(s->kinsol, s->edge, KIN_FP, s->ones, s->ones);
-    const double at = N_VGetArrayPointer(s->edge)[0];
-    if (code < 0 || !isfinite(at)) {
-        return false;
-    }
-    const double nudge = 1e-4 * at;
-    *stiffness = (miss_at_frame(s, (at + nudge) * s->strain) - miss_at_frame(s, (at - nudge) * s->strain)) / (2.0 * nudge);
-    *edge = at * s->strain;
-    return true;
+    return code < 0 ? NAN : N_VGetArrayPointer(s->edge)[0];
 }
 
-/* Follows the edge while the load grows, in steps that halve where no stable edge is found; false: it folds before the full load. */
-static bool follow(dea_shooting *s, double *edge)
+/* Edge under the full load from a guess of it; NAN where KINSOL does not settle. */
+static double edge_at_full_load(dea_shooting *s, double guess)
 {
-    double share = 0.0;
-    double step = 0.125;
-    double slope = *edge; /* per share of the load */
-    *edge = 0.0;
-    while (share < 1.0) {
-        const double next = fmin(1.0, share + step);
-        double stiffness = NAN;
-        double guess = *edge + slope * (next - share);
-        if (settle(s, next, &guess, &stiffness) && stiffness > 0.0 && fabs(guess - *edge) < 0.5 * s->point->film.prestretch) {
-            slope = (guess - *edge) / (next - share);
-            *edge = guess;
-            share = next;
+    set_scales(s, 1.0);
+    set_load(s, 1.0);
+    s->held = guess;
+    return search_from(s, SEARCH_EDGE, guess / s->strain) * s->strain;
+}
+
+/* d(miss)/d(edge) under the full load: 1 for a film without load, 0 where the equilibrium folds. */
+static double stiffness_at(dea_shooting *s, double edge)
+{
+    const double nudge = 1e-4 * edge;
+    return (miss_at_frame(s, edge + nudge) - miss_at_frame(s, edge - nudge)) * s->strain / (2.0 * nudge);
+}
+
+/* Share of the load that holds the edge, from a guess of it; NAN where there is none. */
+static double share_at(dea_shooting *s, double edge, double guess)
+{
+    set_scales(s, guess);
+    s->share = guess;
+    s->held = edge;
+    return search_from(s, SEARCH_SHARE, 1.0) * guess;
+}
+
+/* A place of the equilibrium: the edge, and the share of the load that holds it. */
+typedef struct place {
+    double edge, share;
+} place;
+
+/* Edge under the full load between two places on either side of it. */
+static double edge_between(dea_shooting *s, place low, place high)
+{
+    for (int i = 0; i < 60; i++) {
+        const double weight = (1.0 - low.share) / (high.share - low.share);
+        const double guess = low.edge + weight * (high.edge - low.edge);
+        const double edge = edge_at_full_load(s, guess);
+        if (fabs(edge) >= fabs(low.edge) && fabs(edge) <= fabs(high.edge)) {
+            return edge;
+        }
+        const double middle = 0.5 * (low.edge + high.edge);
+        const place half = {middle, share_at(s, middle, 1.0)};
+        *(half.share < 1.0 ? &low : &high) = half;
+    }
+    return NAN;
+}
+
+/* Largest share near the middle one of three places, by parabolas through the best three; ends early above the full load. */
+static place largest_share(dea_shooting *s, place a, place b, place c)
+{
+    for (int i = 0; i < 12 && !(b.share >= 1.0); i++) {
+        const double left = (b.edge - a.edge) * (b.share - c.share);
+        const double right = (b.edge - c.edge) * (b.share - a.share);
+        const double step = 0.5 * ((b.edge - a.edge) * left - (b.edge - c.edge) * right) / (left - right);
+        const place next = {b.edge - step, share_at(s, b.edge - step, b.share)};
+        if (!isfinite(next.share) || fabs(step) <= 1e-6 * fabs(b.edge)) {
+            break;
+        }
+        const bool beyond = fabs(next.edge) > fabs(b.edge);
+        if (next.share > b.share) {
+            *(beyond ? &a : &c) = b;
+            b = next;
         } else {
-            step *= 0.5;
-            if (step < 1e-7) {
-                return false;
-            }
+            *(beyond ? &c : &a) = next;
         }
     }
-    return true;
+    return b;
+}
+
+/* Follows the equilibrium from rest in steps of the edge until it holds the full load; NAN where the load falls again before:
+ * pull-in. */
+static double follow(dea_shooting *s, double linear, double end)
+{
+    const double pre = s->point->film.prestretch;
+    const double sign = linear > 0.0 ? 1.0 : -1.0;
+    const double fine = s->tolerance;
+    place before = {0.0, 0.0};
+    place last = {0.0, 0.0};
+    double edge = NAN;
+    s->tolerance = fmax(fine, 1e-9); /* enough to find the neighbourhood */
+    double step = 0.03;
+    while (fabs(last.edge) < end && step > 1e-5) {
+        const double at = sign * fmin(end, fabs(last.edge) + step * (pre + fmax(0.0, last.edge)));
+        const double guess = last.share > 0.0 ? fmin(1.5, last.share * at / last.edge) : at / linear;
+        place here = {at, share_at(s, at, guess)};
+        if (isnan(here.share)) {
+            step *= 0.5; /* the film ends here, or the step was too long */
+            continue;
+        }
+        if (!(here.share > last.share)) {
+            here = largest_share(s, before, last, here);
+            if (!(here.share >= 1.0)) {
+                break;
+            }
+            last = before;
+        }
+        if (here.share >= 1.0) {
+            s->tolerance = fine;
+            edge = edge_between(s, last, here);
+            break;
+        }
+        before = last;
+        last = here;
+    }
+    s->tolerance = fine;
+    return edge;
 }
 
 void dea_shooting_solve(dea_shooting *s, const dea_point *point, double accuracy, dea_row *row)
@@ -280,8 +376,6 @@ void dea_shooting_solve(dea_shooting *s, const dea_point *point, double accuracy
     const double sign = point->kind == DEA_DOT ? 1.0 : -1.0;
     const double nominal = point->voltage / point->film_thickness;
     const double b2 = point->coverage * point->coverage;
-    double edge = 0.0;
-    double stiffness = 1.0;
     s->point = point;
     s->pressure = film->permittivity * nominal * nominal;
     s->tolerance = fmin(1e-7, fmax(1e-6 * accuracy, 1e-12));
@@ -294,15 +388,19 @@ void dea_shooting_solve(dea_shooting *s, const dea_point *point, double accuracy
         row->state = DEA_STATE_PULL_IN;
         return;
     }
-    const double linear = sign * s->pressure * film->square * film->prestretch * (1.0 - b2) / (2.0 * film->w11); /* without softening */
-    edge = linear;
-    if (!settle(s, 1.0, &edge, &stiffness) || !(stiffness > 0.5) || fabs(edge) > 0.1 * film->prestretch) {
-        edge = linear;
-        if (!follow(s, &edge)) {
-            row->state = DEA_STATE_PULL_IN;
-            return;
-        }
+    const double linear =
+        sign * s->pressure * film->square * film->prestretch * (1.0 - b2) / (2.0 * film->w11); /* without softening */
+    double edge = fabs(linear) < 0.1 * film->prestretch ? edge_at_full_load(s, linear) : NAN;
+    if (!(fabs(edge) < 0.1 * film->prestretch && stiffness_at(s, edge) > 0.5)) { /* else too near to rest for a fold between */
+        const double end = sign > 0.0 ? film->prestretch * (1.0 / point->coverage - 1.0) : film->prestretch;
+        edge = follow(s, linear, end * (1.0 - 1e-9));
     }
+    if (isnan(edge)) {
+        row->state = DEA_STATE_PULL_IN;
+        return;
+    }
+    set_scales(s, 1.0);
+    set_load(s, 1.0);
     if (isnan(miss_at_frame(s, edge))) {
         return;
     }
@@ -311,5 +409,7 @@ void dea_shooting_solve(dea_shooting *s, const dea_point *point, double accuracy
     const double field = fabs(nominal) * s->largest_area;
     const double force = sign * 2.0 * pi * point->film_thickness * s->pressure * s->edge_force * radius / film->prestretch;
     *row = (dea_row){strain, strain * radius, force, field,
-                     field > film->breakdown ? DEA_STATE_BREAKDOWN : s->least_stress > 0.0 ? DEA_STATE_OK : DEA_STATE_SLACK};
+                     field > film->breakdown ? DEA_STATE_BREAKDOWN
+                     : s->least_stress > 0.0 ? DEA_STATE_OK
+                                             : DEA_STATE_SLACK};
 }

@@ -1,0 +1,18 @@
+#include "bench.h"
+
+#include <stdlib.h>
+
+int main(int count, char **arguments)
+{
+    if (count != 3) {
+        bench_give_up("usage: %s PATH_OF_DEASPICE FOLDER_OF_PEERS", arguments[0]);
+    }
+    bench_row("what", "goal", -1, "measured (median)", "error");
+    bench_row("---", "---", -1, "---", "---");
+    bench_agreement();
+    bench_engines(arguments[2]);
+    bench_workers();
+    bench_program(arguments[1]);
+    bench_peers(arguments[2]);
+    return 0;
+}

@@ -1,0 +1,198 @@
+/* Answers found another way: the exact membrane by plain Runge-Kutta over the radius, Eq. 18 by a scan in long double. */
+#ifndef DEA_TEST_JUDGES_H
+#define DEA_TEST_JUDGES_H
+
+#include "scenes.h"
+
+/* Yeoh film as physics.md writes it, nothing factored: stresses and moduli at l1, l2. */
+typedef struct plain_film {
+    double w, a1, a2, q;
+} plain_film;
+
+static inline plain_film plain_film_at(const double *yeoh, double l1, double l2)
+{
+    const double j = l1 * l1 + l2 * l2 + 1.0 / (l1 * l1 * l2 * l2) - 3.0;
+    return (plain_film){
+        .w = yeoh[0] + 2.0 * yeoh[1] * j + 3.0 * yeoh[2] * j * j,
+        .a1 = 2.0 * (l1 - pow(l1, -3.0) / (l2 * l2)),
+        .a2 = 2.0 * (l2 - pow(l2, -3.0) / (l1 * l1)),
+        .q = 2.0 * yeoh[1] + 6.0 * yeoh[2] * j,
+    };
+}
+
+/* The boundary value problem: reference radii b to 1, Maxwell pressures in disc and annulus [Pa]. */
+typedef struct judged_membrane {
+    const double *yeoh;
+    double prestretch, coverage, disc_k, annulus_k;
+    double largest_area, least_stress; /* of the last integration: in the annulus */
+} judged_membrane;
+
+static inline double radial_stress(const judged_membrane *m, double k, double l1, double l2)
+{
+    const plain_film f = plain_film_at(m->yeoh, l1, l2);
+    return f.w * f.a1 - k * l1 * l2 * l2;
+}
+
+/* dlambda1/dR and dlambda2/dR. */
+static inline void membrane_slopes(const judged_membrane *m, double radius, const double l[2], double slope[2])
+{
+    const double k = m->annulus_k;
+    const plain_film f = plain_film_at(m->yeoh, l[0], l[1]);
+    const double s1 = f.w * f.a1 - k * l[0] * l[1] * l[1];
+    const double s2 = f.w * f.a2 - k * l[1] * l[0] * l[0];
+    const double s11 = f.w * (2.0 + 6.0 * pow(l[0], -4.0) / (l[1] * l[1])) + f.q * f.a1 * f.a1 - k * l[1] * l[1];
+    const double s12 = 4.0 * f.w * pow(l[0] * l[1], -3.0) + f.q * f.a1 * f.a2 - 2.0 * k * l[0] * l[1];
+    slope[0] = (s2 - s1 - s12 * (l[0] - l[1])) / (s11 * radius);
+    slope[1] = (l[0] - l[1]) / radius;
+}
+
+static inline void membrane_step(const judged_membrane *m, double radius, double h, double l[2])
+{
+    static const double at[] = {0.0, 0.5, 0.5, 1.0};
+    static const double share[] = {1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
+    double slope[2] = {0.0, 0.0};
+    double sum[2] = {0.0, 0.0};
+    for (int i = 0; i < 4; i++) {
+        const double here[2] = {l[0] + h * at[i] * slope[0], l[1] + h * at[i] * slope[1]};
+        membrane_slopes(m, radius + h * at[i], here, slope);
+        sum[0] += share[i] * slope[0];
+        sum[1] += share[i] * slope[1];
+    }
+    l[0] += h * sum[0];
+    l[1] += h * sum[1];
+}
+
+/* lambda1 behind the edge where the disc has the stretch l, by bisection of the radial stress. */
+static inline double membrane_jump(const judged_membrane *m, double l)
+{
+    const double wanted = radial_stress(m, m->disc_k, l, l);
+    double low = 0.3 * l;
+    double high = 2.0 * l;
+    for (int i = 0; i < 200; i++) {
+        const double middle = 0.5 * (low + high);
+        *(radial_stress(m, m->annulus_k, middle, l) < wanted ? &low : &high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+static inline double membrane_miss_on(judged_membrane *m, double edge, int steps)
+{
+    double l[2] = {membrane_jump(m, edge), edge};
+    const double h = (1.0 - m->coverage) / steps;
+    m->largest_area = 0.0;
+    m->least_stress = (double)INFINITY;
+    for (int i = 0; i <= steps; i++) {
+        const double s2 = radial_stress(m, m->annulus_k, l[1], l[0]);
+        m->largest_area = fmax(m->largest_area, l[0] * l[1]);
+        m->least_stress = fmin(m->least_stress, fmin(radial_stress(m, m->annulus_k, l[0], l[1]), s2));
+        if (i < steps) {
+            membrane_step(m, m->coverage + i * h, h, l);
+        }
+    }
+    return l[1] - m->prestretch;
+}
+
+/* lambda2 at the frame less the pre-stretch, extrapolated from two meshes. */
+static inline double membrane_miss(judged_membrane *m, double edge)
+{
+    const double coarse = membrane_miss_on(m, edge, 1000);
+    return membrane_miss_on(m, edge, 2000) + (membrane_miss_on(m, edge, 2000) - coarse) / 15.0;
+}
+
+/* Strain, true field and state of the first equilibrium from rest, looked for in steps of 0.004 of stretch. */
+static inline dea_row judge_membrane(const dea_scene *scene)
+{
+    const bool dot = scene->actuator.kind == DEA_DOT;
+    const double nominal = scene->drive.voltage / scene->actuator.film_thickness;
+    const double k = 8.8541878128e-12 * scene->material.permittivity * nominal * nominal;
+    const double l = scene->actuator.prestretch;
+    judged_membrane m = {scene->material.yeoh, l, scene->actuator.coverage, dot ? k : 0.0, dot ? 0.0 : k, 0.0, 0.0};
+    const double sign = dot ? 1.0 : -1.0;
+    double low = l;
+    double high = l + sign * 0.004;
+    while (sign * membrane_miss(&m, high) < 0.0 && high > 0.5 * l && high < 2.0 * l) {
+        low = high;
+        high += sign * 0.004;
+    }
+    for (int i = 0; i < 45; i++) {
+        const double middle = 0.5 * (low + high);
+        *(sign * membrane_miss(&m, middle) < 0.0 ? &low : &high) = middle;
+    }
+    const double edge = 0.5 * (low + high);
+    (void)membrane_miss(&m, edge);
+    const double disc = radial_stress(&m, m.disc_k, edge, edge);
+    dea_row row = {.strain = edge / l - 1.0, .field = nominal * (dot ? edge * edge : m.largest_area)};
+    row.state = fmin(disc, m.least_stress) > 0.0 ? DEA_STATE_OK : DEA_STATE_SLACK;
+    return row;
+}
+
+/* Eq. 18 in the strain e of the active film, in long double: sigma_A - sigma_P and the load m (1 + e)^4. */
+typedef struct judged_balance {
+    const double *yeoh;
+    long double prestretch, ratio, load;
+} judged_balance;
+
+static inline long double plain_cauchy(const double *yeoh, long double l)
+{
+    const long double y = l * l;
+    const long double j = 2.0L * y + 1.0L / (y * y) - 3.0L;
+    return 2.0L * (y - 1.0L / (y * y)) * (yeoh[0] + 2.0L * yeoh[1] * j + 3.0L * yeoh[2] * j * j);
+}
+
+static inline judged_balance judged_balance_of(const dea_scene *scene, bool constant_force)
+{
+    const long double b = scene->actuator.coverage;
+    const long double nominal = (long double)scene->drive.voltage / scene->actuator.film_thickness;
+    const long double y = (long double)scene->actuator.prestretch * scene->actuator.prestretch;
+    const long double ratio = scene->actuator.kind == DEA_DOT ? b / (1.0L - b) : (1.0L - b) / b;
+    return (judged_balance){scene->material.yeoh, scene->actuator.prestretch, constant_force ? 0.0L : ratio,
+                            8.8541878128e-12L * scene->material.permittivity * y * y * nominal * nominal};
+}
+
+/* Share of the load that holds the strain e: it grows from rest to the first fold. */
+static inline long double judged_share(const judged_balance *b, long double e)
+{
+    const long double s = 1.0L + e;
+    const long double active = plain_cauchy(b->yeoh, b->prestretch * s);
+    return (active - plain_cauchy(b->yeoh, b->prestretch * (1.0L - b->ratio * e))) / (b->load * s * s * s * s);
+}
+
+/* What a scan of Eq. 18 in @p steps finds: strain of the first equilibrium from rest, NAN past the first fold, and whether the film
+ * has an equilibrium behind a fold. */
+typedef struct judgement {
+    double strain;
+    double fold;    /* share of the load at the first fold, NAN: none */
+    bool later;     /* a share of 1 is reached behind the fold */
+} judgement;
+
+static inline long double refine(const judged_balance *b, long double low, long double high)
+{
+    for (int i = 0; i < 80; i++) {
+        const long double middle = 0.5L * (low + high);
+        *(judged_share(b, middle) < 1.0L ? &low : &high) = middle;
+    }
+    return 0.5L * (low + high);
+}
+
+static inline judgement judge_balance(const judged_balance *b, int steps)
+{
+    const long double end = b->ratio > 0.1L ? 1.0L / b->ratio : 10.0L; /* where the passive film ends, or far out */
+    judgement found = {(double)NAN, (double)NAN, false};
+    long double before = 0.0L;
+    for (int i = 1; i < steps; i++) {
+        const long double e = end * i / steps;
+        const long double share = judged_share(b, e);
+        if (isnan(found.fold) && share >= 1.0L) {
+            found.strain = (double)refine(b, end * (i - 1) / steps, e);
+            return found;
+        }
+        if (isnan(found.fold) && share < before) {
+            found.fold = (double)before;
+        }
+        found.later = found.later || share >= 1.0L;
+        before = share;
+    }
+    return found;
+}
+
+#endif

@@ -1,0 +1,229 @@
+/* One table of random scenes over all engines: equal numbers, equal states, and a balance of forces that neither engine computes. */
+#include "judges.h"
+#include "random_scenes.h"
+
+#include <stdlib.h>
+
+#include "engine/line.h"
+
+enum { SCENES = 84, POINTS = 6, MOST_ROWS = 64 };
+
+typedef struct row_list {
+    dea_row rows[MOST_ROWS];
+    size_t count;
+} row_list;
+
+static dea_status take_rows(void *user, size_t first, const dea_row *rows, size_t count, dea_error *error)
+{
+    row_list *list = user;
+    (void)error;
+    assert_int_equal(first, list->count);
+    assert_true(first + count <= MOST_ROWS);
+    memcpy(&list->rows[first], rows, count * sizeof *rows);
+    list->count += count;
+    return DEA_OK;
+}
+
+static row_list run(const dea_scene *scene, const char *engine)
+{
+    row_list list = {.count = 0};
+    dea_error error = {0};
+    const dea_run_options options = {.jobs = 1, .rows = take_rows, .user = &list};
+    if (dea_study_run(scene, dea_engine_find(engine), &options, &error) != DEA_OK) {
+        fail_msg("%s: %s", engine, error.message);
+    }
+    assert_int_equal(list.count, dea_scene_point_count(scene));
+    return list;
+}
+
+/* A scene of the table with its one axis. */
+typedef struct table_entry {
+    dea_scene scene;
+    dea_axis axis;
+    double values[POINTS];
+} table_entry;
+
+static double swept_value(uint64_t *seed, int kind, double value, double share)
+{
+    switch (kind) {
+    case 0:
+        return value * share;
+    case 1:
+        return random_coverage(seed);
+    case 5:
+        return random_between(seed, 1.0, 3.0);
+    case 12:
+        return random_between(seed, 0.01, 0.6);
+    default:
+        return value * random_between(seed, 0.6, 1.3);
+    }
+}
+
+static void make_entry(table_entry *entry, int number, const char *model)
+{
+    uint64_t seed = 1000003u * (uint64_t)(number + 1);
+    const int kind = number % SWEPT_FIELDS;
+    entry->scene = random_scene(&seed);
+    if (!dea_model_find(model)->lens) {
+        entry->scene.actuator.kind = DEA_DOT;
+    }
+    double *field = swept_field(&entry->scene, kind);
+    entry->scene.drive.voltage = 2.0 * random_unit(&seed) * pull_in_voltage(&entry->scene, model);
+    if (number % 3 == 0) {
+        entry->scene.drive.voltage *= -1e-3;
+    }
+    for (int i = 0; i < POINTS; i++) {
+        entry->values[i] = swept_value(&seed, kind, *field, (double)i / (POINTS - 1));
+    }
+    add_axis(&entry->scene, &entry->axis, field, entry->values, POINTS);
+    if (number % 2 == 0) {
+        const double from = entry->values[0];
+        const double to = entry->values[POINTS - 1];
+        for (int i = 0; i < POINTS; i++) {
+            entry->values[i] = from + (to - from) * i / (POINTS - 1);
+        }
+        entry->axis.uniform = true;
+    }
+    entry->scene.models[0] = dea_model_find(model);
+}
+
+static dea_scene point_of(const table_entry *entry, size_t point)
+{
+    dea_scene scene = entry->scene;
+    dea_axis_set(&entry->axis, &scene, entry->values[point]);
+    return scene;
+}
+
+/* True where the state changes within 1e-7 of the voltage. */
+static bool at_a_limit(const table_entry *entry, size_t point)
+{
+    dea_scene scene = point_of(entry, point);
+    const char *model = scene.models[0]->name;
+    const double voltage = scene.drive.voltage;
+    const dea_state state = solve_direct(&scene, model).state;
+    scene.drive.voltage = voltage * (1.0 + 1e-7);
+    const dea_state above = solve_direct(&scene, model).state;
+    scene.drive.voltage = voltage * (1.0 - 1e-7);
+    return above != state || solve_direct(&scene, model).state != state;
+}
+
+static void tell(const table_entry *entry, size_t point, const char *engine, const dea_row *row, const dea_row *wanted)
+{
+    const dea_scene scene = point_of(entry, point);
+    const dea_actuator *a = &scene.actuator;
+    const dea_material *m = &scene.material;
+    print_error("%s, %s %s, axis %zu: pre-stretch %.17g B %.17g r_a %.17g r %.17g H %.17g U %.17g C %.17g %.17g %.17g eps %.17g %.17g "
+                "Y %.17g share %.17g\n",
+                engine, scene.models[0]->name, a->kind == DEA_DOT ? "dot" : "lens", point, a->prestretch, a->coverage, a->divide_radius,
+                a->frame_radius, a->film_thickness, scene.drive.voltage, m->yeoh[0], m->yeoh[1], m->yeoh[2], m->permittivity,
+                m->permittivity_per_stretch, m->modulus, dea_material_long_term_share(m));
+    print_error("  strain %.17g (%s), wanted %.17g (%s), force %.17g, %.17g, field %.17g, %.17g\n", row->strain, dea_state_name(row->state),
+                wanted->strain, dea_state_name(wanted->state), row->force, wanted->force, row->field, wanted->field);
+}
+
+static bool same_numbers(const dea_row *row, const dea_row *wanted, double tolerance)
+{
+    if (wanted->state == DEA_STATE_PULL_IN || wanted->state == DEA_STATE_FAILED) {
+        return isnan(row->strain) && isnan(row->displacement) && isnan(row->force) && isnan(row->field);
+    }
+    return is_close(row->strain, wanted->strain, tolerance, 0.0) && is_close(row->displacement, wanted->displacement, tolerance, 0.0) &&
+           is_close(row->force, wanted->force, tolerance, 0.0) && is_close(row->field, wanted->field, tolerance, 0.0);
+}
+
+typedef struct tally {
+    size_t compared, strained, limits, refused; /* rows; of them with numbers and strain; near limits; pull-in or failed */
+    size_t wrong;
+} tally;
+
+static void compare_entry(const table_entry *entry, const char *engine, double tolerance, tally *count)
+{
+    const row_list wanted = run(&entry->scene, "direct");
+    const row_list got = run(&entry->scene, engine);
+    for (size_t i = 0; i < POINTS; i++) {
+        const bool same_state = got.rows[i].state == wanted.rows[i].state;
+        count->compared++;
+        count->strained += wanted.rows[i].strain != 0.0 && !isnan(wanted.rows[i].strain);
+        count->refused += isnan(wanted.rows[i].strain);
+        if (same_state && same_numbers(&got.rows[i], &wanted.rows[i], tolerance)) {
+            continue;
+        }
+        if (at_a_limit(entry, i)) {
+            count->limits++;
+            continue;
+        }
+        tell(entry, i, engine, &got.rows[i], &wanted.rows[i]);
+        count->wrong++;
+    }
+}
+
+static void compare_engines(const char *engine, const char *model, double tolerance)
+{
+    tally count = {0};
+    for (int i = 0; i < SCENES; i++) {
+        table_entry entry;
+        make_entry(&entry, i, model);
+        compare_entry(&entry, engine, tolerance, &count);
+    }
+    assert_int_equal(count.wrong, 0);
+    assert_int_equal(count.compared, SCENES * POINTS);
+    assert_true(count.strained > count.compared / 3);
+    assert_true(count.limits < 5);
+}
+
+static void ngspice_solves_lumped_as_the_equation_does(void **state)
+{
+    (void)state;
+    compare_engines("ngspice", "lumped", 1e-9);
+}
+
+static void ngspice_solves_plane_elasticity_as_the_equation_does(void **state)
+{
+    (void)state;
+    compare_engines("ngspice", "lame", 1e-9);
+}
+
+static void ngspice_solves_coverage_as_the_equation_does(void **state)
+{
+    (void)state;
+    compare_engines("ngspice", "coverage", 1e-8);
+}
+
+static void ngspice_solves_constant_force_as_the_equation_does(void **state)
+{
+    (void)state;
+    compare_engines("ngspice", "constant_force", 1e-8);
+}
+
+static void ida_solves_lumped_and_plane_elasticity_as_the_equation_does(void **state)
+{
+    (void)state;
+    compare_engines("ida", "lumped", 1e-9);
+    compare_engines("ida", "lame", 1e-9);
+}
+
+static void ida_solves_hyperelastic_models_as_the_equation_does(void **state)
+{
+    (void)state;
+    compare_engines("ida", "coverage", 1e-9);
+    compare_engines("ida", "constant_force", 1e-9);
+}
+
+static void ida_solves_the_field_as_shooting_does(void **state)
+{
+    (void)state;
+    compare_engines("ida", "field", 1e-9);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ngspice_solves_lumped_as_the_equation_does),
+        cmocka_unit_test(ngspice_solves_plane_elasticity_as_the_equation_does),
+        cmocka_unit_test(ngspice_solves_coverage_as_the_equation_does),
+        cmocka_unit_test(ngspice_solves_constant_force_as_the_equation_does),
+        cmocka_unit_test(ida_solves_lumped_and_plane_elasticity_as_the_equation_does),
+        cmocka_unit_test(ida_solves_hyperelastic_models_as_the_equation_does),
+        cmocka_unit_test(ida_solves_the_field_as_shooting_does),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

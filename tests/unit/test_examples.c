@@ -1,0 +1,462 @@
+/* Every example, through the library and through the program, against facts that neither of them made. Run from the project's folder;
+ * DEASPICE names the program, else build/deaspice. */
+#include "scenes.h"
+
+#include <dirent.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { PATH_LENGTH = 4096, LINE_LENGTH = 512, MOST_ROWS = 8192 };
+
+static char folder[] = "/tmp/deaspice-test-XXXXXX";
+static char program[PATH_LENGTH];
+
+/* An example with its rows by the library. */
+typedef struct example {
+    char path[64];
+    dea_scene scene;
+    dea_row rows[MOST_ROWS];
+    size_t count;
+} example;
+
+static example here;
+
+static dea_status take(void *user, size_t first, const dea_row *rows, size_t count, dea_error *error)
+{
+    (void)user, (void)error;
+    assert_true(first == here.count && first + count <= MOST_ROWS);
+    memcpy(here.rows + first, rows, count * sizeof *rows);
+    here.count += count;
+    return DEA_OK;
+}
+
+static void run_program(const char *words)
+{
+    char command[3 * PATH_LENGTH];
+    snprintf(command, sizeof command, "'%s' %s >/dev/null", program, words);
+    const int ended = system(command);
+    if (!WIFEXITED(ended) || WEXITSTATUS(ended) != 0) {
+        fail_msg("%s", command);
+    }
+}
+
+/* A picture: its ending decides how it must begin. */
+static void check_picture(const char *name)
+{
+    char path[PATH_LENGTH], head[5] = "";
+    struct stat about;
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    assert_int_equal(fread(head, 1, 4, file), 4);
+    assert_int_equal(fclose(file), 0);
+    assert_string_equal(head, strstr(name, ".svg") ? "<?xm" : "\x89PNG");
+    assert_int_equal(stat(path, &about), 0);
+    assert_true(about.st_size > 10000);
+    assert_int_equal(unlink(path), 0);
+}
+
+/* The last five cells of a line: four numbers, NAN where empty, and the state. */
+static dea_row parse_row(char *line)
+{
+    dea_row row = dea_row_failed();
+    double *const numbers[] = {&row.field, &row.force, &row.displacement, &row.strain};
+    char *cell = strrchr(line, ',');
+    for (int state = 0; state < DEA_STATE_COUNT; state++) {
+        if (strcmp(cell + 1, dea_state_name((dea_state)state)) == 0) {
+            row.state = (dea_state)state;
+        }
+    }
+    for (int i = 0; i < 4; i++) {
+        *cell = '\0';
+        cell = strrchr(line, ',');
+        *numbers[i] = cell[1] ? strtod(cell + 1, NULL) : (double)NAN;
+    }
+    return row;
+}
+
+static bool same(double a, double b)
+{
+    return isnan(a) ? isnan(b) : a == b;
+}
+
+/* The program prints what the library found, to the last bit. */
+static void compare_csv(void)
+{
+    char path[PATH_LENGTH], line[LINE_LENGTH];
+    size_t count = 0;
+    snprintf(path, sizeof path, "%s/rows.csv", folder);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    assert_non_null(fgets(line, sizeof line, file));
+    for (; fgets(line, sizeof line, file); count++) {
+        line[strcspn(line, "\n")] = '\0';
+        const dea_row got = parse_row(line), wanted = here.rows[count];
+        if (got.state != wanted.state || !same(got.strain, wanted.strain) || !same(got.displacement, wanted.displacement) ||
+            !same(got.force, wanted.force) || !same(got.field, wanted.field)) {
+            fail_msg("%s, row %zu: the program and the library differ", here.path, count);
+        }
+    }
+    assert_int_equal(fclose(file), 0);
+    assert_int_equal(count, here.count);
+}
+
+/* Runs an example by the library and by the program, with both pictures. */
+static void run_example(const char *name)
+{
+    dea_error error = {0};
+    const dea_run_options options = {.jobs = 1, .rows = take};
+    char words[2 * PATH_LENGTH];
+    dea_scene_free(&here.scene);
+    here.count = 0;
+    snprintf(here.path, sizeof here.path, "examples/%s.yaml", name);
+    if (dea_scene_read(here.path, NULL, 0, NULL, &here.scene, &error) != DEA_OK) {
+        here.scene = (dea_scene){0};
+        fail_msg("%s", error.message);
+    }
+    assert_int_equal(dea_study_run(&here.scene, dea_engine_find("direct"), &options, &error), DEA_OK);
+    assert_int_equal(here.count, dea_scene_point_count(&here.scene) * here.scene.model_count);
+    for (int i = 0; i < 2; i++) {
+        const char *picture = i == 0 ? "picture.svg" : "picture.png";
+        snprintf(words, sizeof words, "run %s --quiet --engine direct -o %s/rows.csv --plot %s/%s", here.path, folder, folder, picture);
+        run_program(words);
+        compare_csv();
+        check_picture(picture);
+    }
+}
+
+/* Index of a value on an axis, which must be there. */
+static size_t index_of(const dea_axis *axis, double value)
+{
+    for (size_t i = 0; i < axis->count; i++) {
+        if (is_close(axis->values[i], value, 1e-12, 1e-12)) {
+            return i;
+        }
+    }
+    fail_msg("%s: no %s of %g", here.path, axis->column, value);
+    return 0;
+}
+
+/* Row of a model at the values of all axes in their order. */
+static const dea_row *row_at(const char *model, double first, double second)
+{
+    const double values[] = {first, second};
+    size_t row = 0;
+    while (row < here.scene.model_count && strcmp(here.scene.models[row]->name, model) != 0) {
+        row++;
+    }
+    assert_true(row < here.scene.model_count);
+    for (size_t i = 0; i < here.scene.axis_count; i++) {
+        row = row * here.scene.axes[i].count + index_of(&here.scene.axes[i], values[i]);
+    }
+    return &here.rows[row];
+}
+
+static double stress(const double c[3], double l)
+{
+    const double j = 2.0 * l * l + pow(l, -4.0) - 3.0;
+    return 2.0 * (l * l - pow(l, -4.0)) * (c[0] + 2.0 * c[1] * j + 3.0 * c[2] * j * j);
+}
+
+/* What Eq. 18 leaves over, against the Maxwell stress; *passive gets lambda_P. */
+static double left_over(const dea_scene *at, double strain, double *passive)
+{
+    const double pre = at->actuator.prestretch, b = at->actuator.coverage;
+    const double nominal = at->drive.voltage / at->actuator.film_thickness;
+    const double active = pre * (1.0 + strain);
+    const double maxwell = 8.8541878128e-12 * at->material.permittivity * nominal * nominal * pow(active, 4.0);
+    *passive = pre * (1.0 - b * (1.0 + strain)) / (1.0 - b);
+    return (stress(at->material.yeoh, active) - maxwell - stress(at->material.yeoh, *passive)) / maxwell;
+}
+
+/* Every row of model number @p model with numbers balances the stresses of Eq. 18; returns how many do. */
+static size_t check_balance(size_t model)
+{
+    const size_t points = dea_scene_point_count(&here.scene);
+    size_t balanced = 0;
+    for (size_t i = 0; i < points; i++) {
+        const dea_row *row = &here.rows[model * points + i];
+        dea_scene at = here.scene;
+        size_t rest = i;
+        for (size_t k = here.scene.axis_count; k-- > 0; rest /= here.scene.axes[k].count) {
+            *(double *)((char *)&at + here.scene.axes[k].offset) = here.scene.axes[k].values[rest % here.scene.axes[k].count];
+        }
+        if (at.drive.voltage > 0.0 && row->state != DEA_STATE_PULL_IN) {
+            double passive;
+            assert_near(left_over(&at, row->strain, &passive), 0.0, 1e-8);
+            assert_relative(row->displacement, row->strain * at.actuator.coverage * at.actuator.frame_radius, 1e-14);
+            assert_int_equal(row->state == DEA_STATE_SLACK, row->state != DEA_STATE_BREAKDOWN && passive <= 1.0);
+            balanced++;
+        }
+    }
+    return balanced;
+}
+
+static double peak_coverage(const char *model, double prestretch)
+{
+    const dea_axis *axis = &here.scene.axes[1];
+    size_t best = 0;
+    for (size_t i = 0; i < axis->count; i++) {
+        if (row_at(model, prestretch, axis->values[i])->displacement > row_at(model, prestretch, axis->values[best])->displacement) {
+            best = i;
+        }
+    }
+    return axis->values[best];
+}
+
+static void figure_8_gives_the_modulus_at_the_pre_stretches(void **state)
+{
+    static const double modulus[] = {1641976.87, 1391085.27, 1369207.21};
+    char words[2 * PATH_LENGTH], path[PATH_LENGTH], line[LINE_LENGTH];
+    size_t found = 0;
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        snprintf(words, sizeof words, "materials elastosil-2030 -o %s/material.csv --plot %s/material.%s", folder, folder, i ? "png" : "svg");
+        run_program(words);
+        check_picture(i ? "material.png" : "material.svg");
+    }
+    snprintf(path, sizeof path, "%s/material.csv", folder);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file)) {
+        const double stretch = strtod(line, NULL);
+        for (int i = 0; i < 3; i++) {
+            if (is_close(stretch, 1.1 + 0.1 * i, 0.0, 1e-9)) {
+                assert_printed(strtod(strrchr(line, ',') + 1, NULL), modulus[i], 2);
+                found++;
+            }
+        }
+    }
+    assert_int_equal(fclose(file), 0);
+    assert_int_equal(unlink(path), 0);
+    assert_int_equal(found, 3);
+}
+
+static void figure_9_ends_at_the_strains_of_equations_13_and_4(void **state)
+{
+    static const double force[] = {0.05309062, 0.08987201, 0.11020732}, pelrine[] = {0.02316297, 0.03965760, 0.05686845};
+    (void)state;
+    run_example("figure9");
+    for (int i = 0; i < 3; i++) {
+        assert_printed(row_at("constant_force", 1.1 + 0.1 * i, 4500.0)->strain, force[i], 8);
+        assert_printed(row_at("pelrine", 1.1 + 0.1 * i, 4500.0)->strain, pelrine[i], 8);
+    }
+}
+
+static void figure_10_passes_through_the_reference_strains(void **state)
+{
+    static const double table[][5] = {{1.1, 0.10, 0.04587737, 0.04028821, 0.03762647}, {1.1, 0.50, 0.02218118, 0.02238234, 0.02651626},
+                                      {1.2, 0.25, 0.05973380, 0.05612602, 0.06092621}, {1.2, 0.50, 0.03569962, 0.03741735, 0.04503297},
+                                      {1.3, 0.75, 0.02204766, 0.02618038, 0.03289753}};
+    (void)state;
+    run_example("figure10");
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+        assert_printed(row_at("coverage", table[i][0], table[i][1])->strain, table[i][2], 8);
+        assert_printed(row_at("lumped", table[i][0], table[i][1])->strain, table[i][3], 8);
+        assert_printed(row_at("field", table[i][0], table[i][1])->strain, table[i][4], 8);
+    }
+    assert_int_equal(check_balance(1), 543);
+}
+
+static void figure_10_has_the_sensitivities_of_the_paper(void **state)
+{
+    (void)state;
+    run_example("figure10");
+    for (int i = 0; i < 3; i++) {
+        const double pre = 1.1 + 0.1 * i;
+        assert_printed(100.0 - 100.0 * row_at("lumped", pre, 0.48)->displacement / row_at("lumped", pre, 0.5)->displacement, 0.16, 2);
+        assert_printed(100.0 - 100.0 * row_at("lumped", pre, 0.24)->displacement / row_at("lumped", pre, 0.25)->displacement, 2.72, 2);
+    }
+}
+
+static void displacement_peaks_below_half_coverage_in_equation_18_and_above_it_in_the_field(void **state)
+{
+    (void)state;
+    run_example("figure10");
+    for (int i = 0; i < 3; i++) {
+        const double pre = 1.1 + 0.1 * i;
+        assert_near(peak_coverage("lumped", pre), 0.5, 1e-9);
+        assert_true(peak_coverage("coverage", pre) < 0.4951 && peak_coverage("coverage", pre) > 0.4);
+        assert_true(peak_coverage("field", pre) > 0.5049 && peak_coverage("field", pre) < 1.0 / sqrt(3.0));
+    }
+}
+
+static void lens_shrinks_as_the_reference_strains_say(void **state)
+{
+    (void)state;
+    run_example("lens-sweep");
+    assert_printed(row_at("coverage", 0.25, 0.0)->strain, -0.04860329, 8);
+    assert_printed(row_at("coverage", 0.50, 0.0)->strain, -0.03569962, 8);
+    assert_printed(row_at("field", 0.25, 0.0)->strain, -0.04432166, 8);
+    assert_printed(row_at("field", 0.50, 0.0)->strain, -0.03741631, 8);
+    assert_printed(row_at("lumped", 0.50, 0.0)->strain, -0.03741735, 8); /* the dot's with its sign turned */
+    for (size_t i = 0; i < here.count; i++) {
+        assert_true(here.rows[i].strain < 0.0 && here.rows[i].state == DEA_STATE_OK);
+    }
+}
+
+static void every_point_of_the_map_balances_its_stresses(void **state)
+{
+    (void)state;
+    run_example("voltage-coverage-map");
+    assert_int_equal(check_balance(0), 61 * 60); /* all but the row of no voltage */
+    assert_int_equal(row_at("coverage", 0.5, 9000.0)->state, DEA_STATE_SLACK);
+    assert_int_equal(row_at("coverage", 0.05, 9000.0)->state, DEA_STATE_OK);
+}
+
+static void soft_film_without_pre_stretch_pulls_in_at_the_voltage_of_a_free_edge(void **state)
+{
+    /* neo-Hookean, free edge: U/H = 0.6874 sqrt(mu/eps) at lambda = 4^(1/6), mu = 2 C1 */
+    const double voltage = 0.6874 * sqrt(50e3 / (2.8 * 8.8541878128e-12)) * 1e-4;
+    const dea_axis *axis;
+    size_t states[DEA_STATE_COUNT] = {0};
+    (void)state;
+    run_example("pull-in");
+    axis = &here.scene.axes[1];
+    for (size_t i = 0; i < axis->count; i++) {
+        const dea_row *row = row_at("constant_force", 1.0, axis->values[i]);
+        assert_int_equal(row->state == DEA_STATE_PULL_IN, axis->values[i] > voltage);
+        assert_true(row->state == DEA_STATE_PULL_IN ? isnan(row->strain) : row->strain < pow(4.0, 1.0 / 6.0) - 1.0);
+    }
+    check_balance(0);
+    for (size_t i = 0; i < here.count; i++) {
+        states[here.rows[i].state]++;
+    }
+    assert_true(states[DEA_STATE_OK] && states[DEA_STATE_SLACK] && states[DEA_STATE_PULL_IN] && states[DEA_STATE_BREAKDOWN]);
+    assert_int_equal(states[DEA_STATE_FAILED], 0);
+}
+
+static void vhb_follows_the_closed_form_of_a_neo_hookean(void **state)
+{
+    const double c1 = 15.36e3 / 2.0;
+    (void)state;
+    run_example("vhb");
+    for (size_t i = 0; i < here.scene.axes[1].count; i++) {
+        const double pre = here.scene.axes[1].values[i], voltage = 2500.0;
+        const double modulus = 4.0 * c1 * (pre + 2.0 * pow(pre, -5.0));
+        const double maxwell = 4.8 * 8.8541878128e-12 * pow(voltage / 1e-3, 2.0) * pow(pre, 4.0);
+        assert_relative(row_at("lumped", voltage, pre)->strain, 0.75 * maxwell / modulus, 1e-12);
+        assert_true(row_at("field", voltage, pre)->strain > row_at("coverage", voltage, pre)->strain);
+    }
+    here.scene.material.yeoh[0] = c1; /* long-term */
+    assert_true(check_balance(1) > 0);
+}
+
+static void sample_data_gives_back_the_constants_it_was_made_from(void **state)
+{
+    static const double wanted[] = {178426.0, -6023.0, 4234.0};
+    char words[2 * PATH_LENGTH], path[PATH_LENGTH];
+    dea_scene scene;
+    dea_error error = {0};
+    (void)state;
+    snprintf(words, sizeof words, "fit examples/data/elastosil-2030.csv --quiet -o %s/film.yaml --plot %s/fit.svg", folder, folder);
+    run_program(words);
+    check_picture("fit.svg");
+    snprintf(path, sizeof path, "%s/film.yaml", folder);
+    char text[2 * PATH_LENGTH] = "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+                                 "drive: {voltage: 1 V}\nmodel: lumped\nstudy: {sweep: {}}\n";
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    size_t length = strlen(text);
+    length += fread(text + length, 1, PATH_LENGTH, file);
+    assert_int_equal(fclose(file), 0);
+    const dea_setting settings[] = {{"material.permittivity=2.8"}};
+    if (dea_scene_parse(text, length, "fit", folder, settings, 1, NULL, &scene, &error) != DEA_OK) {
+        fail_msg("%s", error.message);
+    }
+    for (int i = 0; i < 3; i++) {
+        assert_relative(scene.material.yeoh[i], wanted[i], 2e-2);
+    }
+    dea_scene_free(&scene);
+    assert_int_equal(unlink(path), 0);
+}
+
+/* Runs a command as the user would, beside a folder `examples`. */
+static void run_told(const char *command)
+{
+    char line[4 * PATH_LENGTH], project[PATH_LENGTH];
+    assert_non_null(getcwd(project, sizeof project));
+    snprintf(line, sizeof line, "mkdir %s/told && cd %s/told && ln -s '%s/examples' examples && '%s' %s --quiet >/dev/null", folder, folder,
+             project, program, command);
+    const int ended = system(line);
+    snprintf(line, sizeof line, "rm -r %s/told", folder);
+    assert_int_equal(system(line), 0);
+    if (!WIFEXITED(ended) || WEXITSTATUS(ended) != 0) {
+        fail_msg("deaspice %s", command);
+    }
+}
+
+/* `#` lines first, and among them a command that runs this very file. */
+static void check_opening(const char *name)
+{
+    char path[PATH_LENGTH], line[LINE_LENGTH], command[PATH_LENGTH];
+    bool told = false;
+    snprintf(path, sizeof path, "examples/%s", name);
+    snprintf(command, sizeof command, "#   deaspice run examples/%s ", name);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    for (size_t i = 0; fgets(line, sizeof line, file) && line[0] == '#'; i++) {
+        if (i > 0 && strncmp(line, command, strlen(command)) == 0) {
+            line[strcspn(line, "\n")] = '\0';
+            run_told(strstr(line, "run "));
+            told = true;
+        }
+    }
+    assert_int_equal(fclose(file), 0);
+    if (!told) {
+        fail_msg("%s does not open with what it shows and its command", path);
+    }
+}
+
+static void every_example_opens_with_a_command_that_works(void **state)
+{
+    size_t count = 0;
+    DIR *open = opendir("examples");
+    (void)state;
+    assert_non_null(open);
+    for (const struct dirent *entry; (entry = readdir(open));) {
+        if (strstr(entry->d_name, ".yaml")) {
+            check_opening(entry->d_name);
+            count++;
+        }
+    }
+    closedir(open);
+    assert_true(count >= 6);
+}
+
+static int enter(void **state)
+{
+    (void)state;
+    const char *given = getenv("DEASPICE");
+    return realpath(given ? given : "build/deaspice", program) && mkdtemp(folder) ? 0 : -1;
+}
+
+static int leave(void **state)
+{
+    char path[PATH_LENGTH];
+    (void)state;
+    dea_scene_free(&here.scene);
+    snprintf(path, sizeof path, "%s/rows.csv", folder);
+    unlink(path);
+    return rmdir(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(figure_8_gives_the_modulus_at_the_pre_stretches),
+        cmocka_unit_test(figure_9_ends_at_the_strains_of_equations_13_and_4),
+        cmocka_unit_test(figure_10_passes_through_the_reference_strains),
+        cmocka_unit_test(figure_10_has_the_sensitivities_of_the_paper),
+        cmocka_unit_test(displacement_peaks_below_half_coverage_in_equation_18_and_above_it_in_the_field),
+        cmocka_unit_test(lens_shrinks_as_the_reference_strains_say),
+        cmocka_unit_test(every_point_of_the_map_balances_its_stresses),
+        cmocka_unit_test(soft_film_without_pre_stretch_pulls_in_at_the_voltage_of_a_free_edge),
+        cmocka_unit_test(vhb_follows_the_closed_form_of_a_neo_hookean),
+        cmocka_unit_test(sample_data_gives_back_the_constants_it_was_made_from),
+        cmocka_unit_test(every_example_opens_with_a_command_that_works),
+    };
+    return cmocka_run_group_tests(tests, enter, leave);
+}

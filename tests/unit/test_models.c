@@ -1,0 +1,574 @@
+/* The static models: printed numbers, statements of the base paper, limits, symmetries, and judges that solve the same equations
+ * another way. */
+#include "judges.h"
+
+static const char *const all_models[] = {"pelrine", "constant_force", "lumped", "coverage", "lame", "field"};
+static const char *const lens_models[] = {"lumped", "coverage", "lame", "field"};
+enum { ALL_MODELS = 6, LENS_MODELS = 4 };
+
+static double paper_strain(const char *model, dea_kind kind, double prestretch, double coverage, double voltage)
+{
+    const dea_row row = solve_paper(model, kind, prestretch, coverage, voltage);
+    assert_state(row, DEA_STATE_OK);
+    return row.strain;
+}
+
+static void strains_at_4500_volts_to_all_printed_digits(void **state)
+{
+    (void)state;
+    static const struct {
+        double prestretch, coverage, eq18, eq22, lame, field, lens_eq18, lens_field;
+    } table[] = {
+        {1.1, 0.10, 0.04587737, 0.04028821, 0.03511406, 0.03762647, -0.03568750, -0.02932674},
+        {1.1, 0.50, 0.02218118, 0.02238234, 0.02593914, 0.02651626, -0.02218118, -0.02338631},
+        {1.2, 0.25, 0.05973380, 0.05612602, 0.05689016, 0.06092621, -0.04860329, -0.04432166},
+        {1.2, 0.50, 0.03569962, 0.03741735, 0.04400989, 0.04503297, -0.03569962, -0.03741631},
+        {1.3, 0.75, 0.02204766, 0.02618038, 0.03411473, 0.03289753, -0.02597732, -0.03263280},
+    };
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
+        const double l = table[i].prestretch;
+        const double b = table[i].coverage;
+        assert_printed(paper_strain("coverage", DEA_DOT, l, b, 4500.0), table[i].eq18, 8);
+        assert_printed(paper_strain("lumped", DEA_DOT, l, b, 4500.0), table[i].eq22, 8);
+        assert_printed(paper_strain("lame", DEA_DOT, l, b, 4500.0), table[i].lame, 8);
+        assert_printed(paper_strain("field", DEA_DOT, l, b, 4500.0), table[i].field, 8);
+        assert_printed(paper_strain("coverage", DEA_LENS, l, b, 4500.0), table[i].lens_eq18, 8);
+        assert_printed(paper_strain("field", DEA_LENS, l, b, 4500.0), table[i].lens_field, 8);
+    }
+}
+
+static void free_film_strains_to_all_printed_digits(void **state)
+{
+    (void)state;
+    static const double table[][3] = {{1.1, 0.05309062, 0.02316297}, {1.2, 0.08987201, 0.03965760}, {1.3, 0.11020732, 0.05686845}};
+    for (size_t i = 0; i < 3; i++) {
+        assert_printed(paper_strain("constant_force", DEA_DOT, table[i][0], 0.5, 4500.0), table[i][1], 8);
+        assert_printed(paper_strain("pelrine", DEA_DOT, table[i][0], 0.5, 4500.0), table[i][2], 8);
+    }
+}
+
+static double displacement(const char *model, double prestretch, double coverage, double voltage)
+{
+    return solve_paper(model, DEA_DOT, prestretch, coverage, voltage).displacement;
+}
+
+static void smaller_coverage_costs_what_the_paper_says(void **state)
+{
+    (void)state;
+    const double at_50 = displacement("lumped", 1.2, 0.5, 4500.0);
+    const double at_25 = displacement("lumped", 1.2, 0.25, 4500.0);
+    assert_relative(1.0 - displacement("lumped", 1.2, 0.48, 4500.0) / at_50, 0.0016, 1e-10);
+    assert_printed(100.0 * (1.0 - displacement("lumped", 1.2, 0.24, 4500.0) / at_25), 2.72, 2);
+}
+
+/* Coverage of the largest displacement, by golden section. */
+static double best_coverage(const char *model, double prestretch, double voltage)
+{
+    const double golden = 0.5 * (sqrt(5.0) - 1.0);
+    double low = 0.05;
+    double high = 0.95;
+    while (high - low > 1e-9) {
+        const double x1 = high - golden * (high - low);
+        const double x2 = low + golden * (high - low);
+        *(displacement(model, prestretch, x1, voltage) > displacement(model, prestretch, x2, voltage) ? &high : &low) =
+            displacement(model, prestretch, x1, voltage) > displacement(model, prestretch, x2, voltage) ? x2 : x1;
+    }
+    return 0.5 * (low + high);
+}
+
+static void displacement_peaks_at_half_coverage(void **state)
+{
+    (void)state;
+    for (double l = 1.1; l < 1.35; l += 0.1) {
+        assert_near(best_coverage("lumped", l, 4500.0), 0.5, 1e-7);
+    }
+}
+
+static void hyperelastic_displacement_peaks_slightly_below_half_coverage(void **state)
+{
+    (void)state;
+    for (double l = 1.1; l < 1.35; l += 0.1) {
+        const double best = best_coverage("coverage", l, 4500.0);
+        assert_true(best < 0.47 && best > 0.44);
+    }
+}
+
+static void plane_elastic_displacement_peaks_at_one_over_root_three(void **state)
+{
+    (void)state;
+    assert_near(best_coverage("lame", 1.2, 1.0), 1.0 / sqrt(3.0), 1e-6);
+    assert_near(best_coverage("field", 1.2, 1.0), 1.0 / sqrt(3.0), 1e-6);
+}
+
+static void small_electrode_strains_as_under_a_constant_bias_force(void **state)
+{
+    (void)state;
+    for (double l = 1.1; l < 1.35; l += 0.1) {
+        const double bound = paper_strain("constant_force", DEA_DOT, l, 0.5, 4500.0);
+        const double at_4 = bound - paper_strain("coverage", DEA_DOT, l, 1e-4, 4500.0);
+        const double at_5 = bound - paper_strain("coverage", DEA_DOT, l, 1e-5, 4500.0);
+        assert_true(at_5 > 0.0 && at_5 < 1e-5);
+        assert_relative(at_4 / at_5, 10.0, 1e-2);
+    }
+}
+
+static void full_coverage_leaves_no_strain(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < LENS_MODELS; i++) {
+        const double at_3 = paper_strain(lens_models[i], DEA_DOT, 1.2, 1.0 - 1e-3, 4500.0);
+        const double at_4 = paper_strain(lens_models[i], DEA_DOT, 1.2, 1.0 - 1e-4, 4500.0);
+        assert_true(at_3 > 0.0 && at_3 < 2e-4);
+        assert_relative(at_3 / at_4, 10.0, 1e-2);
+    }
+}
+
+static void linear_strain_is_below_hyperelastic_at_small_coverage_least_at_the_largest_pre_stretch(void **state)
+{
+    (void)state;
+    for (double b = 0.02; b < 0.2; b += 0.02) {
+        double gap[3];
+        for (int i = 0; i < 3; i++) {
+            const double full = paper_strain("coverage", DEA_DOT, 1.1 + 0.1 * i, b, 4500.0);
+            gap[i] = 1.0 - paper_strain("lumped", DEA_DOT, 1.1 + 0.1 * i, b, 4500.0) / full;
+        }
+        assert_true(gap[2] > 0.0 && gap[2] < 0.5 * gap[0] && gap[2] < 0.5 * gap[1]);
+    }
+}
+
+/* mu (l^2 - l^-4) = eps l^4 (U/H)^2 folds at l^6 = 4, U/H = 0.6874 sqrt(mu/eps); near it l = l_c -+ sqrt(4 d f/|f''|) at
+ * U = U_c (1 - d), f = l^-2 - l^-8. */
+static void free_neo_hookean_film_pulls_in_at_the_known_stretch(void **state)
+{
+    (void)state;
+    const double critical = pow(4.0, 1.0 / 6.0);
+    const double f = pow(critical, -2.0) - pow(critical, -8.0);
+    const double bend = fabs(6.0 * pow(critical, -4.0) - 72.0 * pow(critical, -10.0));
+    const double mu = 40e3;
+    dea_scene scene = paper_scene(DEA_DOT, 1.0, 0.5, 0.0);
+    scene.material.yeoh[0] = 0.5 * mu;
+    scene.material.yeoh[1] = scene.material.yeoh[2] = 0.0;
+    const double nominal = sqrt(mu * f / (2.8 * DEA_EPSILON_0));
+    assert_printed(nominal / sqrt(mu / (2.8 * DEA_EPSILON_0)), 0.6874, 4);
+    for (double d = 1e-4; d > 5e-12; d *= 0.1) {
+        scene.drive.voltage = nominal * 1e-4 * (1.0 - d);
+        dea_row row = solve_direct(&scene, "constant_force");
+        assert_state(row, DEA_STATE_OK);
+        const double below = sqrt(4.0 * d * f / bend);
+        assert_near(1.0 + row.strain, critical - below, 5.0 * below * below + 1e-9);
+        scene.drive.voltage = nominal * 1e-4 * (1.0 + d);
+        row = solve_direct(&scene, "constant_force");
+        assert_state(row, DEA_STATE_PULL_IN);
+        assert_true(isnan(row.strain) && isnan(row.displacement) && isnan(row.force) && isnan(row.field));
+    }
+}
+
+static double defect(const char *model, dea_kind kind, double coverage, double voltage)
+{
+    return paper_strain(model, kind, 1.2, coverage, voltage) / paper_strain("field", kind, 1.2, coverage, voltage) - 1.0;
+}
+
+static void plane_elasticity_approaches_the_field_with_second_order(void **state)
+{
+    (void)state;
+    for (int kind = DEA_DOT; kind <= DEA_LENS; kind++) {
+        for (double b = 0.15; b < 0.95; b += 0.25) {
+            const double coarse = defect("lame", (dea_kind)kind, b, 400.0);
+            const double fine = defect("lame", (dea_kind)kind, b, 200.0);
+            assert_relative(coarse / fine, 4.0, 0.01);
+            assert_true(fabs(fine) < 1e-3);
+        }
+    }
+}
+
+static void lens_is_the_opposite_of_a_dot_at_small_voltage(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lame", "field"};
+    for (size_t i = 0; i < 2; i++) {
+        for (double b = 0.1; b < 0.95; b += 0.2) {
+            double sum[2];
+            for (int k = 0; k < 2; k++) {
+                const double voltage = k ? 100.0 : 200.0;
+                sum[k] = paper_strain(models[i], DEA_DOT, 1.2, b, voltage) / paper_strain(models[i], DEA_LENS, 1.2, b, voltage) + 1.0;
+            }
+            assert_true(fabs(sum[0]) < 2e-3);
+            assert_relative(sum[0] / sum[1], 4.0, 0.01);
+        }
+    }
+}
+
+/* C = eps pi r_a^2 lambda_pre^2 lambda_a^4/H of a dot, eps pi lambda_pre^2 (r^2 - r_l^2 lambda_c^2)^2/((r^2 - r_l^2) H) of a lens. */
+static double true_capacitance(const dea_scene *scene, double u)
+{
+    const dea_actuator *a = &scene->actuator;
+    const double r = a->frame_radius;
+    const double divide = a->coverage * r;
+    const double edge = divide + u;
+    const double eps = DEA_EPSILON_0 * dea_material_permittivity(&scene->material, a->prestretch);
+    const double film = eps * 3.14159265358979323846 * a->prestretch * a->prestretch / a->film_thickness;
+    if (a->kind == DEA_DOT) {
+        return film * pow(edge, 4.0) / (divide * divide);
+    }
+    return film * pow(r * r - edge * edge, 2.0) / (r * r - divide * divide);
+}
+
+static double capacitance_slope(const dea_scene *scene, double u)
+{
+    const double h = 1e-4 * scene->actuator.coverage * scene->actuator.frame_radius;
+    const double coarse = (true_capacitance(scene, u + 2.0 * h) - true_capacitance(scene, u - 2.0 * h)) / (4.0 * h);
+    const double fine = (true_capacitance(scene, u + h) - true_capacitance(scene, u - h)) / (2.0 * h);
+    return (4.0 * fine - coarse) / 3.0;
+}
+
+static void force_of_a_dot_is_the_slope_of_its_electric_energy(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"constant_force", "coverage", "field"};
+    for (size_t i = 0; i < 3; i++) {
+        for (double b = 0.1; b < 0.95; b += 0.2) {
+            dea_scene scene = paper_scene(DEA_DOT, 1.2, b, 4500.0);
+            scene.material.permittivity_per_stretch = -0.28;
+            const dea_row row = solve_direct(&scene, models[i]);
+            assert_relative(row.force, 0.5 * 4500.0 * 4500.0 * capacitance_slope(&scene, row.displacement), 1e-10);
+        }
+    }
+}
+
+static void force_at_rest_is_the_slope_of_the_electric_energy(void **state)
+{
+    (void)state;
+    for (int kind = DEA_DOT; kind <= DEA_LENS; kind++) {
+        for (size_t i = 0; i < LENS_MODELS; i++) {
+            const dea_scene scene = paper_scene((dea_kind)kind, 1.2, 0.4, 0.01);
+            const dea_row row = solve_direct(&scene, lens_models[i]);
+            assert_relative(row.force, 0.5 * 1e-4 * capacitance_slope(&scene, 0.0), 1e-10);
+        }
+    }
+}
+
+static void capacitance_at_rest_is_the_size_of_the_paper_s_actuator(void **state)
+{
+    (void)state;
+    const dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, 0.0);
+    assert_near(true_capacitance(&scene, 0.0), 252e-12, 0.5e-12);
+}
+
+static void strain_does_not_depend_on_size(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < LENS_MODELS; i++) {
+        for (int kind = DEA_DOT; kind <= DEA_LENS; kind++) {
+            const dea_row here = solve_paper(lens_models[i], (dea_kind)kind, 1.2, 0.375, 4500.0);
+            for (double scale = 0x1p-15; scale < 100.0; scale *= 8.0) {
+                dea_scene scene = paper_scene((dea_kind)kind, 1.2, 0.375, 4500.0 * scale);
+                scene.actuator.film_thickness *= scale;
+                scene.actuator.frame_radius *= 3.0 * scale;
+                const dea_row row = solve_direct(&scene, lens_models[i]);
+                assert_relative(row.strain, here.strain, 1e-14);
+                assert_relative(row.displacement, 3.0 * scale * here.displacement, 1e-14);
+                assert_relative(row.force, 3.0 * scale * scale * here.force, 1e-14);
+                assert_relative(row.field, here.field, 1e-14);
+            }
+        }
+    }
+}
+
+static void sign_of_the_voltage_does_not_matter(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < ALL_MODELS; i++) {
+        const dea_row plus = solve_paper(all_models[i], DEA_DOT, 1.2, 0.4, 3000.0);
+        const dea_row minus = solve_paper(all_models[i], DEA_DOT, 1.2, 0.4, -3000.0);
+        assert_state(minus, DEA_STATE_OK);
+        assert_memory_equal(&plus, &minus, offsetof(dea_row, state));
+        assert_true(minus.field > 0.0);
+    }
+}
+
+static void no_voltage_gives_no_strain(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < ALL_MODELS; i++) {
+        const dea_row row = solve_paper(all_models[i], DEA_DOT, 1.2, 0.4, 0.0);
+        assert_state(row, DEA_STATE_OK);
+        assert_true(row.strain == 0.0 && row.displacement == 0.0 && row.force == 0.0 && row.field == 0.0);
+    }
+    for (size_t i = 0; i < LENS_MODELS; i++) {
+        const dea_row row = solve_paper(lens_models[i], DEA_LENS, 1.2, 0.4, 0.0);
+        assert_state(row, DEA_STATE_OK);
+        assert_true(row.strain == 0.0 && row.force == 0.0);
+    }
+}
+
+static void tiny_voltages_keep_twelve_digits(void **state)
+{
+    (void)state;
+    for (int kind = DEA_DOT; kind <= DEA_LENS; kind++) {
+        for (size_t i = 0; i < ALL_MODELS; i++) {
+            if (kind == DEA_LENS && !dea_model_find(all_models[i])->lens) {
+                continue;
+            }
+            const double slope = paper_strain(all_models[i], (dea_kind)kind, 1.2, 0.3, 1e-3) / 1e-6;
+            assert_true(slope != 0.0);
+            for (double voltage = 2e-3; voltage > 1e-10; voltage *= 0.05) {
+                assert_relative(paper_strain(all_models[i], (dea_kind)kind, 1.2, 0.3, voltage) / (voltage * voltage), slope, 1e-12);
+            }
+        }
+    }
+}
+
+static void true_field_follows_the_thinner_film(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"pelrine", "constant_force", "lumped", "coverage", "lame"};
+    for (size_t i = 0; i < 5; i++) {
+        const dea_row row = solve_paper(models[i], DEA_DOT, 1.2, 0.4, 4500.0);
+        assert_relative(row.field, 45e6 * pow(1.2 * (1.0 + row.strain), 2.0), 1e-13);
+    }
+    const dea_row lens = solve_paper("coverage", DEA_LENS, 1.2, 0.4, 4500.0);
+    assert_relative(lens.field, 45e6 * pow(1.2 * (1.0 - 0.4 * (1.0 + lens.strain)) / 0.6, 2.0), 1e-13);
+}
+
+static void breakdown_is_named_above_its_field_and_keeps_the_numbers(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < ALL_MODELS; i++) {
+        dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.4, 4500.0);
+        const dea_row free_row = solve_direct(&scene, all_models[i]);
+        scene.material.breakdown = free_row.field * (1.0 + 1e-12);
+        assert_state(solve_direct(&scene, all_models[i]), DEA_STATE_OK);
+        scene.material.breakdown = free_row.field * (1.0 - 1e-12);
+        const dea_row row = solve_direct(&scene, all_models[i]);
+        assert_state(row, DEA_STATE_BREAKDOWN);
+        assert_relative(row.strain, free_row.strain, 0.0);
+    }
+}
+
+/* Voltage at which the state changes away from ok, by bisection. */
+static double last_fine_voltage(const char *model, dea_scene *scene, dea_state *beyond)
+{
+    double low = 0.0;
+    double high = 1e6;
+    while (high - low > 1e-9 * high) {
+        scene->drive.voltage = 0.5 * (low + high);
+        const dea_row row = solve_direct(scene, model);
+        *(row.state == DEA_STATE_OK ? &low : &high) = scene->drive.voltage;
+    }
+    scene->drive.voltage = high;
+    *beyond = solve_direct(scene, model).state;
+    scene->drive.voltage = low;
+    return low;
+}
+
+static void passive_film_is_slack_where_its_stretch_falls_to_one(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lumped", "coverage"};
+    for (size_t i = 0; i < 2; i++) {
+        for (int kind = DEA_DOT; kind <= DEA_LENS; kind++) {
+            dea_scene scene = paper_scene((dea_kind)kind, 1.05, kind == DEA_DOT ? 0.7 : 0.3, 0.0);
+            const double b = scene.actuator.coverage;
+            dea_state beyond = DEA_STATE_OK;
+            (void)last_fine_voltage(models[i], &scene, &beyond);
+            assert_int_equal(beyond, DEA_STATE_SLACK);
+            const double s = solve_direct(&scene, models[i]).strain;
+            assert_near(1.05 * (kind == DEA_DOT ? (1.0 - b * (1.0 + s)) / (1.0 - b) : 1.0 + s), 1.0, 1e-7);
+        }
+    }
+}
+
+static void film_without_pre_stretch_is_slack(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < LENS_MODELS; i++) {
+        for (double voltage = 0.0; voltage < 2500.0; voltage += 1000.0) {
+            assert_state(solve_paper(lens_models[i], DEA_DOT, 1.0, 0.4, voltage), DEA_STATE_SLACK);
+            assert_state(solve_paper(lens_models[i], DEA_LENS, 1.0, 0.4, voltage), DEA_STATE_SLACK);
+        }
+    }
+}
+
+/* At the limit that a dot of the exact membrane meets first, the disc's nominal stress w a1 - M lambda_A^3 is 0. */
+static void disc_of_the_field_is_slack_where_its_stress_vanishes(void **state)
+{
+    (void)state;
+    dea_scene scene = paper_scene(DEA_DOT, 1.1, 0.8, 0.0);
+    dea_state beyond = DEA_STATE_OK;
+    const double voltage = last_fine_voltage("field", &scene, &beyond);
+    assert_int_equal(beyond, DEA_STATE_SLACK);
+    const double l = 1.1 * (1.0 + solve_direct(&scene, "field").strain);
+    const double maxwell = 2.8 * DEA_EPSILON_0 * pow(voltage / 1e-4, 2.0) * l * l * l;
+    assert_relative(dea_yeoh_stress(scene.material.yeoh, l, l).p1, maxwell, 1e-6);
+}
+
+static void pull_in_stays_pull_in_at_any_higher_voltage(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < ALL_MODELS; i++) {
+        bool seen = false;
+        for (double voltage = 100.0; voltage < 1e6; voltage *= 1.05) {
+            dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.3, voltage);
+            scene.material.yeoh[1] = scene.material.yeoh[2] = 0.0;
+            const dea_row row = solve_direct(&scene, all_models[i]);
+            assert_true(row.state != DEA_STATE_FAILED);
+            assert_true(!seen || row.state == DEA_STATE_PULL_IN);
+            seen = row.state == DEA_STATE_PULL_IN;
+        }
+        const bool linear = strcmp(all_models[i], "lumped") == 0; /* Eq. 22 is linear in the load */
+        assert_true(seen != linear);
+    }
+}
+
+static dea_scene soft_scene(dea_kind kind, double prestretch, double coverage, double voltage)
+{
+    dea_scene scene = paper_scene(kind, prestretch, coverage, voltage);
+    scene.material.yeoh[0] = 40e3;
+    scene.material.yeoh[1] = -8e3;
+    scene.material.yeoh[2] = 1.2e3;
+    return scene;
+}
+
+static double active_strain(const dea_scene *scene, double strain)
+{
+    const double b = scene->actuator.coverage;
+    return scene->actuator.kind == DEA_DOT ? strain : -strain * b / (1.0 - b);
+}
+
+/* A material that softens and stiffens again has equilibria behind its fold; a film driven from rest never gets there smoothly. */
+static void equilibrium_behind_a_fold_is_pull_in(void **state)
+{
+    (void)state;
+    int snapped = 0;
+    int taken = 0;
+    for (double l = 1.0; l < 2.05; l += 0.1) {
+        for (double b = 0.05; b < 0.96; b += 0.1) {
+            for (double voltage = 500.0; voltage < 20000.0; voltage *= 1.15) {
+                const dea_scene scene = soft_scene(voltage > 3000.0 ? DEA_DOT : DEA_LENS, l, b, voltage);
+                const judged_balance balance = judged_balance_of(&scene, false);
+                const judgement found = judge_balance(&balance, 10000);
+                if (fabs(found.fold - 1.0) < 1e-5) {
+                    continue; /* too near the fold for the scan */
+                }
+                const dea_row row = solve_direct(&scene, "coverage");
+                assert_true((row.state == DEA_STATE_PULL_IN) == (bool)isnan(found.strain));
+                snapped += isnan(found.strain) && found.later;
+                if (!isnan(found.strain)) {
+                    taken++;
+                    assert_relative(active_strain(&scene, row.strain), found.strain, 1e-12);
+                }
+            }
+        }
+    }
+    assert_true(snapped >= 20);
+    assert_true(taken >= 200);
+}
+
+static void snap_through_without_a_fold_is_followed(void **state)
+{
+    (void)state;
+    for (double voltage = 100.0; voltage < 30000.0; voltage *= 1.1) {
+        for (double b = 0.2; b < 0.95; b += 0.3) {
+            const dea_scene scene = paper_scene(DEA_DOT, 1.3, b, voltage);
+            const judged_balance balance = judged_balance_of(&scene, false);
+            const judgement found = judge_balance(&balance, 20000);
+            const dea_row row = solve_direct(&scene, "coverage");
+            assert_true((row.state == DEA_STATE_PULL_IN) == (bool)isnan(found.strain));
+            if (!isnan(found.strain)) {
+                assert_relative(row.strain, found.strain, 1e-12);
+            }
+        }
+    }
+}
+
+static void hyperelastic_models_balance_their_forces_at_random_points(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 400; i++) {
+        const double l = 1.0 + 0.0025 * i;
+        const double b = 0.002 + 0.99 * fabs(sin(7.0 * i));
+        const double voltage = 4500.0 * pow(fabs(cos(3.0 * i)), 3.0);
+        const dea_scene scene = paper_scene(i % 2 ? DEA_LENS : DEA_DOT, l, b, voltage);
+        const judged_balance balance = judged_balance_of(&scene, false);
+        const dea_row row = solve_direct(&scene, "coverage");
+        const double rounding = 1e-15 / fabs(row.strain); /* of the judge, that takes differences of stresses */
+        if (row.state != DEA_STATE_PULL_IN) {
+            assert_near((double)judged_share(&balance, active_strain(&scene, row.strain)), 1.0, 1e-11 + rounding);
+        }
+        const judged_balance bias = judged_balance_of(&scene, true);
+        const dea_row upper = solve_direct(&scene, "constant_force");
+        if (upper.state != DEA_STATE_PULL_IN) {
+            assert_near((double)judged_share(&bias, upper.strain), 1.0, 1e-11 + 1e-15 / upper.strain);
+        }
+    }
+}
+
+static void field_agrees_with_runge_kutta_over_the_radius(void **state)
+{
+    (void)state;
+    static const double points[][3] = {{1.1, 0.10, 4500.0}, {1.2, 0.25, 4500.0}, {1.2, 0.50, 3000.0}, {1.3, 0.75, 4500.0},
+                                       {1.3, 0.40, 5500.0}, {1.5, 0.90, 5000.0}, {1.05, 0.30, 2000.0}, {2.0, 0.20, 2500.0}};
+    for (int kind = DEA_DOT; kind <= DEA_LENS; kind++) {
+        for (size_t i = 0; i < sizeof points / sizeof points[0]; i++) {
+            const dea_scene scene = paper_scene((dea_kind)kind, points[i][0], points[i][1], points[i][2]);
+            const dea_row judged = judge_membrane(&scene);
+            const dea_row row = solve_direct(&scene, "field");
+            assert_relative(row.strain, judged.strain, 1e-8);
+            assert_relative(row.field, judged.field, 1e-8);
+            assert_state(row, judged.state);
+        }
+    }
+}
+
+static void every_model_says_which_actuators_it_can_do(void **state)
+{
+    (void)state;
+    assert_int_equal(dea_model_count(), ALL_MODELS);
+    assert_null(dea_model_at(ALL_MODELS));
+    assert_null(dea_model_find("ideal"));
+    for (size_t i = 0; i < ALL_MODELS; i++) {
+        const dea_model *model = dea_model_at(i);
+        assert_string_equal(model->name, all_models[i]);
+        assert_ptr_equal(dea_model_find(all_models[i]), model);
+        assert_int_equal(model->lens, i >= 2);
+        assert_int_equal(model->membrane, i == 5);
+        assert_true(model->equation[0] && model->leaves_out[0]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(strains_at_4500_volts_to_all_printed_digits),
+        cmocka_unit_test(free_film_strains_to_all_printed_digits),
+        cmocka_unit_test(smaller_coverage_costs_what_the_paper_says),
+        cmocka_unit_test(displacement_peaks_at_half_coverage),
+        cmocka_unit_test(hyperelastic_displacement_peaks_slightly_below_half_coverage),
+        cmocka_unit_test(plane_elastic_displacement_peaks_at_one_over_root_three),
+        cmocka_unit_test(small_electrode_strains_as_under_a_constant_bias_force),
+        cmocka_unit_test(full_coverage_leaves_no_strain),
+        cmocka_unit_test(linear_strain_is_below_hyperelastic_at_small_coverage_least_at_the_largest_pre_stretch),
+        cmocka_unit_test(free_neo_hookean_film_pulls_in_at_the_known_stretch),
+        cmocka_unit_test(plane_elasticity_approaches_the_field_with_second_order),
+        cmocka_unit_test(lens_is_the_opposite_of_a_dot_at_small_voltage),
+        cmocka_unit_test(force_of_a_dot_is_the_slope_of_its_electric_energy),
+        cmocka_unit_test(force_at_rest_is_the_slope_of_the_electric_energy),
+        cmocka_unit_test(capacitance_at_rest_is_the_size_of_the_paper_s_actuator),
+        cmocka_unit_test(strain_does_not_depend_on_size),
+        cmocka_unit_test(sign_of_the_voltage_does_not_matter),
+        cmocka_unit_test(no_voltage_gives_no_strain),
+        cmocka_unit_test(tiny_voltages_keep_twelve_digits),
+        cmocka_unit_test(true_field_follows_the_thinner_film),
+        cmocka_unit_test(breakdown_is_named_above_its_field_and_keeps_the_numbers),
+        cmocka_unit_test(passive_film_is_slack_where_its_stretch_falls_to_one),
+        cmocka_unit_test(film_without_pre_stretch_is_slack),
+        cmocka_unit_test(disc_of_the_field_is_slack_where_its_stress_vanishes),
+        cmocka_unit_test(pull_in_stays_pull_in_at_any_higher_voltage),
+        cmocka_unit_test(equilibrium_behind_a_fold_is_pull_in),
+        cmocka_unit_test(snap_through_without_a_fold_is_followed),
+        cmocka_unit_test(hyperelastic_models_balance_their_forces_at_random_points),
+        cmocka_unit_test(field_agrees_with_runge_kutta_over_the_radius),
+        cmocka_unit_test(every_model_says_which_actuators_it_can_do),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

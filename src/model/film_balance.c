@@ -184,12 +184,24 @@ static bool halley(const dea_film *film, double ratio, double m, double stiffnes
         const double curve = at->curve - 12.0 * m * square;
         const double step = -2.0 * residual * slope / (2.0 * slope * slope - residual * curve);
         *strain = e += step;
-        if (fabs(step) <= 1e-3 * fabs(e) && step * step * step * step <= 1e-16 * fabs(e * last * last * last)) {
+        const bool is_root =
+            fabs(residual) <= 2.0 * fabs(slope * step); /* at a fold steps are short, too, but the residual is not */
+        if (is_root && fabs(step) <= 1e-3 * fabs(e) && step * step * step * step <= 1e-16 * fabs(e * last * last * last)) {
             return e >= 0.0 && e < end;
         }
         last = step;
     }
     return false;
+}
+
+/* True where `fold` keeps far from zero all the way from rest to e, near which @p at was taken: over so short a way two values
+ * and two tangents of it that stay within a factor of two leave no room for a fold between. Spares the samples of find_fold(). */
+static bool cannot_fold(const dea_film *film, double ratio, double stiffness, double e, const balance *at)
+{
+    const double slope_at_rest = film->square * film->curvature * (1.0 - ratio * ratio) - 3.0 * stiffness;
+    const double slope_at_end = (1.0 + e) * at->curve - 3.0 * at->slope;
+    const double tangents = fmin(stiffness + slope_at_rest * e, at->fold - slope_at_end * e);
+    return e <= 3.0 * trusted_width(ratio, 0.0) && fmin(tangents, fmin(stiffness, at->fold)) > 0.5 * fmax(stiffness, at->fold);
 }
 
 bool dea_film_balance(const dea_film *film, double ratio, double m, double *strain)
@@ -206,7 +218,8 @@ bool dea_film_balance(const dea_film *film, double ratio, double m, double *stra
     double before;
     double after;
     if (halley(film, ratio, m, stiffness, strain, &at) && at.fold > 0.0 &&
-        !find_fold(film, ratio, 0.0, stiffness, *strain, at.fold, &before, &after)) {
+        (cannot_fold(film, ratio, stiffness, *strain, &at) ||
+         !find_fold(film, ratio, 0.0, stiffness, *strain, at.fold, &before, &after))) {
         return true; /* U grows all the way from rest to this root, so it is the first */
     }
     return trace(film, ratio, m, strain);

@@ -80,7 +80,8 @@ void dea_gnuplot_size(dea_gnuplot *picture, int width, int height)
     const char *font = "DejaVu Sans,12";
     fputs("set encoding utf8\n", picture->script);
     if (picture->png) {
-        fprintf(picture->script, "set terminal pngcairo size %d,%d font '%s' fontscale 2 linewidth 2 dashlength 2 pointscale 2 noenhanced\n",
+        fprintf(picture->script,
+                "set terminal pngcairo size %d,%d font '%s' fontscale 2 linewidth 2 dashlength 2 pointscale 2 noenhanced\n",
                 2 * width, 2 * height, font);
     } else {
         fprintf(picture->script, "set terminal svg size %d,%d font '%s' background '#ffffff' noenhanced\n", width, height, font);

@@ -52,11 +52,12 @@ static void write_sample(FILE *script, const dea_legend_entry *entry, size_t num
 
 void dea_legend_draw(const dea_legend *legend, FILE *script, int width, int height)
 {
-    fprintf(script,
-            "unset label\nunset title\nunset xlabel\nunset ylabel\nunset border\nunset tics\nunset grid\nunset logscale\nunset key\n"
-            "set xrange [0:%d]\nset yrange [0:%d]\n"
-            "set lmargin at screen 0\nset rmargin at screen 1\nset bmargin at screen 0\nset tmargin at screen 1\n",
-            width, height);
+    fprintf(
+        script,
+        "unset label\nunset title\nunset xlabel\nunset ylabel\nunset border\nunset tics\nunset grid\nunset logscale\nunset key\n"
+        "set xrange [0:%d]\nset yrange [0:%d]\n"
+        "set lmargin at screen 0\nset rmargin at screen 1\nset bmargin at screen 0\nset tmargin at screen 1\n",
+        width, height);
     for (size_t i = 0; i < legend->count; i++) {
         write_sample(script, &legend->entries[i], i);
     }
@@ -69,8 +70,8 @@ void dea_legend_draw(const dea_legend *legend, FILE *script, int width, int heig
             before = ", \\\n ";
         }
         if (entry->symbol > 0) {
-            fprintf(script, "%s$point%zu using 1:2 with points pointtype %d pointsize 0.8 linewidth 1.3 linecolor '%s'", before, i,
-                    entry->symbol, entry->colour);
+            fprintf(script, "%s$point%zu using 1:2 with points pointtype %d pointsize 0.8 linewidth 1.3 linecolor '%s'", before,
+                    i, entry->symbol, entry->colour);
             before = ", \\\n ";
         }
     }

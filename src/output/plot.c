@@ -87,7 +87,8 @@ void dea_plot_colour(size_t number, size_t count, char colour[8])
 
 void dea_plot_dash(FILE *script, size_t number)
 {
-    static const char *const dashes[] = {"solid", "(9, 4)", "(2, 3)", "(9, 3, 2, 3)", "(16, 5)", "(9, 3, 2, 3, 2, 3)", "(4, 3)", "(16, 3, 4, 3)"};
+    static const char *const dashes[] = {"solid", "(9, 4)", "(2, 3)", "(9, 3, 2, 3)", "(16, 5)",
+                                         "(9, 3, 2, 3, 2, 3)", "(4, 3)", "(16, 3, 4, 3)"};
     fprintf(script, "dashtype %s", dashes[(number - 1) % (sizeof dashes / sizeof *dashes)]);
 }
 

@@ -180,7 +180,8 @@ static void write_curves(const sheet *page, FILE *script, int column)
     for (size_t curve = 0; curve < plot->curves; curve++) {
         char colour[8];
         curve_colour(page, curve / page->groups, curve % page->groups, colour);
-        fprintf(script, "%s$curve%zu using 1:%d with %s ", curve > 0 ? ", \\\n " : "", curve, column, few ? "linespoints" : "lines");
+        fprintf(script, "%s$curve%zu using 1:%d with %s ", curve > 0 ? ", \\\n " : "", curve, column,
+                few ? "linespoints" : "lines");
         dea_plot_dash(script, curve / page->groups + 1);
         fprintf(script, " linewidth 1.8 linecolor '%s' pointtype 7 pointsize 0.4 notitle", colour);
     }

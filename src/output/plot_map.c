@@ -6,7 +6,18 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { WIDTH = 760, HEIGHT = 540, PLAIN_WIDTH = 540, PLAIN_HEIGHT = 405, COLUMNS = 240, ROWS = 180, HATCH_STEP = 14, HATCH_SAMPLES = 400, STOPS = 9, HATCHES = 2 };
+enum {
+    WIDTH = 760,
+    HEIGHT = 540,
+    PLAIN_WIDTH = 540,
+    PLAIN_HEIGHT = 405,
+    COLUMNS = 240,
+    ROWS = 180,
+    HATCH_STEP = 14,
+    HATCH_SAMPLES = 400,
+    STOPS = 9,
+    HATCHES = 2
+};
 
 /* Hatches: rising for slack, falling for breakdown. */
 static const struct {
@@ -110,8 +121,8 @@ static void write_grid(chart *map, FILE *script)
     fputs("END\n", script);
 }
 
-/* One diagonal of the hatch: x - y = c for a rising one, in units of the canvas with the map at [0, PLAIN_WIDTH] x [0, PLAIN_HEIGHT]; it is
- * drawn where its limit is passed. */
+/* One diagonal of the hatch: x - y = c for a rising one, in units of the canvas with the map at [0, PLAIN_WIDTH] x [0,
+ * PLAIN_HEIGHT]; it is drawn where its limit is passed. */
 static void write_diagonal(chart *map, FILE *script, int number, double c)
 {
     const double from = fmax(0.0, c), to = fmin(PLAIN_WIDTH, c + PLAIN_HEIGHT);

@@ -152,7 +152,8 @@ static void write_fit(const dea_fit *fit, const dea_fit_data *data, FILE *script
     const char *before = "plot ";
     for (int load = 0; load < DEA_LOAD_COUNT; load++) {
         if (fit->count[load] > 0) {
-            fprintf(script, "%s$data%d with points pointtype 6 pointsize 0.7 linewidth 1 linecolor '%s'", before, load, load_colours[load]);
+            fprintf(script, "%s$data%d with points pointtype 6 pointsize 0.7 linewidth 1 linecolor '%s'", before, load,
+                    load_colours[load]);
             fprintf(script, ", $fit%d with lines linewidth 1.8 linecolor '%s'", load, load_colours[load]);
             before = ", ";
         }

@@ -80,8 +80,10 @@ static double field_strain(const char *kind, const table_line *line, double accu
 /* Against all printed digits, and against the same solver on the finer mesh of a wanted error of 1e-12. */
 static void field_row(void)
 {
-    static const table_line table[] = {{1.1, 0.10, 0.03762647, -0.02932674}, {1.1, 0.50, 0.02651626, -0.02338631},
-                                       {1.2, 0.25, 0.06092621, -0.04432166}, {1.2, 0.50, 0.04503297, -0.03741631},
+    static const table_line table[] = {{1.1, 0.10, 0.03762647, -0.02932674},
+                                       {1.1, 0.50, 0.02651626, -0.02338631},
+                                       {1.2, 0.25, 0.06092621, -0.04432166},
+                                       {1.2, 0.50, 0.04503297, -0.03741631},
                                        {1.3, 0.75, 0.03289753, -0.03263280}};
     double off = 0.0, change = 0.0;
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {

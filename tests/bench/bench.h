@@ -20,7 +20,8 @@ void *bench_shared(size_t size);
 /* Runs the function in a child process and waits for it; false where it did not return. */
 bool bench_fork(void (*function)(void *), void *argument);
 
-/* One actuator of the paper (30 mm, 100 um, Elastosil 2030) with the lines of a `sweep:`, each with its indent; freed by the caller. */
+/* One actuator of the paper (30 mm, 100 um, Elastosil 2030) with the lines of a `sweep:`, each with its indent; freed by the
+ * caller. */
 dea_scene bench_scene(const char *kind, const char *model, double prestretch, double accuracy, const char *sweep);
 /* Rows of all points of the scene's first model by that engine, in this process or in a child. Seconds of sweep() alone. */
 double bench_sweep(const dea_engine *engine, const dea_scene *scene, dea_row *rows);

@@ -68,9 +68,10 @@ bool bench_fork(void (*function)(void *), void *argument)
 
 dea_scene bench_scene(const char *kind, const char *model, double prestretch, double accuracy, const char *sweep)
 {
-    static const char *const form = "actuator:\n  kind: %s\n  frame_radius: 30 mm\n  coverage: 0.5\n  film_thickness: 100 um\n"
-                                    "  prestretch: %.17g\nmaterial: elastosil-2030\ndrive: {voltage: 4500 V}\nmodel: %s\naccuracy: %g\n"
-                                    "study:\n  sweep:\n%s";
+    static const char *const form =
+        "actuator:\n  kind: %s\n  frame_radius: 30 mm\n  coverage: 0.5\n  film_thickness: 100 um\n"
+        "  prestretch: %.17g\nmaterial: elastosil-2030\ndrive: {voltage: 4500 V}\nmodel: %s\naccuracy: %g\n"
+        "study:\n  sweep:\n%s";
     char text[2048];
     dea_scene scene;
     dea_error error = {0};

@@ -74,7 +74,8 @@ static void run_peer(const char *name, const char *command)
 void bench_peers(const char *peers)
 {
     char command[4096];
-    snprintf(command, sizeof command, "for p in python3 /usr/bin/python3; do $p -c 'import scipy' 2>/dev/null && exec $p '%s/sweep_scipy.py'; done",
+    snprintf(command, sizeof command,
+             "for p in python3 /usr/bin/python3; do $p -c 'import scipy' 2>/dev/null && exec $p '%s/sweep_scipy.py'; done",
              peers);
     run_peer("SciPy", command);
     snprintf(command, sizeof command, "octave-cli --no-init-file --no-site-file '%s/sweep_octave.m' 2>/dev/null", peers);

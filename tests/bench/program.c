@@ -76,7 +76,8 @@ static double run_program(char *const *arguments, double *megabytes)
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     const double from = bench_now();
-    if (posix_spawn(&child, arguments[0], &actions, NULL, arguments, environ) != 0 || wait4(child, &ended, 0, &usage) != child || ended != 0) {
+    if (posix_spawn(&child, arguments[0], &actions, NULL, arguments, environ) != 0 || wait4(child, &ended, 0, &usage) != child ||
+        ended != 0) {
         bench_give_up("%s %s failed", arguments[0], arguments[1]);
     }
     const double seconds = bench_now() - from;
@@ -89,10 +90,12 @@ static void write_scene(char *path, size_t size, const char *name, const char *s
 {
     snprintf(path, size, "%s/%s", folder, name);
     FILE *file = fopen(path, "w");
-    if (!file || fprintf(file,
-                         "actuator:\n  kind: dot\n  frame_radius: 30 mm\n  coverage: 0.5\n  film_thickness: 100 um\n  prestretch: 1.2\n"
-                         "material: elastosil-2030\ndrive: {voltage: 4500 V}\nmodel: lumped\nstudy:\n  sweep: %s\n",
-                         sweep) < 0 || fclose(file) != 0) {
+    if (!file ||
+        fprintf(file,
+                "actuator:\n  kind: dot\n  frame_radius: 30 mm\n  coverage: 0.5\n  film_thickness: 100 um\n  prestretch: 1.2\n"
+                "material: elastosil-2030\ndrive: {voltage: 4500 V}\nmodel: lumped\nstudy:\n  sweep: %s\n",
+                sweep) < 0 ||
+        fclose(file) != 0) {
         bench_give_up("cannot write %s", path);
     }
 }
@@ -101,7 +104,8 @@ static void memory_row(char *program)
 {
     char scene[TEXT], output[TEXT], measured[TEXT];
     double megabytes;
-    write_scene(scene, sizeof scene, "long.yaml", "{coverage: {from: 0.05, to: 0.95, points: 10000}, voltage: {from: 0 V, to: 4500 V, points: 1000}}");
+    write_scene(scene, sizeof scene, "long.yaml",
+                "{coverage: {from: 0.05, to: 0.95, points: 10000}, voltage: {from: 0 V, to: 4500 V, points: 1000}}");
     snprintf(output, sizeof output, "%s/long.nc", folder);
     char *arguments[] = {program, "run", scene, "--engine", "direct", "--quiet", "-o", output, NULL};
     const double seconds = run_program(arguments, &megabytes);

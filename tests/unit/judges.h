@@ -66,7 +66,7 @@ static inline void membrane_step(const judged_membrane *m, double radius, double
 static inline double membrane_jump(const judged_membrane *m, double l)
 {
     const double wanted = radial_stress(m, m->disc_k, l, l);
-    double low = 0.3 * l;
+    double low = 0.01 * l;
     double high = 2.0 * l;
     for (int i = 0; i < 200; i++) {
         const double middle = 0.5 * (low + high);

@@ -1,5 +1,5 @@
-/* Every example, through the library and through the program, against facts that neither of them made. Run from the project's folder;
- * DEASPICE names the program, else build/deaspice. */
+/* Every example, through the library and through the program, against facts that neither of them made. Run from the project's
+ * folder; DEASPICE names the program, else build/deaspice. */
 #include "scenes.h"
 
 #include <dirent.h>
@@ -120,7 +120,8 @@ static void run_example(const char *name)
     assert_int_equal(here.count, dea_scene_point_count(&here.scene) * here.scene.model_count);
     for (int i = 0; i < 2; i++) {
         const char *picture = i == 0 ? "picture.svg" : "picture.png";
-        snprintf(words, sizeof words, "run %s --quiet --engine direct -o %s/rows.csv --plot %s/%s", here.path, folder, folder, picture);
+        snprintf(words, sizeof words, "run %s --quiet --engine direct -o %s/rows.csv --plot %s/%s", here.path, folder, folder,
+                 picture);
         run_program(words);
         compare_csv();
         check_picture(picture);
@@ -199,7 +200,8 @@ static double peak_coverage(const char *model, double prestretch)
     const dea_axis *axis = &here.scene.axes[1];
     size_t best = 0;
     for (size_t i = 0; i < axis->count; i++) {
-        if (row_at(model, prestretch, axis->values[i])->displacement > row_at(model, prestretch, axis->values[best])->displacement) {
+        if (row_at(model, prestretch, axis->values[i])->displacement >
+            row_at(model, prestretch, axis->values[best])->displacement) {
             best = i;
         }
     }
@@ -213,7 +215,8 @@ static void figure_8_gives_the_modulus_at_the_pre_stretches(void **state)
     size_t found = 0;
     (void)state;
     for (int i = 0; i < 2; i++) {
-        snprintf(words, sizeof words, "materials elastosil-2030 -o %s/material.csv --plot %s/material.%s", folder, folder, i ? "png" : "svg");
+        snprintf(words, sizeof words, "materials elastosil-2030 -o %s/material.csv --plot %s/material.%s", folder, folder,
+                 i ? "png" : "svg");
         run_program(words);
         check_picture(i ? "material.png" : "material.svg");
     }
@@ -247,8 +250,10 @@ static void figure_9_ends_at_the_strains_of_equations_13_and_4(void **state)
 
 static void figure_10_passes_through_the_reference_strains(void **state)
 {
-    static const double table[][5] = {{1.1, 0.10, 0.04587737, 0.04028821, 0.03762647}, {1.1, 0.50, 0.02218118, 0.02238234, 0.02651626},
-                                      {1.2, 0.25, 0.05973380, 0.05612602, 0.06092621}, {1.2, 0.50, 0.03569962, 0.03741735, 0.04503297},
+    static const double table[][5] = {{1.1, 0.10, 0.04587737, 0.04028821, 0.03762647},
+                                      {1.1, 0.50, 0.02218118, 0.02238234, 0.02651626},
+                                      {1.2, 0.25, 0.05973380, 0.05612602, 0.06092621},
+                                      {1.2, 0.50, 0.03569962, 0.03741735, 0.04503297},
                                       {1.3, 0.75, 0.02204766, 0.02618038, 0.03289753}};
     (void)state;
     run_example("figure10");
@@ -266,8 +271,10 @@ static void figure_10_has_the_sensitivities_of_the_paper(void **state)
     run_example("figure10");
     for (int i = 0; i < 3; i++) {
         const double pre = 1.1 + 0.1 * i;
-        assert_printed(100.0 - 100.0 * row_at("lumped", pre, 0.48)->displacement / row_at("lumped", pre, 0.5)->displacement, 0.16, 2);
-        assert_printed(100.0 - 100.0 * row_at("lumped", pre, 0.24)->displacement / row_at("lumped", pre, 0.25)->displacement, 2.72, 2);
+        assert_printed(100.0 - 100.0 * row_at("lumped", pre, 0.48)->displacement / row_at("lumped", pre, 0.5)->displacement, 0.16,
+                       2);
+        assert_printed(100.0 - 100.0 * row_at("lumped", pre, 0.24)->displacement / row_at("lumped", pre, 0.25)->displacement,
+                       2.72, 2);
     }
 }
 
@@ -351,12 +358,14 @@ static void sample_data_gives_back_the_constants_it_was_made_from(void **state)
     dea_scene scene;
     dea_error error = {0};
     (void)state;
-    snprintf(words, sizeof words, "fit examples/data/elastosil-2030.csv --quiet -o %s/film.yaml --plot %s/fit.svg", folder, folder);
+    snprintf(words, sizeof words, "fit examples/data/elastosil-2030.csv --quiet -o %s/film.yaml --plot %s/fit.svg", folder,
+             folder);
     run_program(words);
     check_picture("fit.svg");
     snprintf(path, sizeof path, "%s/film.yaml", folder);
-    char text[2 * PATH_LENGTH] = "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
-                                 "drive: {voltage: 1 V}\nmodel: lumped\nstudy: {sweep: {}}\n";
+    char text[2 * PATH_LENGTH] =
+        "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+        "drive: {voltage: 1 V}\nmodel: lumped\nstudy: {sweep: {}}\n";
     FILE *file = fopen(path, "r");
     assert_non_null(file);
     size_t length = strlen(text);
@@ -378,8 +387,8 @@ static void run_told(const char *command)
 {
     char line[4 * PATH_LENGTH], project[PATH_LENGTH];
     assert_non_null(getcwd(project, sizeof project));
-    snprintf(line, sizeof line, "mkdir %s/told && cd %s/told && ln -s '%s/examples' examples && '%s' %s --quiet >/dev/null", folder, folder,
-             project, program, command);
+    snprintf(line, sizeof line, "mkdir %s/told && cd %s/told && ln -s '%s/examples' examples && '%s' %s --quiet >/dev/null",
+             folder, folder, project, program, command);
     const int ended = system(line);
     snprintf(line, sizeof line, "rm -r %s/told", folder);
     assert_int_equal(system(line), 0);

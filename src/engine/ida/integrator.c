@@ -1,5 +1,8 @@
 #include "engine/ida/sundials.h"
 
+/* Steps of one problem after which it is given up; a good one takes some hundreds. */
+enum { MOST_STEPS = 1000 };
+
 #if SUNDIALS_VERSION_MAJOR < 7
 static void ignore_message(int code, const char *module, const char *function, char *message, void *user)
 {
@@ -55,7 +58,7 @@ dea_status dea_integrator_open(SUNContext context, sunindextype n, IDAResFn resi
     N_VConst(1.0, m->tolerance);
     if (IDAInit(m->ida, residual, 0.0, m->y, m->yp) != IDA_SUCCESS ||
         IDASVtolerances(m->ida, 1e-6, m->tolerance) != IDA_SUCCESS ||
-        IDASetLinearSolver(m->ida, m->solver, m->matrix) != IDA_SUCCESS || IDASetMaxNumSteps(m->ida, 100000) != IDA_SUCCESS) {
+        IDASetLinearSolver(m->ida, m->solver, m->matrix) != IDA_SUCCESS || IDASetMaxNumSteps(m->ida, MOST_STEPS) != IDA_SUCCESS) {
         return dea_fail(error, DEA_ERROR_ENGINE, "IDA did not start");
     }
     return DEA_OK;

@@ -71,8 +71,7 @@ double dea_balance_length(const dea_balance *balance)
     return dea_tape_value(&balance->limits, LENGTH);
 }
 
-/* Distance from rest at which a region has vanished [m]; far out where there is none. */
-static double film_end(const dea_balance *balance)
+double dea_balance_end(const dea_balance *balance)
 {
     const double end = dea_tape_value(&balance->limits, END);
     return end > 0.0 ? end * (1.0 - 1e-12) : 1e4 * dea_balance_length(balance);
@@ -118,7 +117,7 @@ bool dea_balance_folds(dea_balance *balance, double symbol, double *share, doubl
 {
     dea_tape_run_values(&balance->limits, symbol, 0.0);
     const double length = dea_balance_length(balance);
-    const double end = film_end(balance);
+    const double end = dea_balance_end(balance);
     double before = 0.0;
     double after = 0.0;
     double from = 0.0;
@@ -155,7 +154,7 @@ static bool is_connected(dea_balance *balance, double symbol, double u, const de
 {
     const double distance = balance->sign * u;
     double before, after;
-    if (!(distance > 0.0 && distance < film_end(balance))) {
+    if (!(distance > 0.0 && distance < dea_balance_end(balance))) {
         return false;
     }
     const double rest = stiffness_at(balance, symbol, 0.0);

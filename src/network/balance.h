@@ -39,5 +39,7 @@ bool dea_balance_folds(dea_balance *balance, double symbol, double *share, doubl
 void dea_balance_fill(dea_balance *balance, double symbol, double u, dea_row *row);
 /* Size of the film at the point that was evaluated last [m]: below both r_a and r - r_a. */
 double dea_balance_length(const dea_balance *balance);
+/* Distance from rest at which a region has vanished, at that point [m]; far out where there is none. */
+double dea_balance_end(const dea_balance *balance);
 
 #endif

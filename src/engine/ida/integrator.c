@@ -1,7 +1,7 @@
 #include "engine/ida/sundials.h"
 
 /* Steps of one problem after which it is given up; a good one takes some hundreds. */
-enum { MOST_STEPS = 1000 };
+enum { MOST_STEPS = 20000 };
 
 #if SUNDIALS_VERSION_MAJOR < 7
 static void ignore_message(int code, const char *module, const char *function, char *message, void *user)

@@ -1,51 +1,62 @@
-/* Equilibrium of a network as an index-1 problem: with the share t of the load as the free variable,
+/* Equilibrium of a network as an index-1 problem along its displacement: with u = x l, l the linear answer,
  *
- *     [ R(u) - t F(u) ] / (K_0 l) = 0,   y = u/l,
+ *     dx/dtau = 1,   [ R(u) - t F(u) ] / F(0) = 0,
  *
- * IDA follows u(t) from rest; K_0 is the stiffness at rest and l the size of the film, so that no tolerance depends on the
- * actuator's size. The stiffness (R' - t F')/K_0 is watched as a root function: where it vanishes the equilibrium folds, which is
- * pull-in. */
+ * IDA follows the share t of the load that holds u, from rest on. Two root functions are watched: t - 1, the answer, and the
+ * stiffness (R' - t F')/K_0, whose zero is the fold where t stops growing: pull-in. Along u, unlike along the load, a fold is no
+ * singular place. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "engine/ida/sundials.h"
 #include "network/balance.h"
 
+enum { PLACE, SHARE, UNKNOWNS };
+enum { FULL_LOAD, FOLD, ROOTS };
+
 struct dea_ramp {
     dea_integrator integrator;
     dea_balance *balance; /* borrowed for one solve, as all below */
     double symbol;
-    double length;    /* l [m] */
-    double stiffness; /* K_0 [N/m] */
+    double length;    /* l, signed as u [m] */
+    double load;      /* F(0) [N] */
+    double stiffness; /* K_0 = R'(0) [N/m] */
 };
 
-static int residual(sunrealtype t, N_Vector y, N_Vector yp, N_Vector r, void *user)
+static int residual(sunrealtype tau, N_Vector y, N_Vector yp, N_Vector r, void *user)
 {
     dea_ramp *ramp = user;
-    (void)yp;
-    const dea_forces f = dea_balance_forces(ramp->balance, ramp->symbol, N_VGetArrayPointer(y)[0] * ramp->length);
-    N_VGetArrayPointer(r)[0] = (f.elastic - t * f.load) / (ramp->stiffness * ramp->length);
-    return isfinite(N_VGetArrayPointer(r)[0]) ? 0 : 1;
+    const sunrealtype *v = N_VGetArrayPointer(y);
+    sunrealtype *out = N_VGetArrayPointer(r);
+    (void)tau;
+    const dea_forces f = dea_balance_forces(ramp->balance, ramp->symbol, v[PLACE] * ramp->length);
+    out[PLACE] = N_VGetArrayPointer(yp)[PLACE] - 1.0;
+    out[SHARE] = (f.elastic - v[SHARE] * f.load) / ramp->load;
+    return isfinite(out[SHARE]) ? 0 : 1; /* a trial step too far: IDA takes a shorter one */
 }
 
-static double relative_stiffness(dea_ramp *ramp, double t, double y)
-{
-    const dea_forces f = dea_balance_forces(ramp->balance, ramp->symbol, y * ramp->length);
-    return (f.elastic_slope - t * f.load_slope) / ramp->stiffness;
-}
-
-static int jacobian(sunrealtype t, sunrealtype cj, N_Vector y, N_Vector yp, N_Vector r, SUNMatrix matrix, void *user,
+static int jacobian(sunrealtype tau, sunrealtype cj, N_Vector y, N_Vector yp, N_Vector r, SUNMatrix matrix, void *user,
                     N_Vector work1, N_Vector work2, N_Vector work3)
 {
-    (void)cj, (void)yp, (void)r, (void)work1, (void)work2, (void)work3;
-    SM_ELEMENT_D(matrix, 0, 0) = relative_stiffness(user, t, N_VGetArrayPointer(y)[0]);
+    dea_ramp *ramp = user;
+    const sunrealtype *v = N_VGetArrayPointer(y);
+    (void)tau, (void)yp, (void)r, (void)work1, (void)work2, (void)work3;
+    const dea_forces f = dea_balance_forces(ramp->balance, ramp->symbol, v[PLACE] * ramp->length);
+    SM_ELEMENT_D(matrix, PLACE, PLACE) = cj;
+    SM_ELEMENT_D(matrix, PLACE, SHARE) = 0.0;
+    SM_ELEMENT_D(matrix, SHARE, PLACE) = (f.elastic_slope - v[SHARE] * f.load_slope) * ramp->length / ramp->load;
+    SM_ELEMENT_D(matrix, SHARE, SHARE) = -f.load / ramp->load;
     return 0;
 }
 
-static int softening(sunrealtype t, N_Vector y, N_Vector yp, sunrealtype *out, void *user)
+static int watch(sunrealtype tau, N_Vector y, N_Vector yp, sunrealtype *out, void *user)
 {
-    (void)yp;
-    out[0] = relative_stiffness(user, t, N_VGetArrayPointer(y)[0]);
+    dea_ramp *ramp = user;
+    const sunrealtype *v = N_VGetArrayPointer(y);
+    (void)tau, (void)yp;
+    const dea_forces f = dea_balance_forces(ramp->balance, ramp->symbol, v[PLACE] * ramp->length);
+    out[FULL_LOAD] = v[SHARE] - 1.0;
+    out[FOLD] = (f.elastic_slope - v[SHARE] * f.load_slope) / ramp->stiffness;
     return 0;
 }
 
@@ -56,13 +67,13 @@ dea_status dea_ramp_open(SUNContext context, dea_ramp **out, dea_error *error)
     if (!ramp) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while IDA starts");
     }
-    const dea_status status = dea_integrator_open(context, 1, residual, &ramp->integrator, error);
+    const dea_status status = dea_integrator_open(context, UNKNOWNS, residual, &ramp->integrator, error);
     if (status != DEA_OK) {
         return status;
     }
     void *ida = ramp->integrator.ida;
     if (IDASetJacFn(ida, jacobian) != IDA_SUCCESS || IDASetUserData(ida, ramp) != IDA_SUCCESS ||
-        IDARootInit(ida, 1, softening) != IDA_SUCCESS) {
+        IDARootInit(ida, ROOTS, watch) != IDA_SUCCESS) {
         return dea_fail(error, DEA_ERROR_ENGINE, "IDA did not start");
     }
     return DEA_OK;
@@ -76,20 +87,22 @@ void dea_ramp_close(dea_ramp *ramp)
     }
 }
 
-/* Starts at rest with du/dt = F/K_0. */
-static bool start(dea_ramp *ramp, double slope, double tolerance)
+/* Starts at rest, where a linear film has dt/dx = 1; steps move the stretch by 5 % at most, so that no fold is stepped over. */
+static bool start(dea_ramp *ramp, double tolerance, double end)
 {
     dea_integrator *m = &ramp->integrator;
-    N_VGetArrayPointer(m->y)[0] = 0.0;
-    N_VGetArrayPointer(m->yp)[0] = slope;
-    N_VGetArrayPointer(m->tolerance)[0] = tolerance * fabs(slope); /* of the size of the answer */
+    const double longest = 0.05 * dea_balance_length(ramp->balance) / fabs(ramp->length);
+    N_VConst(0.0, m->y);
+    N_VConst(1.0, m->yp);
+    N_VConst(tolerance, m->tolerance);
     return IDAReInit(m->ida, 0.0, m->y, m->yp) == IDA_SUCCESS &&
-           IDASVtolerances(m->ida, tolerance, m->tolerance) == IDA_SUCCESS && IDASetStopTime(m->ida, 1.0) == IDA_SUCCESS;
+           IDASVtolerances(m->ida, tolerance, m->tolerance) == IDA_SUCCESS && IDASetMaxStep(m->ida, longest) == IDA_SUCCESS &&
+           IDASetStopTime(m->ida, end) == IDA_SUCCESS;
 }
 
 void dea_ramp_solve(dea_ramp *ramp, dea_balance *balance, double symbol, double accuracy, dea_row *row)
 {
-    const double tolerance = fmin(1e-6, fmax(1e-4 * accuracy, 1e-12));
+    const double tolerance = fmin(1e-6, fmax(2e-5 * accuracy, 1e-12));
     dea_integrator *m = &ramp->integrator;
     *row = dea_row_failed();
     if (!dea_balance_valid(balance, symbol)) {
@@ -106,16 +119,16 @@ void dea_ramp_solve(dea_ramp *ramp, dea_balance *balance, double symbol, double 
     }
     ramp->balance = balance;
     ramp->symbol = symbol;
-    ramp->length = dea_balance_length(balance);
+    ramp->load = rest.load;
     ramp->stiffness = rest.elastic_slope;
-    double t = 0.0;
-    const int code = start(ramp, rest.load / (rest.elastic_slope * ramp->length), tolerance)
-                         ? IDASolve(m->ida, 1.0, &t, m->y, m->yp, IDA_NORMAL)
-                         : IDA_ILL_INPUT;
-    const double y = N_VGetArrayPointer(m->y)[0];
-    if (code == IDA_TSTOP_RETURN || code == IDA_SUCCESS) {
-        dea_balance_fill(balance, symbol, y * ramp->length, row);
-    } else if (code == IDA_ROOT_RETURN || relative_stiffness(ramp, t, y) < 1e-2) {
-        row->state = DEA_STATE_PULL_IN; /* close to the fold u(t) turns vertical and no step is short enough */
+    ramp->length = rest.load / rest.elastic_slope;
+    const double end = dea_balance_end(balance) / fabs(ramp->length);
+    double tau = 0.0;
+    int found[ROOTS] = {0, 0};
+    const int code = start(ramp, tolerance, end) ? IDASolve(m->ida, end, &tau, m->y, m->yp, IDA_NORMAL) : IDA_ILL_INPUT;
+    if (code == IDA_ROOT_RETURN && IDAGetRootInfo(m->ida, found) == IDA_SUCCESS && found[FULL_LOAD]) {
+        dea_balance_fill(balance, symbol, N_VGetArrayPointer(m->y)[PLACE] * ramp->length, row);
+    } else if (code >= 0) {
+        row->state = DEA_STATE_PULL_IN; /* a fold, or the end of the film */
     }
 }

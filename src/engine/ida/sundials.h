@@ -41,7 +41,8 @@ struct dea_balance;
 typedef struct dea_ramp dea_ramp;
 dea_status dea_ramp_open(SUNContext context, dea_ramp **ramp, dea_error *error);
 void dea_ramp_close(dea_ramp *ramp);
-/* Equilibrium of a network: an index-1 problem along a load that grows from 0 to 1, stopped where the stiffness vanishes. */
+/* Equilibrium of a network: an index-1 problem along its displacement, stopped at the full load or where the stiffness vanishes.
+ */
 void dea_ramp_solve(dea_ramp *ramp, struct dea_balance *balance, double symbol, double accuracy, dea_row *row);
 
 typedef struct dea_shooting dea_shooting;

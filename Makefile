@@ -25,7 +25,8 @@ PROGRAM_OBJECTS := $(PROGRAM_SOURCES:%.c=$(BUILD)/%.o)
 UNIT_SOURCES    := $(sort $(wildcard tests/unit/test_*.c))
 UNIT_PROGRAMS   := $(UNIT_SOURCES:tests/unit/%.c=$(BUILD)/tests/%)
 
-SANITIZE := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+JOBS     ?= $(shell nproc 2>/dev/null || echo 1)
+SANITIZE := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 
 .DELETE_ON_ERROR:
 .PHONY: all unit demo check test asan fuzz clang bench examples-agree asan-run install uninstall clean packages packages-check
@@ -39,7 +40,7 @@ packages-check:
 
 # The main job on real input: the coverage sweep of the paper's Figure 10, as a table and as a picture.
 demo: packages
-	@$(MAKE) --no-print-directory all
+	@$(MAKE) --no-print-directory -j$(JOBS) all
 	@mkdir -p demo
 	$(BUILD)/deaspice run examples/figure10.yaml --engine direct -o demo/figure10.csv --plot demo/figure10.svg
 	$(BUILD)/deaspice check --quiet examples/figure10.yaml
@@ -53,19 +54,22 @@ check: packages-check
 	awk -v status=$$status '{p += $$1; f += $$2} END {if (status && !f) f = 1; printf "%d passed, %d failed\n", p, f}' $(BUILD)/tally; \
 	exit $$status
 
-test: all unit
+test:
+	@$(MAKE) --no-print-directory -j$(JOBS) all unit
 	@DEASPICE=$(abspath $(BUILD))/deaspice tests/run test $(UNIT_PROGRAMS)
 
-examples-agree: all
+examples-agree:
+	@$(MAKE) --no-print-directory -j$(JOBS) all
 	@$(BUILD)/deaspice check --quiet examples/*.yaml && echo "1 0" >>$${TALLY:-/dev/null} || { echo "0 1" >>$${TALLY:-/dev/null}; exit 1; }
 
 clang:
-	@$(MAKE) --no-print-directory BUILD=$(BUILD)/clang CC=clang CFLAGS="-O1 -Werror" all unit
+	@$(MAKE) --no-print-directory BUILD=$(BUILD)/clang CC=clang CFLAGS="-O1 -Werror" -j$(JOBS) all unit
 
 asan:
 	@$(MAKE) --no-print-directory BUILD=$(BUILD)/asan CFLAGS="$(SANITIZE)" asan-run
 
-asan-run: all unit
+asan-run:
+	@$(MAKE) --no-print-directory -j$(JOBS) all unit
 	@DEASPICE=$(abspath $(BUILD))/deaspice ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 \
 	LSAN_OPTIONS=suppressions=$(abspath tests/leaks.supp):print_suppressions=0 tests/run asan $(UNIT_PROGRAMS)
 
@@ -79,7 +83,8 @@ fuzz: $(BUILD)/fuzz/scene_fuzz
 
 $(BUILD)/fuzz/scene_fuzz: tests/fuzz/scene_fuzz.c $(LIBRARY_SOURCES)
 	@mkdir -p $(@D)
-	clang $(filter-out -MMD -MP,$(ALL_CFLAGS)) -O1 -g -fsanitize=fuzzer,address,undefined -DDEA_AXIS_VALUES_MAX=100000 $^ -o $@ $(LIBS)
+	@echo "CC $@"
+	@clang $(filter-out -MMD -MP,$(ALL_CFLAGS)) -O1 -g -fsanitize=fuzzer,address,undefined -DDEA_AXIS_VALUES_MAX=100000 $^ -o $@ $(LIBS)
 
 install: all
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/pkgconfig $(DESTDIR)$(PREFIX)/include/deaspice $(DESTDIR)$(PREFIX)/share/man/man1
@@ -102,21 +107,26 @@ clean:
 
 $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) -c $< -o $@
+	@echo "CC $@"
+	@$(CC) $(ALL_CFLAGS) -c $< -o $@
 
 $(BUILD)/libdeaspice.a: $(LIBRARY_OBJECTS)
 	@rm -f $@
-	ar rcs $@ $^
+	@echo "AR $@"
+	@ar rcs $@ $^
 
 $(BUILD)/libdeaspice.so: $(LIBRARY_OBJECTS)
-	$(CC) -shared -Wl,-soname,libdeaspice.so.0 $(CFLAGS) $(LDFLAGS) $^ -o $@ $(LIBS)
+	@echo "LD $@"
+	@$(CC) -shared -Wl,-soname,libdeaspice.so.0 $(CFLAGS) $(LDFLAGS) $^ -o $@ $(LIBS)
 
 $(BUILD)/deaspice: $(PROGRAM_OBJECTS) $(BUILD)/libdeaspice.a
-	$(CC) $(CFLAGS) $(LDFLAGS) $^ -o $@ $(LIBS)
+	@echo "LD $@"
+	@$(CC) $(CFLAGS) $(LDFLAGS) $^ -o $@ $(LIBS)
 
 $(BUILD)/tests/%: tests/unit/%.c $(BUILD)/libdeaspice.a Makefile
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) -Itests/unit $< $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) -lcmocka $(LIBS)
+	@echo "CC $@"
+	@$(CC) $(ALL_CFLAGS) -Itests/unit $< $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) -lcmocka $(LIBS)
 
 unit: $(UNIT_PROGRAMS)
 

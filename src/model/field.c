@@ -51,6 +51,12 @@ static radial_state slope_at(const membrane *m, radial_state s)
     const dea_stress stress = dea_yeoh_stress(m->film->yeoh, l1, l2);
     const double s11 = stress.w11 - m->annulus_k * l2 * l2;
     const double s12 = stress.w12 - 2.0 * m->annulus_k * area;
+    if (!(s11 > 0.0)) {
+        return (radial_state){NAN, NAN}; /* the film is unstable in itself */
+    }
+    if (!(s11 > 0.0)) {
+        return (radial_state){NAN, NAN}; /* loss of ellipticity: no such film is stable */
+    }
     const double rate = 1.0 + (2.0 * stress.w * (1.0 + t * t * t) + m->annulus_k * area + s12) / s11;
     return (radial_state){-s.d * rate, -s.d};
 }
@@ -117,13 +123,14 @@ static double jump_at_edge(const membrane *m, double l)
     for (int i = 0; i < 40; i++) {
         const dea_stress here = dea_yeoh_stress(m->film->yeoh, l - d, l);
         const double residual = stress_drop(m->film->yeoh, l, d) + jump + m->annulus_k * d * l * l;
-        const double step = residual / (here.w11 - m->annulus_k * l * l);
+        const double s11 = here.w11 - m->annulus_k * l * l;
         const double most = 0.25 * (l - d); /* lambda_1 moves by a quarter at most: the first root from lambda_2 on is meant */
+        const double step = s11 > 0.0 ? residual / s11 : copysign(most, residual);
         const double next = d + fmax(-most, fmin(most, step));
         const double change = fabs(next - d);
         d = next;
         if (change <= 1e-9 * fabs(d)) { /* quadratic */
-            return d;
+            return s11 > 0.0 ? d : NAN;
         }
     }
     return NAN;
@@ -199,7 +206,9 @@ static bool near_rest(const membrane *m, double guess, double *edge)
         const double e1 = e0 + step;
         if (fabs(step) <= 1e-9 * fabs(e1)) { /* the error left is the product of the last two steps */
             *edge = e1;
-            return fabs(e1) < 0.1 * m->film->prestretch && first_slope > 0.5 && first_slope < 2.0 && slope > 0.4;
+            const double size = fabs(e1) / m->film->prestretch;
+            const double softest = fmin(first_slope, slope); /* falls from 1 at rest to 0 at a fold */
+            return fmax(first_slope, slope) < 2.0 && (softest > 0.4 ? size < 0.1 : softest > 0.1 && size < 0.05);
         }
         const double miss1 = miss_at_frame(m, e1, NULL);
         slope = (miss1 - miss0) / (e1 - e0);
@@ -212,41 +221,52 @@ static bool near_rest(const membrane *m, double guess, double *edge)
     return false;
 }
 
-/* Share of the full load that holds the edge at @p edge, secant from @p guess; NAN where there is none. */
+/* Share of the full load that holds the edge at @p edge, from @p guess; NAN where there is none. As the share grows, the miss
+ * falls from that of a uniform film, @p edge, to 0; beyond some share there may be no film. Secant, with bisection where it
+ * leaves the bracket or is slow. */
 static double share_at(const membrane *full, double edge, double guess)
 {
-    double s0 = 0.0;
-    double miss0 = edge; /* without load the film is uniform */
-    double s1 = guess;
-    for (int i = 0; i < 40; i++) {
-        const membrane m = under_load(full, s1);
-        const double miss1 = miss_at_frame(&m, edge, NULL);
-        const double step = -miss1 * (s1 - s0) / (miss1 - miss0);
-        if (!isfinite(step)) {
-            return miss1 == 0.0 ? s1 : NAN;
+    double low = 0.0;
+    double high = INFINITY;
+    double last = 0.0;
+    double miss_last = edge;
+    double share = guess;
+    for (int i = 0; i < 200; i++) {
+        const membrane m = under_load(full, share);
+        const double miss = miss_at_frame(&m, edge, NULL);
+        *(miss * edge > 0.0 ? &low : &high) = share;
+        double next = share - miss * (share - last) / (miss - miss_last);
+        if (miss != 0.0 && (!(next > low && next < high) || (i > 12 && i % 2 == 1))) {
+            next = isinf(high) ? 2.0 * share : 0.5 * (low + high);
         }
-        s0 = s1;
-        miss0 = miss1;
-        s1 += step;
-        if (fabs(step) <= 1e-13 * fabs(s1)) {
-            return s1;
+        if (fabs(next - share) <= 1e-13 * share) {
+            return isfinite(miss) ? next : NAN;
         }
+        last = share;
+        miss_last = miss;
+        share = next;
     }
     return NAN;
 }
 
+/* 0 where the share is 1; bounded, because close to the end of the film the share grows beyond all measure. */
+static double excess(double share)
+{
+    return (share - 1.0) / (share + 1.0);
+}
+
 /* Edge that the full load holds, between one that less holds and one that more does (Illinois variant of regula falsi on the
- * share). */
+ * share); NAN where a share is not found. */
 static double bracketed_edge(const membrane *full, double low, double share_low, double high, double share_high)
 {
-    double miss_low = share_low - 1.0;
-    double miss_high = share_high - 1.0;
+    double miss_low = excess(share_low);
+    double miss_high = excess(share_high);
     double edge = high;
-    for (int i = 0; i < 100 && miss_high != 0.0 && fabs(high - low) > 4e-16 * fabs(high); i++) {
+    for (int i = 0; i < 200 && fabs(miss_high) > 1e-14 && fabs(high - low) > 4e-16 * fabs(high); i++) {
         edge = (low * miss_high - high * miss_low) / (miss_high - miss_low);
-        const double miss = share_at(full, edge, 1.0) - 1.0;
-        if (!isfinite(miss)) {
-            break;
+        const double miss = excess(share_at(full, edge, 1.0));
+        if (isnan(miss)) {
+            return NAN;
         }
         if ((miss > 0.0) == (miss_high > 0.0)) {
             miss_low *= 0.5;
@@ -256,9 +276,6 @@ static double bracketed_edge(const membrane *full, double low, double share_low,
         }
         high = edge;
         miss_high = miss;
-        if (fabs(miss) <= 1e-14) {
-            break;
-        }
     }
     return edge;
 }
@@ -303,13 +320,15 @@ static bool trace(const membrane *full, double sign, double end, double *edge)
         const double here = sign * fmin(fabs(end), fabs(last) + step * (pre + fmax(0.0, last)));
         const double guess = share > 0.0 ? share * fabs(here / last) : 0.1;
         const double next = share_at(full, here, guess);
-        if (isnan(next)) {
-            step *= 0.5; /* the film ends here, or the step was too long */
-            continue;
-        }
         if (next >= 1.0) {
             *edge = bracketed_edge(full, last, share, here, next);
-            return true;
+            if (isfinite(*edge)) {
+                return true;
+            }
+        }
+        if (!(next < 1.0)) {
+            step *= 0.5; /* the film ends here, or the step was too long */
+            continue;
         }
         if (!(next > share)) {
             double largest;

@@ -67,7 +67,7 @@ static inline double membrane_jump(const judged_membrane *m, double l)
 {
     const double wanted = radial_stress(m, m->disc_k, l, l);
     double low = 0.01 * l;
-    double high = 2.0 * l;
+    double high = 20.0 * l;
     for (int i = 0; i < 200; i++) {
         const double middle = 0.5 * (low + high);
         *(radial_stress(m, m->annulus_k, middle, l) < wanted ? &low : &high) = middle;

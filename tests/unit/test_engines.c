@@ -126,11 +126,21 @@ static bool same_numbers(const dea_row *row, const dea_row *wanted, double toler
     if (wanted->state == DEA_STATE_PULL_IN || wanted->state == DEA_STATE_FAILED) {
         return isnan(row->strain) && isnan(row->displacement) && isnan(row->force) && isnan(row->field);
     }
+    tolerance += wanted->strain != 0.0 ? 4e-16 / fabs(wanted->strain) : 0.0; /* a solver with terms of the size of the stretch loses digits of a tiny strain */
     return is_close(row->strain, wanted->strain, tolerance, 0.0) && is_close(row->displacement, wanted->displacement, tolerance, 0.0) &&
            is_close(row->force, wanted->force, tolerance, 0.0) && is_close(row->field, wanted->field, tolerance, 0.0);
 }
 
+/* Beyond the loss of tension the numbers are those of a film that could bear pressure: there an engine may refuse by name, with no number. */
+static bool refused_beyond_tension(const dea_row *a, const dea_row *b)
+{
+    const bool a_refused = isnan(a->strain);
+    const bool b_refused = isnan(b->strain);
+    return (a_refused && b_refused) || (a_refused && b->state == DEA_STATE_SLACK) || (b_refused && a->state == DEA_STATE_SLACK);
+}
+
 typedef struct tally {
+    size_t slack; /* rows that one engine refuses beyond the loss of tension */
     size_t compared, strained, limits, refused; /* rows; of them with numbers and strain; near limits; pull-in or failed */
     size_t wrong;
 } tally;
@@ -151,6 +161,10 @@ static void compare_entry(const table_entry *entry, const char *engine, double t
             count->limits++;
             continue;
         }
+        if (refused_beyond_tension(&got.rows[i], &wanted.rows[i])) {
+            count->slack++;
+            continue;
+        }
         tell(entry, i, engine, &got.rows[i], &wanted.rows[i]);
         count->wrong++;
     }
@@ -168,6 +182,7 @@ static void compare_engines(const char *engine, const char *model, double tolera
     assert_int_equal(count.compared, SCENES * POINTS);
     assert_true(count.strained > count.compared / 3);
     assert_true(count.limits < 5);
+    assert_true(count.slack < count.compared / 10);
 }
 
 static void ngspice_solves_lumped_as_the_equation_does(void **state)

@@ -87,11 +87,12 @@ void dea_ramp_close(dea_ramp *ramp)
     }
 }
 
-/* Starts at rest, where a linear film has dt/dx = 1; steps move the stretch by 5 % at most, so that no fold is stepped over. */
+/* Starts at rest, where a linear film has dt/dx = 1; steps move the stretch by 5 %, or u by 0.1 % of the linear answer, at
+ * most, so that no fold is stepped over. */
 static bool start(dea_ramp *ramp, double tolerance, double end)
 {
     dea_integrator *m = &ramp->integrator;
-    const double longest = 0.05 * dea_balance_length(ramp->balance) / fabs(ramp->length);
+    const double longest = fmax(0.05 * dea_balance_length(ramp->balance) / fabs(ramp->length), 1e-3);
     N_VConst(0.0, m->y);
     N_VConst(1.0, m->yp);
     N_VConst(tolerance, m->tolerance);

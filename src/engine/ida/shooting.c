@@ -16,6 +16,9 @@ static const double pi = 3.14159265358979323846;
 
 enum { SIGMA, HOOP, RADIAL, UNKNOWNS };
 
+/* What KINSOL searches: the edge at a load, or the load at an edge. */
+typedef enum search { SEARCH_EDGE, SEARCH_SHARE } search;
+
 /* Steps along the radius after which a guess is taken as hopeless; a good one takes some hundreds. */
 enum { MOST_STEPS = 3000 };
 
@@ -25,7 +28,7 @@ struct dea_shooting {
     N_Vector edge;          /* owned: d2 at r_a over `strain` */
     N_Vector ones;          /* owned */
     const dea_point *point; /* borrowed for one solve */
-    int search;             /* what KINSOL searches now */
+    search search;          /* what KINSOL searches now */
     double share;           /* of the load that KINSOL's 1 stands for [1] */
     double held;            /* edge that is held while the load is searched, or a size of the edge [1] */
     double pressure;        /* M at full load [Pa] */
@@ -141,7 +144,8 @@ static bool start(dea_shooting *s, double edge)
     N_VConst(0.0, m->yp);
     if (IDAReInit(m->ida, 0.0, m->y, m->yp) != IDA_SUCCESS ||
         IDASVtolerances(m->ida, s->tolerance, m->tolerance) != IDA_SUCCESS ||
-        IDACalcIC(m->ida, IDA_YA_YDP_INIT, 1e-3) != IDA_SUCCESS || IDAGetConsistentIC(m->ida, m->y, m->yp) != IDA_SUCCESS) {
+        IDACalcIC(m->ida, IDA_YA_YDP_INIT, -log(s->point->coverage)) != IDA_SUCCESS ||
+        IDAGetConsistentIC(m->ida, m->y, m->yp) != IDA_SUCCESS) {
         return false;
     }
     const double l1 = s->point->film.prestretch + s->strain * v[RADIAL];
@@ -171,9 +175,6 @@ static double miss_at_frame(dea_shooting *s, double edge)
     }
     return code == IDA_TSTOP_RETURN ? N_VGetArrayPointer(m->y)[HOOP] : NAN;
 }
-
-/* What KINSOL searches. */
-typedef enum search { SEARCH_EDGE, SEARCH_SHARE } search;
 
 /* Fixed points for KINSOL: of the edge at a load, edge - miss, or of the load at an edge, share + miss. Both slopes are near 1
  * for a small strain, and Anderson's acceleration takes care of the rest. */
@@ -256,6 +257,8 @@ static double search_from(dea_shooting *s, search what, double start)
 {
     s->search = what;
     N_VConst(s->tolerance, s->integrator.tolerance);
+    N_VGetArrayPointer(s->integrator.tolerance)[HOOP] *=
+        1.0 - s->point->coverage; /* the hoop strain of a narrow annulus is that small */
     N_VGetArrayPointer(s->edge)[0] = start;
     KINSetFuncNormTol(s->kinsol, 100.0 * s->tolerance * fabs(start));
     const int code = KINSol(s->kinsol, s->edge, KIN_FP, s->ones, s->ones);
@@ -390,8 +393,10 @@ void dea_shooting_solve(dea_shooting *s, const dea_point *point, double accuracy
     }
     const double linear =
         sign * s->pressure * film->square * film->prestretch * (1.0 - b2) / (2.0 * film->w11); /* without softening */
-    double edge = fabs(linear) < 0.1 * film->prestretch ? edge_at_full_load(s, linear) : NAN;
-    if (!(fabs(edge) < 0.1 * film->prestretch && stiffness_at(s, edge) > 0.5)) { /* else too near to rest for a fold between */
+    double edge = fabs(linear) < 0.2 * film->prestretch ? edge_at_full_load(s, linear) : NAN;
+    const double size = fabs(edge) / film->prestretch;
+    const double stiffness = isnan(edge) ? NAN : stiffness_at(s, edge);
+    if (!(stiffness > 0.4 ? size < 0.1 : stiffness > 0.1 && size < 0.05)) { /* else too near to rest for a fold between */
         const double end = sign > 0.0 ? film->prestretch * (1.0 / point->coverage - 1.0) : film->prestretch;
         edge = follow(s, linear, end * (1.0 - 1e-9));
     }

@@ -86,6 +86,15 @@ $(BUILD)/fuzz/scene_fuzz: tests/fuzz/scene_fuzz.c $(LIBRARY_SOURCES)
 	@echo "CC $@"
 	@clang $(filter-out -MMD -MP,$(ALL_CFLAGS)) -O1 -g -fsanitize=fuzzer,address,undefined -DDEA_AXIS_VALUES_MAX=100000 $^ -o $@ $(LIBS)
 
+# Speed and error side by side, against the goals and against other programs where they are installed. Takes 2 to 3 minutes.
+bench:
+	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/bench
+	@$(BUILD)/bench $(BUILD)/deaspice tests/peers
+
+$(BUILD)/bench: $(wildcard tests/bench/*.[ch]) $(BUILD)/libdeaspice.a
+	@echo "CC $@"
+	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) -Itests/bench $(filter %.c,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) $(LIBS)
+
 install: all
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/pkgconfig $(DESTDIR)$(PREFIX)/include/deaspice $(DESTDIR)$(PREFIX)/share/man/man1
 	install -m 755 $(BUILD)/deaspice $(DESTDIR)$(PREFIX)/bin/

@@ -59,6 +59,13 @@ static double swept_value(uint64_t *seed, int kind, double value, double share)
     }
 }
 
+static bool is_slack_at_half(const dea_scene *scene)
+{
+    dea_scene half = *scene;
+    half.drive.voltage *= 0.5;
+    return solve_direct(&half, "field").state != DEA_STATE_OK && fabs(scene->drive.voltage) > 1e-3;
+}
+
 static void make_entry(table_entry *entry, int number, const char *model)
 {
     uint64_t seed = 1000003u * (uint64_t)(number + 1);
@@ -69,6 +76,9 @@ static void make_entry(table_entry *entry, int number, const char *model)
     }
     double *field = swept_field(&entry->scene, kind);
     entry->scene.drive.voltage = 2.0 * random_unit(&seed) * pull_in_voltage(&entry->scene, model);
+    while (dea_model_find(model)->membrane && is_slack_at_half(&entry->scene)) {
+        entry->scene.drive.voltage *= 0.7; /* a film so far past its tension takes IDA a minute or more */
+    }
     if (number % 3 == 0) {
         entry->scene.drive.voltage *= -1e-3;
     }
@@ -170,7 +180,8 @@ static void compare_entry(const table_entry *entry, const char *engine, double t
     }
 }
 
-static void compare_engines(const char *engine, const char *model, double tolerance)
+/* One in refused_share rows at most may be refused beyond the loss of tension. */
+static void compare_engines(const char *engine, const char *model, double tolerance, size_t refused_share)
 {
     tally count = {0};
     for (int i = 0; i < SCENES; i++) {
@@ -182,51 +193,51 @@ static void compare_engines(const char *engine, const char *model, double tolera
     assert_int_equal(count.compared, SCENES * POINTS);
     assert_true(count.strained > count.compared / 3);
     assert_true(count.limits < 5);
-    assert_true(count.slack < count.compared / 10);
+    assert_true(count.slack < count.compared / refused_share);
 }
 
 static void ngspice_solves_lumped_as_the_equation_does(void **state)
 {
     (void)state;
-    compare_engines("ngspice", "lumped", 1e-9);
+    compare_engines("ngspice", "lumped", 1e-9, 20);
 }
 
 static void ngspice_solves_plane_elasticity_as_the_equation_does(void **state)
 {
     (void)state;
-    compare_engines("ngspice", "lame", 1e-9);
+    compare_engines("ngspice", "lame", 1e-9, 20);
 }
 
 static void ngspice_solves_coverage_as_the_equation_does(void **state)
 {
     (void)state;
-    compare_engines("ngspice", "coverage", 1e-8);
+    compare_engines("ngspice", "coverage", 1e-8, 20);
 }
 
 static void ngspice_solves_constant_force_as_the_equation_does(void **state)
 {
     (void)state;
-    compare_engines("ngspice", "constant_force", 1e-8);
+    compare_engines("ngspice", "constant_force", 1e-8, 20);
 }
 
 static void ida_solves_lumped_and_plane_elasticity_as_the_equation_does(void **state)
 {
     (void)state;
-    compare_engines("ida", "lumped", 1e-9);
-    compare_engines("ida", "lame", 1e-9);
+    compare_engines("ida", "lumped", 1e-9, 20);
+    compare_engines("ida", "lame", 1e-9, 20);
 }
 
 static void ida_solves_hyperelastic_models_as_the_equation_does(void **state)
 {
     (void)state;
-    compare_engines("ida", "coverage", 1e-9);
-    compare_engines("ida", "constant_force", 1e-9);
+    compare_engines("ida", "coverage", 1e-9, 20);
+    compare_engines("ida", "constant_force", 1e-9, 20);
 }
 
 static void ida_solves_the_field_as_shooting_does(void **state)
 {
     (void)state;
-    compare_engines("ida", "field", 1e-9);
+    compare_engines("ida", "field", 1e-9, 5);
 }
 
 /* An argument is a pattern of the tests to run. */

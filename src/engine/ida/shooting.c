@@ -126,7 +126,7 @@ static double jump_guess(const dea_shooting *s, double l)
         const double slope = dea_yeoh_stress(film->yeoh, l - jump, l).w11 - s->annulus_k * l * l;
         const double excess = stress_change(film, edge - jump, edge) - at_edge + load + s->annulus_k * jump * l * l;
         const double most = 0.25 * (l - jump); /* lambda_1 moves by a quarter at most: the first root is meant */
-        jump += fmax(-most, fmin(most, excess / slope));
+        jump += slope > 0.0 ? fmax(-most, fmin(most, excess / slope)) : copysign(most, excess);
     }
     return jump;
 }
@@ -144,7 +144,7 @@ static bool start(dea_shooting *s, double edge)
     N_VConst(0.0, m->yp);
     if (IDAReInit(m->ida, 0.0, m->y, m->yp) != IDA_SUCCESS ||
         IDASVtolerances(m->ida, s->tolerance, m->tolerance) != IDA_SUCCESS ||
-        IDACalcIC(m->ida, IDA_YA_YDP_INIT, -log(s->point->coverage)) != IDA_SUCCESS ||
+        IDACalcIC(m->ida, IDA_YA_YDP_INIT, fmin(1e-3, -log(s->point->coverage))) != IDA_SUCCESS ||
         IDAGetConsistentIC(m->ida, m->y, m->yp) != IDA_SUCCESS) {
         return false;
     }
@@ -336,7 +336,7 @@ static place largest_share(dea_shooting *s, place a, place b, place c)
 
 /* Follows the equilibrium from rest in steps of the edge until it holds the full load; NAN where the load falls again before:
  * pull-in. */
-static double follow(dea_shooting *s, double linear, double end)
+static double follow(dea_shooting *s, double linear, double end, bool *folds)
 {
     const double pre = s->point->film.prestretch;
     const double sign = linear > 0.0 ? 1.0 : -1.0;
@@ -357,6 +357,7 @@ static double follow(dea_shooting *s, double linear, double end)
         if (!(here.share > last.share)) {
             here = largest_share(s, before, last, here);
             if (!(here.share >= 1.0)) {
+                *folds = true;
                 break;
             }
             last = before;
@@ -398,10 +399,11 @@ void dea_shooting_solve(dea_shooting *s, const dea_point *point, double accuracy
     const double stiffness = isnan(edge) ? NAN : stiffness_at(s, edge);
     if (!(stiffness > 0.4 ? size < 0.1 : stiffness > 0.1 && size < 0.05)) { /* else too near to rest for a fold between */
         const double end = sign > 0.0 ? film->prestretch * (1.0 / point->coverage - 1.0) : film->prestretch;
-        edge = follow(s, linear, end * (1.0 - 1e-9));
+        bool folds = false;
+        edge = follow(s, linear, end * (1.0 - 1e-9), &folds);
+        row->state = folds ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
     }
     if (isnan(edge)) {
-        row->state = DEA_STATE_PULL_IN;
         return;
     }
     set_scales(s, 1.0);

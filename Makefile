@@ -11,7 +11,7 @@ PKG_CONFIG ?= pkg-config
 ALL_CFLAGS  = -std=c11 -D_POSIX_C_SOURCE=200809L -D_DEFAULT_SOURCE $(WARNINGS) -ffp-contract=off -fvisibility=hidden -fPIC -Iinclude -Isrc \
               -DDEA_VERSION='"$(VERSION)"' -MMD -MP $(shell $(PKG_CONFIG) --cflags-only-I libfyaml ngspice lapacke $(MPI) 2>/dev/null) $(CFLAGS)
 # SUNDIALS 7 has a library of its own for its core, and its headers need those of the MPI that it was built with.
-SUNDIALS_7 := $(filter /%,$(shell $(CC) -print-file-name=libsundials_core.so))
+SUNDIALS_7 := $(filter /%,$(shell $(CC) -print-file-name=libsundials_core.so 2>/dev/null))
 SUNDIALS_CORE := $(if $(SUNDIALS_7),-lsundials_core,-lsundials_generic)
 MPI := $(if $(SUNDIALS_7),$(firstword $(foreach name,ompi-c ompi mpich mpi-c mpi,$(if $(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo yes),$(name)))))
 LIBS = -lngspice -lfyaml -ludunits2 -llapacke -lsundials_ida -lsundials_kinsol -lsundials_nvecserial -lsundials_sunmatrixdense \

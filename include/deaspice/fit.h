@@ -74,7 +74,7 @@ DEA_API void dea_fit_data_free(dea_fit_data *data);
 DEA_API dea_status dea_fit_yeoh(const dea_fit_data *data, int terms, bool relative, dea_fit *fit, dea_error *error);
 /** Nominal stress of the fitted material [Pa] at @p stretch under @p load. */
 DEA_API double dea_fit_stress(const double yeoh[DEA_YEOH_TERMS], dea_load load, double stretch);
-/** Prints the fit as a `material:` mapping for a scene, its quality as comments. @return DEA_OK, DEA_ERROR_IO */
+/** Prints the fit as a material file, its quality as comments. @return DEA_OK, DEA_ERROR_IO */
 DEA_API dea_status dea_fit_print(const dea_fit *fit, FILE *stream, dea_error *error);
 
 #ifdef __cplusplus

@@ -42,10 +42,10 @@ dea_status dea_fit_print(const dea_fit *fit, FILE *stream, dea_error *error)
 {
     static const char *const before[DEA_YEOH_TERMS] = {"C1: ", ", C2: ", ", C3: "};
     print_quality(fit, stream);
-    fputs("material:\n  yeoh: {", stream);
+    fputs("# A material file: name it in a scene as  material: {base: FILE, permittivity: 2.8}  with the value of your film.\nyeoh: {", stream);
     for (int i = 0; i < fit->terms; i++) {
         print_number(stream, before[i], fit->yeoh[i], 8, " Pa");
     }
-    fputs("}\n  # permittivity: 2.8   (not part of the fit: give the value of your film)\n", stream);
+    fputs("}\n", stream);
     return ferror(stream) ? dea_fail(error, DEA_ERROR_IO, "the fit could not be printed") : DEA_OK;
 }

@@ -307,7 +307,16 @@ static double edge_of_largest_share(const membrane *full, double low, double hig
     return f1 > f2 ? x1 : x2;
 }
 
-/* Follows the equilibrium from rest in steps of the edge until the load is reached or falls again; false: pull-in. */
+/* lambda_1 behind the edge under a share of the load; NAN where there is none. */
+static double radial_stretch(const membrane *full, double share, double edge)
+{
+    const membrane m = under_load(full, share);
+    const double l = full->film->prestretch + edge;
+    return l - jump_at_edge(&m, l);
+}
+
+/* Follows the equilibrium from rest in steps of the edge until the load is reached or falls again; false: pull-in. Where the film
+ * ends, or lambda_1 jumps to another equilibrium, the steps become short and then end. */
 static bool trace(const membrane *full, double sign, double end, double *edge)
 {
     const double pre = full->film->prestretch;
@@ -315,19 +324,20 @@ static bool trace(const membrane *full, double sign, double end, double *edge)
     double last = 0.0;
     double share = 0.0;
     double share_before = 0.0;
+    double stretch = pre;
     double step = 0.03;
     while (fabs(last) < fabs(end) && step > 1e-5) {
         const double here = sign * fmin(fabs(end), fabs(last) + step * (pre + fmax(0.0, last)));
         const double guess = share > 0.0 ? share * fabs(here / last) : 0.1;
         const double next = share_at(full, here, guess);
-        if (next >= 1.0) {
-            *edge = bracketed_edge(full, last, share, here, next);
-            if (isfinite(*edge)) {
-                return true;
-            }
+        const double stretch_next = radial_stretch(full, next, here);
+        const bool connected = fabs(stretch_next - stretch) < 0.2 * stretch;
+        *edge = connected && next >= 1.0 ? bracketed_edge(full, last, share, here, next) : NAN;
+        if (isfinite(*edge)) {
+            return true;
         }
-        if (!(next < 1.0)) {
-            step *= 0.5; /* the film ends here, or the step was too long */
+        if (!connected || next >= 1.0) {
+            step *= 0.5;
             continue;
         }
         if (!(next > share)) {
@@ -343,6 +353,8 @@ static bool trace(const membrane *full, double sign, double end, double *edge)
         share_before = share;
         last = here;
         share = next;
+        stretch = stretch_next;
+        step = fmin(0.03, 1.5 * step);
     }
     return false;
 }

@@ -99,7 +99,8 @@ static bool agrees(const dea_comparison *comparison, double tolerance)
 
 static void print_heading(const char *path, const dea_scene *scene, const dea_model *model, double tolerance)
 {
-    printf("%s: %s (%s), %zu points, tolerance %g\n", path, model->name, model->equation, dea_scene_point_count(scene),
+    const size_t points = dea_scene_point_count(scene);
+    printf("%s: %s (%s), %zu point%s, tolerance %g\n", path, model->name, model->equation, points, points == 1 ? "" : "s",
            tolerance);
     printf("  %-10s %9s %9s", "engine", "time_s", "us/point");
     for (size_t c = 0; c < DEA_ROW_COLUMNS; c++)

@@ -464,6 +464,21 @@ static void equilibrium_behind_a_fold_is_pull_in(void **state)
     assert_true(taken >= 200);
 }
 
+/* An iteration that dawdles at the top of the load curve, 3 % below the load, must not be taken for an equilibrium. */
+static void load_above_the_fold_is_pull_in_however_close(void **state)
+{
+    (void)state;
+    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, 2800.0);
+    scene.material.yeoh[0] = 60e3;
+    scene.material.yeoh[1] = -4e3;
+    scene.material.yeoh[2] = 0.0;
+    for (int i = 0; i < 10000; i++) {
+        scene.actuator.coverage = 0.05 + 0.05 * i / 10000.0;
+        const dea_row row = solve_direct(&scene, "coverage");
+        assert_int_equal(row.state, DEA_STATE_PULL_IN);
+    }
+}
+
 static void snap_through_without_a_fold_is_followed(void **state)
 {
     (void)state;
@@ -565,6 +580,7 @@ int main(void)
         cmocka_unit_test(disc_of_the_field_is_slack_where_its_stress_vanishes),
         cmocka_unit_test(pull_in_stays_pull_in_at_any_higher_voltage),
         cmocka_unit_test(equilibrium_behind_a_fold_is_pull_in),
+        cmocka_unit_test(load_above_the_fold_is_pull_in_however_close),
         cmocka_unit_test(snap_through_without_a_fold_is_followed),
         cmocka_unit_test(hyperelastic_models_balance_their_forces_at_random_points),
         cmocka_unit_test(field_agrees_with_runge_kutta_over_the_radius),

@@ -197,7 +197,9 @@ static void write_all(writer *w, const dea_network *network, dea_expr elastic, d
     write_shared(w);
     write_forces(w, network, elastic, load, study);
     write_start(w, study);
-    fputs(".options reltol=1e-10 itl1=60 itl2=60 gminsteps=0 srcsteps=0 vntol=", w->out);
+    fputs(".options itl1=60 itl2=60 gminsteps=0 srcsteps=0 reltol=", w->out);
+    number(w->out, study->tolerance);
+    fputs(" vntol=", w->out);
     number(w->out, 1e-21 * study->length_scale);
     fputs(" abstol=", w->out);
     number(w->out, 1e-21 * study->force_scale);

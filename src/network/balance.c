@@ -36,15 +36,21 @@ void dea_balance_close(dea_balance *balance)
     }
 }
 
-bool dea_balance_valid(dea_balance *balance, double symbol)
+/* True where everything that must be positive is, at the values that the limits hold now. */
+static bool in_range(const dea_balance *balance)
 {
-    dea_tape_run_values(&balance->limits, symbol, 0.0);
     for (int i = 0; i < DEA_NETWORK_RANGES; i++) {
         if (!(dea_tape_value(&balance->limits, IN_RANGE + i) > 0.0)) {
             return false;
         }
     }
     return true;
+}
+
+bool dea_balance_valid(dea_balance *balance, double symbol)
+{
+    dea_tape_run_values(&balance->limits, symbol, 0.0);
+    return in_range(balance);
 }
 
 dea_forces dea_balance_forces(dea_balance *balance, double symbol, double u)
@@ -181,12 +187,21 @@ static dea_row row_of(const dea_balance *balance, double u)
     return row;
 }
 
+void dea_balance_fill(dea_balance *balance, double symbol, double u, dea_row *row)
+{
+    dea_tape_run_values(&balance->limits, symbol, u);
+    *row = row_of(balance, u);
+}
+
 bool dea_balance_accept(dea_balance *balance, double symbol, double u, double tolerance, dea_row *row)
 {
     const dea_forces f = dea_balance_forces(balance, symbol, u);
     dea_tape_run_values(&balance->limits, symbol, u);
+    if (!in_range(balance)) {
+        return false;
+    }
     if (f.load == 0.0 && fabs(u) <= 1e-15 * dea_balance_length(balance)) {
-        *row = row_of(balance, 0.0);
+        dea_balance_fill(balance, symbol, 0.0, row);
         return true;
     }
     const double correction = (f.elastic - f.load) / (f.elastic_slope - f.load_slope);
@@ -195,10 +210,4 @@ bool dea_balance_accept(dea_balance *balance, double symbol, double u, double to
     }
     *row = row_of(balance, u);
     return true;
-}
-
-void dea_balance_fill(dea_balance *balance, double symbol, double u, dea_row *row)
-{
-    dea_tape_run_values(&balance->limits, symbol, u);
-    *row = row_of(balance, u);
 }

@@ -30,7 +30,7 @@ dea_forces dea_balance_forces(dea_balance *balance, double symbol, double u);
 /* R' - (R/F) F' [N/m]. */
 double dea_forces_stiffness(const dea_forces *forces);
 /* Takes u as the answer of a point and fills its row, if u balances the forces to @p tolerance (relative, of u) and no fold lies
- * between rest and u; else false. */
+ * between rest and u; else false, as where the point is not valid. */
 bool dea_balance_accept(dea_balance *balance, double symbol, double u, double tolerance, dea_row *row);
 /* Share of the load at which the equilibrium from rest folds, if that is below 1, and the displacement of the fold; else false.
  */

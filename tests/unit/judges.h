@@ -22,7 +22,7 @@ static inline plain_film plain_film_at(const double *yeoh, double l1, double l2)
 
 /* The boundary value problem: reference radii b to 1, Maxwell pressures in disc and annulus [Pa]. */
 typedef struct judged_membrane {
-    const double *yeoh;
+    double yeoh[DEA_YEOH_TERMS];
     double prestretch, coverage, disc_k, annulus_k;
     double largest_area, least_stress; /* of the last integration: in the annulus */
 } judged_membrane;
@@ -99,14 +99,73 @@ static inline double membrane_miss(judged_membrane *m, double edge)
     return membrane_miss_on(m, edge, 2000) + (membrane_miss_on(m, edge, 2000) - coarse) / 15.0;
 }
 
+/* Long-term constants, relative permittivity at the pre-stretch, and voltage across the film, as physics.md and the scene say. */
+typedef struct judged_film {
+    double yeoh[DEA_YEOH_TERMS], permittivity, voltage, coverage, share;
+} judged_film;
+
+static inline judged_film judged_film_of(const dea_scene *scene)
+{
+    const dea_material *material = &scene->material;
+    const dea_drive *drive = &scene->drive;
+    const bool leaks = !isnan(drive->series_resistance) && !isnan(drive->leakage_resistance);
+    const double kept = leaks ? 1.0 / (1.0 + drive->series_resistance / drive->leakage_resistance) : 1.0;
+    judged_film film = {.share = 1.0};
+    for (size_t i = 0; i < material->prony_count && material->instantaneous; i++) {
+        film.share -= material->prony[i].g;
+    }
+    for (int i = 0; i < DEA_YEOH_TERMS; i++) {
+        film.yeoh[i] = film.share * material->yeoh[i];
+    }
+    film.permittivity = 8.8541878128e-12 * (material->permittivity + material->permittivity_per_stretch * scene->actuator.prestretch);
+    film.voltage = kept * drive->voltage;
+    film.coverage = isnan(scene->actuator.coverage) ? scene->actuator.divide_radius / scene->actuator.frame_radius : scene->actuator.coverage;
+    return film;
+}
+
+/* How far the displacement of a row is from holding the forces of lumped (Eqs. 19-21) or lame (physics.md, section 3), relative. */
+static inline double judge_linear(const dea_scene *scene, const dea_row *row, bool lame)
+{
+    const judged_film film = judged_film_of(scene);
+    const dea_actuator *a = &scene->actuator;
+    const double pi = 3.14159265358979323846;
+    const double l = a->prestretch;
+    const double b2 = film.coverage * film.coverage;
+    const double divide = film.coverage * a->frame_radius;
+    const double m = film.permittivity * pow(film.voltage / a->film_thickness, 2.0);
+    const double sign = a->kind == DEA_DOT ? 1.0 : -1.0;
+    const dea_stress at = dea_yeoh_stress(film.yeoh, l, l);
+    const double soft1 = m * l * l;
+    const double disc = at.w11 + at.w12 - (a->kind == DEA_DOT ? 3.0 * soft1 : 0.0);
+    const double q = (1.0 + b2) / (1.0 - b2);
+    const double annulus = at.w11 * q - at.w12 - (a->kind == DEA_LENS ? soft1 * (q - 2.0) : 0.0);
+    const double modulus = isnan(scene->material.modulus) ? dea_yeoh_modulus(film.yeoh, l) : film.share * scene->material.modulus;
+    const double section = 2.0 * pi * divide * a->film_thickness / (l * l);
+    const double stiffness = lame ? 2.0 * pi * a->film_thickness * (disc + annulus)
+                                  : modulus * section * (1.0 / divide + 1.0 / (a->frame_radius - divide));
+    const double force = sign * m * pow(l, 4.0) * section;
+    return fmax(fabs(row->displacement * stiffness / force - 1.0), fabs(row->force / force - 1.0));
+}
+
+static inline judged_membrane judged_membrane_of(const dea_scene *scene)
+{
+    const bool dot = scene->actuator.kind == DEA_DOT;
+    const judged_film film = judged_film_of(scene);
+    const double nominal = film.voltage / scene->actuator.film_thickness;
+    const double k = film.permittivity * nominal * nominal;
+    return (judged_membrane){.yeoh = {film.yeoh[0], film.yeoh[1], film.yeoh[2]},
+                             .prestretch = scene->actuator.prestretch,
+                             .coverage = film.coverage,
+                             .disc_k = dot ? k : 0.0,
+                             .annulus_k = dot ? 0.0 : k};
+}
+
 /* Strain, true field and state of the first equilibrium from rest, looked for in steps of 0.004 of stretch. */
 static inline dea_row judge_membrane(const dea_scene *scene)
 {
     const bool dot = scene->actuator.kind == DEA_DOT;
-    const double nominal = scene->drive.voltage / scene->actuator.film_thickness;
-    const double k = 8.8541878128e-12 * scene->material.permittivity * nominal * nominal;
     const double l = scene->actuator.prestretch;
-    judged_membrane m = {scene->material.yeoh, l, scene->actuator.coverage, dot ? k : 0.0, dot ? 0.0 : k, 0.0, 0.0};
+    judged_membrane m = judged_membrane_of(scene);
     const double sign = dot ? 1.0 : -1.0;
     double low = l;
     double high = l + sign * 0.004;
@@ -120,15 +179,15 @@ static inline dea_row judge_membrane(const dea_scene *scene)
     }
     const double edge = 0.5 * (low + high);
     (void)membrane_miss(&m, edge);
-    const double disc = radial_stress(&m, m.disc_k, edge, edge);
+    const double nominal = judged_film_of(scene).voltage / scene->actuator.film_thickness;
     dea_row row = {.strain = edge / l - 1.0, .field = nominal * (dot ? edge * edge : m.largest_area)};
-    row.state = fmin(disc, m.least_stress) > 0.0 ? DEA_STATE_OK : DEA_STATE_SLACK;
+    row.state = fmin(radial_stress(&m, m.disc_k, edge, edge), m.least_stress) > 0.0 ? DEA_STATE_OK : DEA_STATE_SLACK;
     return row;
 }
 
 /* Eq. 18 in the strain e of the active film, in long double: sigma_A - sigma_P and the load m (1 + e)^4. */
 typedef struct judged_balance {
-    const double *yeoh;
+    double yeoh[DEA_YEOH_TERMS];
     long double prestretch, ratio, load;
 } judged_balance;
 
@@ -141,12 +200,13 @@ static inline long double plain_cauchy(const double *yeoh, long double l)
 
 static inline judged_balance judged_balance_of(const dea_scene *scene, bool constant_force)
 {
-    const long double b = scene->actuator.coverage;
-    const long double nominal = (long double)scene->drive.voltage / scene->actuator.film_thickness;
+    const judged_film film = judged_film_of(scene);
+    const long double b = film.coverage;
+    const long double nominal = (long double)film.voltage / scene->actuator.film_thickness;
     const long double y = (long double)scene->actuator.prestretch * scene->actuator.prestretch;
     const long double ratio = scene->actuator.kind == DEA_DOT ? b / (1.0L - b) : (1.0L - b) / b;
-    return (judged_balance){scene->material.yeoh, scene->actuator.prestretch, constant_force ? 0.0L : ratio,
-                            8.8541878128e-12L * scene->material.permittivity * y * y * nominal * nominal};
+    return (judged_balance){{film.yeoh[0], film.yeoh[1], film.yeoh[2]}, scene->actuator.prestretch, constant_force ? 0.0L : ratio,
+                            film.permittivity * y * y * nominal * nominal};
 }
 
 /* Share of the load that holds the strain e: it grows from rest to the first fold. */

@@ -535,6 +535,55 @@ static void field_agrees_with_runge_kutta_over_the_radius(void **state)
     }
 }
 
+/* Far past the loss of tension the annulus is squeezed to a tenth of its radial stretch, or pulled to three times it; the
+ * answer must still hold the frame, on a mesh fine enough for that. */
+static void slack_film_far_past_its_tension_still_balances(void **state)
+{
+    (void)state;
+    static const struct {
+        dea_kind kind;
+        double prestretch, coverage, voltage, yeoh[DEA_YEOH_TERMS], strain;
+    } table[] = {
+        {DEA_DOT, 2.8546791505449742, 0.76268500816809603, 6036.2027361005921, {14257.268820654581, 47.207722112250089, 0.0}, 0.30094011459},
+        {DEA_LENS, 1.47769, 0.992198, 19854.5, {226828.0, 0.0, 9878.32}, 0.0},
+        {DEA_LENS, 1.62045, 0.806394, 26008.1, {238045.0, 20012.2, 0.0}, 0.0},
+        {DEA_LENS, 2.96595, 0.711474, 7535.5, {54517.3, -1484.61, 32.3794}, 0.0},
+    };
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
+        dea_scene scene = paper_scene(table[i].kind, table[i].prestretch, table[i].coverage, table[i].voltage);
+        memcpy(scene.material.yeoh, table[i].yeoh, sizeof table[i].yeoh);
+        scene.material.permittivity = 3.0870724055123651;
+        scene.actuator.film_thickness = 0.00010728262699271607;
+        const dea_row row = solve_direct(&scene, "field");
+        assert_state(row, DEA_STATE_SLACK);
+        judged_membrane m = judged_membrane_of(&scene);
+        const double l = table[i].prestretch;
+        const double coarse = membrane_miss_on(&m, l * (1.0 + row.strain), 8000);
+        const double fine = membrane_miss_on(&m, l * (1.0 + row.strain), 16000);
+        assert_near(fine + (fine - coarse) / 15.0, 0.0, 1e-8 * fabs(row.strain));
+        assert_true(m.least_stress < 0.0);
+        if (table[i].strain > 0.0) {
+            assert_relative(row.strain, table[i].strain, 1e-9);
+        }
+    }
+}
+
+static void field_agrees_with_itself_on_a_finer_mesh(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 200; i++) {
+        dea_scene scene = paper_scene(i % 2 ? DEA_LENS : DEA_DOT, 1.02 + 0.005 * i, 0.002 + 0.99 * fabs(sin(7.0 * i)), 50.0 * (i % 90));
+        const dea_row row = solve_direct(&scene, "field");
+        scene.accuracy = 1e-12;
+        const dea_row finer = solve_direct(&scene, "field");
+        assert_state(finer, row.state);
+        if (row.state != DEA_STATE_PULL_IN) {
+            assert_near(row.strain, finer.strain, 1e-10 * fabs(finer.strain));
+            assert_near(row.field, finer.field, 1e-10 * finer.field);
+        }
+    }
+}
+
 static void every_model_says_which_actuators_it_can_do(void **state)
 {
     (void)state;
@@ -584,6 +633,8 @@ int main(void)
         cmocka_unit_test(snap_through_without_a_fold_is_followed),
         cmocka_unit_test(hyperelastic_models_balance_their_forces_at_random_points),
         cmocka_unit_test(field_agrees_with_runge_kutta_over_the_radius),
+        cmocka_unit_test(slack_film_far_past_its_tension_still_balances),
+        cmocka_unit_test(field_agrees_with_itself_on_a_finer_mesh),
         cmocka_unit_test(every_model_says_which_actuators_it_can_do),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -58,11 +58,12 @@ static dea_row *row_at(const line_job *job, size_t i)
     return &job->state->rows[job->line->row + i * job->line->stride];
 }
 
-/* Sizes of force and displacement for the tolerances: what a stretch by its own size would take. */
+/* Tolerance, and the sizes of force and displacement that go with it: what a stretch by its own size would take. */
 static void set_scales(line_job *job, size_t i, dea_netlist_study *study)
 {
     const dea_actuator *actuator = &job->scene->actuator;
     const dea_forces f = dea_balance_forces(&job->balance, symbol_at(job, i), 0.0);
+    study->tolerance = fmin(1e-8, 0.1 * job->scene->accuracy);
     study->length_scale = actuator->frame_radius;
     study->force_scale = fabs(f.elastic_slope) * actuator->frame_radius;
 }

@@ -170,12 +170,24 @@ static dea_status load(dea_ngspice *library, const char *netlist, dea_error *err
     return DEA_OK;
 }
 
+/* True where the plot has the vector itself: by name alone the library would also find it among its constants. */
+static bool has_vector(char *plot, const char *vector)
+{
+    char **names = ngSpice_AllVecs(plot);
+    for (size_t i = 0; names && names[i]; i++) {
+        if (strcasecmp(names[i], vector) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* Copies the vector of the plot that the run made. The old plot, or the plot of constants, must never be taken for it. */
 static dea_status copy(const char *plot_before, const char *vector, dea_ngspice_result *result, dea_error *error)
 {
-    const char *plot = ngSpice_CurPlot();
+    char *plot = ngSpice_CurPlot();
     char name[128];
-    if (!plot || strcmp(plot, plot_before) == 0) {
+    if (!plot || strcmp(plot, plot_before) == 0 || !has_vector(plot, vector)) {
         return DEA_OK; /* nothing was solved */
     }
     snprintf(name, sizeof name, "%s.%s", plot, vector);

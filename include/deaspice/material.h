@@ -14,6 +14,7 @@ extern "C" {
 
 /** Permittivity of free space [F/m]. */
 #define DEA_EPSILON_0 8.8541878128e-12
+#define DEA_PI 3.14159265358979323846
 
 enum { DEA_YEOH_TERMS = 3, DEA_PRONY_MAX = 64, DEA_NAME_LENGTH = 64, DEA_SOURCE_LENGTH = 256 };
 

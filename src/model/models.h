@@ -13,8 +13,6 @@ extern const dea_model dea_model_coverage;
 extern const dea_model dea_model_lame;
 extern const dea_model dea_model_field;
 
-#define DEA_PI 3.14159265358979323846
-
 /* +1 for a dot (the disc grows), -1 for a lens (the disc shrinks). */
 static inline double dea_point_sign(const dea_point *point)
 {

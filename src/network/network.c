@@ -4,8 +4,6 @@
 
 #include "network/formula.h"
 
-static const double pi = 3.14159265358979323846;
-
 void dea_network_free(dea_network *network)
 {
     if (network) {
@@ -140,7 +138,7 @@ static dea_expr divide_radius(const dea_symbols *symbols)
 dea_expr dea_symbols_cross_section(const dea_symbols *symbols)
 {
     dea_pool *pool = symbols->pool;
-    const dea_expr circumference = SCALE(2.0 * pi, divide_radius(symbols));
+    const dea_expr circumference = SCALE(2.0 * DEA_PI, divide_radius(symbols));
     return MUL(circumference, DIV(symbols->film_thickness, SQUARE(symbols->prestretch)));
 }
 

@@ -4,7 +4,7 @@
 enum { MOST_STEPS = 20000 };
 
 #if SUNDIALS_VERSION_MAJOR < 7
-static void ignore_message(int code, const char *module, const char *function, char *message, void *user)
+void dea_sundials_ignore(int code, const char *module, const char *function, char *message, void *user)
 {
     (void)code, (void)module, (void)function, (void)message, (void)user;
 }
@@ -19,15 +19,6 @@ dea_status dea_sundials_open(SUNContext *context, dea_error *error)
     SUNContext_ClearErrHandlers(*context);
 #endif
     return DEA_OK;
-}
-
-void dea_sundials_silence(void *memory_ida)
-{
-#if SUNDIALS_VERSION_MAJOR < 7
-    IDASetErrHandlerFn(memory_ida, ignore_message, NULL);
-#else
-    (void)memory_ida;
-#endif
 }
 
 static bool allocate(sunindextype n, dea_integrator *m)
@@ -51,7 +42,9 @@ dea_status dea_integrator_open(SUNContext context, sunindextype n, IDAResFn resi
     if (!allocate(n, m)) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while IDA starts");
     }
-    dea_sundials_silence(m->ida);
+#if SUNDIALS_VERSION_MAJOR < 7
+    IDASetErrHandlerFn(m->ida, dea_sundials_ignore, NULL);
+#endif
     N_VConst(0.0, m->y);
     N_VConst(0.0, m->yp);
     N_VConst(1.0, m->id);

@@ -12,8 +12,6 @@
 
 #include "engine/ida/sundials.h"
 
-static const double pi = 3.14159265358979323846;
-
 enum { SIGMA, HOOP, RADIAL, UNKNOWNS };
 
 /* What KINSOL searches: the edge at a load, or the load at an edge. */
@@ -193,13 +191,6 @@ static int next_guess(N_Vector guess, N_Vector next, void *user)
     return 0;
 }
 
-#if SUNDIALS_VERSION_MAJOR < 7
-static void ignore_message(int code, const char *module, const char *function, char *message, void *user)
-{
-    (void)code, (void)module, (void)function, (void)message, (void)user;
-}
-#endif
-
 static bool open_kinsol(SUNContext context, dea_shooting *s)
 {
     s->edge = N_VNew_Serial(1, context);
@@ -210,7 +201,7 @@ static bool open_kinsol(SUNContext context, dea_shooting *s)
     }
     N_VConst(1.0, s->ones);
 #if SUNDIALS_VERSION_MAJOR < 7
-    KINSetErrHandlerFn(s->kinsol, ignore_message, NULL);
+    KINSetErrHandlerFn(s->kinsol, dea_sundials_ignore, NULL);
 #endif
     return KINSetMAA(s->kinsol, 1) == KIN_SUCCESS && KINInit(s->kinsol, next_guess, s->edge) == KIN_SUCCESS &&
            KINSetUserData(s->kinsol, s) == KIN_SUCCESS && KINSetNumMaxIters(s->kinsol, 20) == KIN_SUCCESS;
@@ -414,7 +405,7 @@ void dea_shooting_solve(dea_shooting *s, const dea_point *point, double accuracy
     const double radius = point->coverage * point->frame_radius;
     const double strain = edge / film->prestretch;
     const double field = fabs(nominal) * s->largest_area;
-    const double force = sign * 2.0 * pi * point->film_thickness * s->pressure * s->edge_force * radius / film->prestretch;
+    const double force = sign * 2.0 * DEA_PI * point->film_thickness * s->pressure * s->edge_force * radius / film->prestretch;
     *row = (dea_row){strain, strain * radius, force, field,
                      field > film->breakdown ? DEA_STATE_BREAKDOWN
                      : s->least_stress > 0.0 ? DEA_STATE_OK

@@ -34,7 +34,10 @@ void dea_integrator_close(dea_integrator *integrator);
 
 /* A context that prints nothing. */
 dea_status dea_sundials_open(SUNContext *context, dea_error *error);
-void dea_sundials_silence(void *memory_ida);
+#if SUNDIALS_VERSION_MAJOR < 7
+/* Message handler of IDA and KINSOL that drops the message; from SUNDIALS 7 on the context does that. */
+void dea_sundials_ignore(int code, const char *module, const char *function, char *message, void *user);
+#endif
 
 /* The two kinds of static problem; both fill the row, `failed` where nothing converged. */
 struct dea_balance;

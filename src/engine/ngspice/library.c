@@ -150,6 +150,9 @@ static dea_status load(dea_ngspice *library, const char *netlist, dea_error *err
     for (const char *at = netlist; *at; at++) {
         lines += *at == '\n';
     }
+    if (lines == 0) {
+        return dea_fail(error, DEA_ERROR_ENGINE, "ngspice takes no netlist without a line");
+    }
     char *text = strdup(netlist);
     char **cards = calloc(lines + 1, sizeof *cards);
     int code = 1;

@@ -117,13 +117,16 @@ static inline judged_film judged_film_of(const dea_scene *scene)
     for (int i = 0; i < DEA_YEOH_TERMS; i++) {
         film.yeoh[i] = film.share * material->yeoh[i];
     }
-    film.permittivity = 8.8541878128e-12 * (material->permittivity + material->permittivity_per_stretch * scene->actuator.prestretch);
+    film.permittivity =
+        8.8541878128e-12 * (material->permittivity + material->permittivity_per_stretch * scene->actuator.prestretch);
     film.voltage = kept * drive->voltage;
-    film.coverage = isnan(scene->actuator.coverage) ? scene->actuator.divide_radius / scene->actuator.frame_radius : scene->actuator.coverage;
+    film.coverage =
+        isnan(scene->actuator.coverage) ? scene->actuator.divide_radius / scene->actuator.frame_radius : scene->actuator.coverage;
     return film;
 }
 
-/* How far the displacement of a row is from holding the forces of lumped (Eqs. 19-21) or lame (physics.md, section 3), relative. */
+/* How far the displacement of a row is from holding the forces of lumped (Eqs. 19-21) or lame (physics.md, section 3), relative.
+ */
 static inline double judge_linear(const dea_scene *scene, const dea_row *row, bool lame)
 {
     const judged_film film = judged_film_of(scene);
@@ -205,7 +208,9 @@ static inline judged_balance judged_balance_of(const dea_scene *scene, bool cons
     const long double nominal = (long double)film.voltage / scene->actuator.film_thickness;
     const long double y = (long double)scene->actuator.prestretch * scene->actuator.prestretch;
     const long double ratio = scene->actuator.kind == DEA_DOT ? b / (1.0L - b) : (1.0L - b) / b;
-    return (judged_balance){{film.yeoh[0], film.yeoh[1], film.yeoh[2]}, scene->actuator.prestretch, constant_force ? 0.0L : ratio,
+    return (judged_balance){{film.yeoh[0], film.yeoh[1], film.yeoh[2]},
+                            scene->actuator.prestretch,
+                            constant_force ? 0.0L : ratio,
                             film.permittivity * y * y * nominal * nominal};
 }
 
@@ -217,12 +222,12 @@ static inline long double judged_share(const judged_balance *b, long double e)
     return (active - plain_cauchy(b->yeoh, b->prestretch * (1.0L - b->ratio * e))) / (b->load * s * s * s * s);
 }
 
-/* What a scan of Eq. 18 in @p steps finds: strain of the first equilibrium from rest, NAN past the first fold, and whether the film
- * has an equilibrium behind a fold. */
+/* What a scan of Eq. 18 in @p steps finds: strain of the first equilibrium from rest, NAN past the first fold, and whether the
+ * film has an equilibrium behind a fold. */
 typedef struct judgement {
     double strain;
-    double fold;    /* share of the load at the first fold, NAN: none */
-    bool later;     /* a share of 1 is reached behind the fold */
+    double fold; /* share of the load at the first fold, NAN: none */
+    bool later;  /* a share of 1 is reached behind the fold */
 } judgement;
 
 static inline long double refine(const judged_balance *b, long double low, long double high)

@@ -53,13 +53,16 @@ static inline void random_material(uint64_t *seed, dea_material *material)
 static inline double random_coverage(uint64_t *seed)
 {
     const double where = random_unit(seed);
-    return where < 0.2 ? random_decades(seed, 1e-3, 0.1) : where < 0.4 ? 1.0 - random_decades(seed, 1e-3, 0.1) : random_between(seed, 0.05, 0.95);
+    return where < 0.2   ? random_decades(seed, 1e-3, 0.1)
+           : where < 0.4 ? 1.0 - random_decades(seed, 1e-3, 0.1)
+                         : random_between(seed, 0.05, 0.95);
 }
 
 /* A scene without voltage and axes. */
 static inline dea_scene random_scene(uint64_t *seed)
 {
-    dea_scene scene = paper_scene(random_chance(seed, 0.5) ? DEA_LENS : DEA_DOT, random_between(seed, 1.0, 3.0), random_coverage(seed), 0.0);
+    dea_scene scene =
+        paper_scene(random_chance(seed, 0.5) ? DEA_LENS : DEA_DOT, random_between(seed, 1.0, 3.0), random_coverage(seed), 0.0);
     scene.actuator.film_thickness = random_decades(seed, 1e-6, 1e-2);
     scene.actuator.frame_radius = random_decades(seed, 1e-4, 1.0);
     random_material(seed, &scene.material);
@@ -75,7 +78,8 @@ static inline dea_scene random_scene(uint64_t *seed)
 static inline double pull_in_voltage(const dea_scene *scene, const char *model)
 {
     dea_scene here = *scene;
-    const double most = scene->actuator.film_thickness * sqrt(3.0 * scene->material.yeoh[0] / DEA_EPSILON_0) / scene->actuator.prestretch;
+    const double most =
+        scene->actuator.film_thickness * sqrt(3.0 * scene->material.yeoh[0] / DEA_EPSILON_0) / scene->actuator.prestretch;
     double high = most;
     double low = 0.0;
     here.drive.voltage = most;
@@ -116,11 +120,20 @@ static inline double *swept_field(dea_scene *scene, int kind)
         material->permittivity_per_stretch = -0.1;
     }
     double *const fields[SWEPT_FIELDS] = {
-        &scene->drive.voltage,         &actuator->coverage,        &actuator->divide_radius,
-        &actuator->frame_radius,       &actuator->film_thickness,  &actuator->prestretch,
-        &material->yeoh[0],            &material->yeoh[1],         &material->yeoh[2],
-        &scene->drive.series_resistance, &scene->drive.leakage_resistance, &material->modulus,
-        &material->prony[0].g,         &material->permittivity_per_stretch,
+        &scene->drive.voltage,
+        &actuator->coverage,
+        &actuator->divide_radius,
+        &actuator->frame_radius,
+        &actuator->film_thickness,
+        &actuator->prestretch,
+        &material->yeoh[0],
+        &material->yeoh[1],
+        &material->yeoh[2],
+        &scene->drive.series_resistance,
+        &scene->drive.leakage_resistance,
+        &material->modulus,
+        &material->prony[0].g,
+        &material->permittivity_per_stretch,
     };
     if (kind == 1 && isnan(actuator->coverage)) {
         actuator->coverage = actuator->divide_radius / actuator->frame_radius;

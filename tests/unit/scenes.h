@@ -73,7 +73,8 @@ static inline dea_row solve_paper(const char *model, dea_kind kind, double prest
 /* Makes all points of @p axis those of the scene; the scene borrows the axis. */
 static inline void add_axis(dea_scene *scene, dea_axis *axis, const double *field, double *values, size_t count)
 {
-    *axis = (dea_axis){.unit = "1", .offset = (size_t)((const char *)field - (const char *)scene), .values = values, .count = count};
+    *axis =
+        (dea_axis){.unit = "1", .offset = (size_t)((const char *)field - (const char *)scene), .values = values, .count = count};
     const char *material = (const char *)&scene->material;
     const char *place = (const char *)field;
     axis->changes_film = field == &scene->actuator.prestretch || (place >= material && place < material + sizeof scene->material);

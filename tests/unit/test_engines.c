@@ -1,4 +1,5 @@
-/* One table of random scenes over all engines: equal numbers, equal states, and a balance of forces that neither engine computes. */
+/* One table of random scenes over all engines: equal numbers, equal states, and a balance of forces that neither engine computes.
+ */
 #include "judges.h"
 #include "random_scenes.h"
 
@@ -138,13 +139,15 @@ static void tell(const table_entry *entry, size_t point, const char *engine, con
     const dea_scene scene = point_of(entry, point);
     const dea_actuator *a = &scene.actuator;
     const dea_material *m = &scene.material;
-    print_error("%s, %s %s, axis %zu: pre-stretch %.17g B %.17g r_a %.17g r %.17g H %.17g U %.17g C %.17g %.17g %.17g eps %.17g %.17g "
-                "Y %.17g share %.17g\n",
-                engine, scene.models[0]->name, a->kind == DEA_DOT ? "dot" : "lens", point, a->prestretch, a->coverage, a->divide_radius,
-                a->frame_radius, a->film_thickness, scene.drive.voltage, m->yeoh[0], m->yeoh[1], m->yeoh[2], m->permittivity,
-                m->permittivity_per_stretch, m->modulus, dea_material_long_term_share(m));
-    print_error("  strain %.17g (%s), wanted %.17g (%s), force %.17g, %.17g, field %.17g, %.17g\n", row->strain, dea_state_name(row->state),
-                wanted->strain, dea_state_name(wanted->state), row->force, wanted->force, row->field, wanted->field);
+    print_error(
+        "%s, %s %s, axis %zu: pre-stretch %.17g B %.17g r_a %.17g r %.17g H %.17g U %.17g C %.17g %.17g %.17g eps %.17g %.17g "
+        "Y %.17g share %.17g\n",
+        engine, scene.models[0]->name, a->kind == DEA_DOT ? "dot" : "lens", point, a->prestretch, a->coverage, a->divide_radius,
+        a->frame_radius, a->film_thickness, scene.drive.voltage, m->yeoh[0], m->yeoh[1], m->yeoh[2], m->permittivity,
+        m->permittivity_per_stretch, m->modulus, dea_material_long_term_share(m));
+    print_error("  strain %.17g (%s), wanted %.17g (%s), force %.17g, %.17g, field %.17g, %.17g\n", row->strain,
+                dea_state_name(row->state), wanted->strain, dea_state_name(wanted->state), row->force, wanted->force, row->field,
+                wanted->field);
 }
 
 static bool same_numbers(const dea_row *row, const dea_row *wanted, double tolerance)
@@ -152,12 +155,15 @@ static bool same_numbers(const dea_row *row, const dea_row *wanted, double toler
     if (wanted->state == DEA_STATE_PULL_IN || wanted->state == DEA_STATE_FAILED) {
         return isnan(row->strain) && isnan(row->displacement) && isnan(row->force) && isnan(row->field);
     }
-    tolerance += wanted->strain != 0.0 ? 4e-16 / fabs(wanted->strain) : 0.0; /* a solver with terms of the size of the stretch loses digits of a tiny strain */
-    return is_close(row->strain, wanted->strain, tolerance, 0.0) && is_close(row->displacement, wanted->displacement, tolerance, 0.0) &&
+    tolerance += wanted->strain != 0.0 ? 4e-16 / fabs(wanted->strain)
+                                       : 0.0; /* a solver with terms of the size of the stretch loses digits of a tiny strain */
+    return is_close(row->strain, wanted->strain, tolerance, 0.0) &&
+           is_close(row->displacement, wanted->displacement, tolerance, 0.0) &&
            is_close(row->force, wanted->force, tolerance, 0.0) && is_close(row->field, wanted->field, tolerance, 0.0);
 }
 
-/* Beyond the loss of tension the numbers are those of a film that could bear pressure: there an engine may refuse by name, with no number. */
+/* Beyond the loss of tension the numbers are those of a film that could bear pressure: there an engine may refuse by name, with
+ * no number. */
 static bool refused_beyond_tension(const dea_row *a, const dea_row *b)
 {
     const bool a_refused = isnan(a->strain);
@@ -185,7 +191,7 @@ static bool balances(const dea_scene *scene, const dea_row *row)
 }
 
 typedef struct tally {
-    size_t slack; /* rows that one engine refuses beyond the loss of tension */
+    size_t slack;                               /* rows that one engine refuses beyond the loss of tension */
     size_t compared, strained, refused, limits; /* rows; of them with strain; without numbers; near limits or given up past one */
     size_t wrong;
 } tally;
@@ -324,7 +330,8 @@ static void sweep_from_no_voltage_starts_at_rest(void **state)
         for (size_t k = 0; k < list.count; k++) {
             const dea_row *row = &list.rows[k];
             assert_state(*row, DEA_STATE_OK);
-            assert_true((voltages[k] == 0.0) == (row->strain == 0.0 && row->force == 0.0 && row->field == 0.0 && row->displacement == 0.0));
+            assert_true((voltages[k] == 0.0) ==
+                        (row->strain == 0.0 && row->force == 0.0 && row->field == 0.0 && row->displacement == 0.0));
             assert_true(row->strain >= 0.0 && row->field >= 0.0);
         }
     }
@@ -394,7 +401,8 @@ static void any_part_of_a_sweep_has_the_rows_of_the_whole(void **state)
         const size_t count = 1 + (size_t)((double)(60 - first) * random_unit(&seed));
         memset(rows, 0x5a, sizeof rows);
         const dea_row untouched = rows[61];
-        assert_int_equal(dea_engine_find("direct")->sweep(NULL, &g.scene, g.scene.models[0], first, count, rows + 1, NULL), DEA_OK);
+        assert_int_equal(dea_engine_find("direct")->sweep(NULL, &g.scene, g.scene.models[0], first, count, rows + 1, NULL),
+                         DEA_OK);
         assert_memory_equal(&rows[0], &untouched, sizeof untouched);
         assert_memory_equal(&rows[count + 1], &untouched, sizeof untouched);
         for (size_t k = 0; k < count; k++) {

@@ -9,7 +9,8 @@ typedef double scalar_function(const double yeoh[DEA_YEOH_TERMS], double l1, dou
 
 static double difference(scalar_function *f, const double *yeoh, double l1, double l2, bool first, double h)
 {
-    return first ? (f(yeoh, l1 + h, l2) - f(yeoh, l1 - h, l2)) / (2.0 * h) : (f(yeoh, l1, l2 + h) - f(yeoh, l1, l2 - h)) / (2.0 * h);
+    return first ? (f(yeoh, l1 + h, l2) - f(yeoh, l1 - h, l2)) / (2.0 * h)
+                 : (f(yeoh, l1, l2 + h) - f(yeoh, l1, l2 - h)) / (2.0 * h);
 }
 
 static void check_derivative(scalar_function *f, const double *yeoh, double l1, double l2, bool first, double exact)
@@ -40,7 +41,8 @@ static double equibiaxial_stress(const double yeoh[DEA_YEOH_TERMS], double l1, d
     return dea_yeoh_equibiaxial(yeoh, l1);
 }
 
-static const double stretches[][2] = {{1.0, 1.0}, {1.1, 1.1}, {1.3, 1.3}, {0.8, 1.4}, {1.4, 0.8}, {2.0, 1.2}, {1.02, 1.0}, {3.0, 2.5}};
+static const double stretches[][2] = {{1.0, 1.0}, {1.1, 1.1}, {1.3, 1.3},  {0.8, 1.4},
+                                      {1.4, 0.8}, {2.0, 1.2}, {1.02, 1.0}, {3.0, 2.5}};
 enum { STRETCHES = sizeof stretches / sizeof stretches[0] };
 
 static void stresses_are_slopes_of_the_energy(void **state)
@@ -83,8 +85,9 @@ static void operating_modulus_is_the_slope_of_the_cauchy_stress(void **state)
 static void moduli_of_the_base_paper_to_all_printed_digits(void **state)
 {
     (void)state;
-    static const double table[][4] = {
-        {1.1, 1641976.87, 946538.03, 391713.34}, {1.2, 1391085.27, 697321.54, 228160.57}, {1.3, 1369207.21, 599710.82, 173813.87}};
+    static const double table[][4] = {{1.1, 1641976.87, 946538.03, 391713.34},
+                                      {1.2, 1391085.27, 697321.54, 228160.57},
+                                      {1.3, 1369207.21, 599710.82, 173813.87}};
     for (size_t i = 0; i < 3; i++) {
         const double l = table[i][0];
         const dea_stress at = dea_yeoh_stress(elastosil, l, l);
@@ -107,7 +110,8 @@ static void film_holds_the_moduli_of_its_material(void **state)
         assert_relative(film.w11, at.w11, 1e-14);
         assert_relative(film.w12, at.w12, 1e-14);
         assert_near(film.tension, at.p1, 1e-14 * at.w11);
-        const double h = 1e-4; /* error of the difference: h^2/6 of the fourth derivative of the stress, below 2e-7 of the slope */
+        const double h =
+            1e-4; /* error of the difference: h^2/6 of the fourth derivative of the stress, below 2e-7 of the slope */
         const double bend = (dea_yeoh_modulus(elastosil, l + h) - dea_yeoh_modulus(elastosil, l - h)) / (2.0 * h);
         assert_near(film.curvature, bend, 1e-5 * film.slope);
         scene.material.modulus = 1.2e6;
@@ -120,7 +124,8 @@ static void cauchy_stress_is_stretch_times_nominal_stress(void **state)
 {
     (void)state;
     for (double l = 0.7; l < 3.0; l += 0.1) {
-        assert_near(dea_yeoh_equibiaxial(elastosil, l), l * dea_yeoh_stress(elastosil, l, l).p1, 1e-13 * dea_yeoh_modulus(elastosil, l));
+        assert_near(dea_yeoh_equibiaxial(elastosil, l), l * dea_yeoh_stress(elastosil, l, l).p1,
+                    1e-13 * dea_yeoh_modulus(elastosil, l));
     }
 }
 

@@ -40,7 +40,8 @@ static void strains_at_4500_volts_to_all_printed_digits(void **state)
 static void free_film_strains_to_all_printed_digits(void **state)
 {
     (void)state;
-    static const double table[][3] = {{1.1, 0.05309062, 0.02316297}, {1.2, 0.08987201, 0.03965760}, {1.3, 0.11020732, 0.05686845}};
+    static const double table[][3] = {
+        {1.1, 0.05309062, 0.02316297}, {1.2, 0.08987201, 0.03965760}, {1.3, 0.11020732, 0.05686845}};
     for (size_t i = 0; i < 3; i++) {
         assert_printed(paper_strain("constant_force", DEA_DOT, table[i][0], 0.5, 4500.0), table[i][1], 8);
         assert_printed(paper_strain("pelrine", DEA_DOT, table[i][0], 0.5, 4500.0), table[i][2], 8);
@@ -190,7 +191,8 @@ static void lens_is_the_opposite_of_a_dot_at_small_voltage(void **state)
             double sum[2];
             for (int k = 0; k < 2; k++) {
                 const double voltage = k ? 100.0 : 200.0;
-                sum[k] = paper_strain(models[i], DEA_DOT, 1.2, b, voltage) / paper_strain(models[i], DEA_LENS, 1.2, b, voltage) + 1.0;
+                sum[k] =
+                    paper_strain(models[i], DEA_DOT, 1.2, b, voltage) / paper_strain(models[i], DEA_LENS, 1.2, b, voltage) + 1.0;
             }
             assert_true(fabs(sum[0]) < 2e-3);
             assert_relative(sum[0] / sum[1], 4.0, 0.01);
@@ -198,7 +200,8 @@ static void lens_is_the_opposite_of_a_dot_at_small_voltage(void **state)
     }
 }
 
-/* C = eps pi r_a^2 lambda_pre^2 lambda_a^4/H of a dot, eps pi lambda_pre^2 (r^2 - r_l^2 lambda_c^2)^2/((r^2 - r_l^2) H) of a lens. */
+/* C = eps pi r_a^2 lambda_pre^2 lambda_a^4/H of a dot, eps pi lambda_pre^2 (r^2 - r_l^2 lambda_c^2)^2/((r^2 - r_l^2) H) of a
+ * lens. */
 static double true_capacitance(const dea_scene *scene, double u)
 {
     const dea_actuator *a = &scene->actuator;
@@ -312,7 +315,8 @@ static void tiny_voltages_keep_twelve_digits(void **state)
             const double slope = paper_strain(all_models[i], (dea_kind)kind, 1.2, 0.3, 1e-3) / 1e-6;
             assert_true(slope != 0.0);
             for (double voltage = 2e-3; voltage > 1e-10; voltage *= 0.05) {
-                assert_relative(paper_strain(all_models[i], (dea_kind)kind, 1.2, 0.3, voltage) / (voltage * voltage), slope, 1e-12);
+                assert_relative(paper_strain(all_models[i], (dea_kind)kind, 1.2, 0.3, voltage) / (voltage * voltage), slope,
+                                1e-12);
             }
         }
     }
@@ -435,7 +439,8 @@ static double active_strain(const dea_scene *scene, double strain)
     return scene->actuator.kind == DEA_DOT ? strain : -strain * b / (1.0 - b);
 }
 
-/* A material that softens and stiffens again has equilibria behind its fold; a film driven from rest never gets there smoothly. */
+/* A material that softens and stiffens again has equilibria behind its fold; a film driven from rest never gets there smoothly.
+ */
 static void equilibrium_behind_a_fold_is_pull_in(void **state)
 {
     (void)state;
@@ -521,7 +526,7 @@ static void hyperelastic_models_balance_their_forces_at_random_points(void **sta
 static void field_agrees_with_runge_kutta_over_the_radius(void **state)
 {
     (void)state;
-    static const double points[][3] = {{1.1, 0.10, 4500.0}, {1.2, 0.25, 4500.0}, {1.2, 0.50, 3000.0}, {1.3, 0.75, 4500.0},
+    static const double points[][3] = {{1.1, 0.10, 4500.0}, {1.2, 0.25, 4500.0}, {1.2, 0.50, 3000.0},  {1.3, 0.75, 4500.0},
                                        {1.3, 0.40, 5500.0}, {1.5, 0.90, 5000.0}, {1.05, 0.30, 2000.0}, {2.0, 0.20, 2500.0}};
     for (int kind = DEA_DOT; kind <= DEA_LENS; kind++) {
         for (size_t i = 0; i < sizeof points / sizeof points[0]; i++) {
@@ -544,7 +549,12 @@ static void slack_film_far_past_its_tension_still_balances(void **state)
         dea_kind kind;
         double prestretch, coverage, voltage, yeoh[DEA_YEOH_TERMS], strain;
     } table[] = {
-        {DEA_DOT, 2.8546791505449742, 0.76268500816809603, 6036.2027361005921, {14257.268820654581, 47.207722112250089, 0.0}, 0.30094011459},
+        {DEA_DOT,
+         2.8546791505449742,
+         0.76268500816809603,
+         6036.2027361005921,
+         {14257.268820654581, 47.207722112250089, 0.0},
+         0.30094011459},
         {DEA_LENS, 1.47769, 0.992198, 19854.5, {226828.0, 0.0, 9878.32}, 0.0},
         {DEA_LENS, 1.62045, 0.806394, 26008.1, {238045.0, 20012.2, 0.0}, 0.0},
         {DEA_LENS, 2.96595, 0.711474, 7535.5, {54517.3, -1484.61, 32.3794}, 0.0},
@@ -572,7 +582,8 @@ static void field_agrees_with_itself_on_a_finer_mesh(void **state)
 {
     (void)state;
     for (int i = 0; i < 200; i++) {
-        dea_scene scene = paper_scene(i % 2 ? DEA_LENS : DEA_DOT, 1.02 + 0.005 * i, 0.002 + 0.99 * fabs(sin(7.0 * i)), 50.0 * (i % 90));
+        dea_scene scene =
+            paper_scene(i % 2 ? DEA_LENS : DEA_DOT, 1.02 + 0.005 * i, 0.002 + 0.99 * fabs(sin(7.0 * i)), 50.0 * (i % 90));
         const dea_row row = solve_direct(&scene, "field");
         scene.accuracy = 1e-12;
         const dea_row finer = solve_direct(&scene, "field");

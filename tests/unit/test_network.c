@@ -10,7 +10,8 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Value and slope of an expression by its written form, in long double, and bounds of both: the same sums without cancellation. */
+/* Value and slope of an expression by its written form, in long double, and bounds of both: the same sums without cancellation.
+ */
 typedef struct dual {
     long double value, slope, most, most_slope;
 } dual;
@@ -36,7 +37,8 @@ static tree leaf(dea_pool *pool, uint64_t *seed, double symbol, double node)
 
 static dual times(dual a, dual b)
 {
-    return (dual){a.value * b.value, a.slope * b.value + a.value * b.slope, a.most * b.most, a.most_slope * b.most + a.most * b.most_slope};
+    return (dual){a.value * b.value, a.slope * b.value + a.value * b.slope, a.most * b.most,
+                  a.most_slope * b.most + a.most * b.most_slope};
 }
 
 /* a over 1 + b^2: a denominator that loses no digits. */
@@ -58,7 +60,8 @@ static tree grow(dea_pool *pool, uint64_t *seed, int depth, double symbol, doubl
     }
     const tree a = grow(pool, seed, depth - 1, symbol, node);
     const tree b = random_chance(seed, 0.15) ? a : grow(pool, seed, depth - 1, symbol, node);
-    const dual sum = {a.dual.value + b.dual.value, a.dual.slope + b.dual.slope, a.dual.most + b.dual.most, a.dual.most_slope + b.dual.most_slope};
+    const dual sum = {a.dual.value + b.dual.value, a.dual.slope + b.dual.slope, a.dual.most + b.dual.most,
+                      a.dual.most_slope + b.dual.most_slope};
     const dual less = {a.dual.value - b.dual.value, a.dual.slope - b.dual.slope, sum.most, sum.most_slope};
     switch ((int)(6.0 * random_unit(seed))) {
     case 0:
@@ -112,7 +115,8 @@ static void expressions_fold_and_share(void **state)
     const dea_expr one = dea_expr_number(&pool, 1.0);
     const dea_expr x = dea_expr_node(&pool, 0);
     const dea_expr y = dea_expr_symbol(&pool, 0);
-    assert_relative(dea_expr_constant(&pool, dea_expr_div(&pool, dea_expr_number(&pool, 1.0), dea_expr_number(&pool, 3.0))), 1.0 / 3.0, 0.0);
+    assert_relative(dea_expr_constant(&pool, dea_expr_div(&pool, dea_expr_number(&pool, 1.0), dea_expr_number(&pool, 3.0))),
+                    1.0 / 3.0, 0.0);
     assert_true(isnan(dea_expr_constant(&pool, x)));
     assert_int_equal(dea_expr_add(&pool, x, y), dea_expr_add(&pool, x, y));
     assert_int_equal(dea_expr_add(&pool, x, zero), x);
@@ -463,7 +467,8 @@ static const char *fault_of_source(const char *card, const char *netlist)
             at += length - 1;
         }
     }
-    return strpbrk(card, "^;$`\"'") || strstr(card, "**") || strstr(card, "//") ? "an operator that means different things" : NULL;
+    return strpbrk(card, "^;$`\"'") || strstr(card, "**") || strstr(card, "//") ? "an operator that means different things"
+                                                                                : NULL;
 }
 
 /* name=number pairs: plain numbers with plain exponents. */
@@ -498,7 +503,8 @@ static const char *fault_of_card(const char *card, const char *netlist)
     if (strncmp(card, ".param", 6) == 0) {
         return fault_of_parameters(card);
     }
-    static const char *const cards[] = {"* ", "vindex k 0 0", "vaxis axis 0 {a0}", ".nodeset ", ".options ", ".save v(edge)", ".dc vindex ", ".end"};
+    static const char *const cards[] = {"* ",        "vindex k 0 0",  "vaxis axis 0 {a0}", ".nodeset ",
+                                        ".options ", ".save v(edge)", ".dc vindex ",       ".end"};
     for (size_t i = 0; i < sizeof cards / sizeof cards[0]; i++) {
         if (strncmp(card, cards[i], strlen(cards[i])) == 0) {
             return NULL;
@@ -531,9 +537,21 @@ static void judge_of_netlists_finds_what_it_forbids(void **state)
     static const char *const netlist = " p1=1.5\nbx3 x3 0 \nbspring edge 0 \n";
     assert_null(fault_of_card("bx3 x3 0 v={p1}*v(edge)-3*v(x3)", netlist));
     assert_null(fault_of_card(".param p1=1.5e-300 p2=-3", netlist));
-    static const char *const bad[] = {"bx3 x3 0 v=1.5*v(edge)", "bx3 x3 0 v={p2}", "bx3 x3 0 v=v(x4)", "bx3 x3 0 v=v(edge)^2",
-                                      "bx3 x3 0 v=log(v(edge))", "bx3 x3 0 v=1e5", "bx3 x3 0 v=v(edge)**2", " v1 a 0 1", "",
-                                      "Bx3 x3 0 v=1", ".param p1=1k", ".param p1=1,5", ".control", "r1 a 0 1", ".include x"};
+    static const char *const bad[] = {"bx3 x3 0 v=1.5*v(edge)",
+                                      "bx3 x3 0 v={p2}",
+                                      "bx3 x3 0 v=v(x4)",
+                                      "bx3 x3 0 v=v(edge)^2",
+                                      "bx3 x3 0 v=log(v(edge))",
+                                      "bx3 x3 0 v=1e5",
+                                      "bx3 x3 0 v=v(edge)**2",
+                                      " v1 a 0 1",
+                                      "",
+                                      "Bx3 x3 0 v=1",
+                                      ".param p1=1k",
+                                      ".param p1=1,5",
+                                      ".control",
+                                      "r1 a 0 1",
+                                      ".include x"};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         assert_non_null(fault_of_card(bad[i], netlist));
     }
@@ -572,7 +590,12 @@ static void netlist_of_any_line_is_plain_and_complete(void **state)
         const bool ramp = i % 5 == 0;
         const size_t count = i % 7 == 0 ? 1 : 30;
         dea_network network = network_of(&scene, model, ramp ? NULL : &axis);
-        const dea_netlist_study study = {.axis = ramp ? NULL : &axis, .from = 5, .count = count, .ramp = ramp ? 50 : 0, .force_scale = 1e-3, .length_scale = 1e-2};
+        const dea_netlist_study study = {.axis = ramp ? NULL : &axis,
+                                         .from = 5,
+                                         .count = count,
+                                         .ramp = ramp ? 50 : 0,
+                                         .force_scale = 1e-3,
+                                         .length_scale = 1e-2};
         char *text = netlist_of(&network, &study);
         assert_null(strstr(text, "secret"));
         assert_null(strstr(text, ".control"));

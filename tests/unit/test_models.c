@@ -578,6 +578,33 @@ static void slack_film_far_past_its_tension_still_balances(void **state)
     }
 }
 
+/* Voltage of the load M = share W11. */
+static double voltage_of(const dea_scene *scene, double share)
+{
+    const double l = scene->actuator.prestretch;
+    const double modulus = dea_yeoh_stress(scene->material.yeoh, l, l).w11;
+    return scene->actuator.film_thickness * sqrt(share * modulus / (scene->material.permittivity * DEA_EPSILON_0));
+}
+
+/* Lenses whose annulus has a second equilibrium with another jump of the radial stretch at the edge. Followed in small steps of
+ * the load from rest, the first holds its full load; the second loses its film at 0.629 of it. */
+static void membrane_stays_on_the_branch_from_rest(void **state)
+{
+    (void)state;
+    dea_scene scene = paper_scene(DEA_LENS, 1.88654, 0.342438, 0.0);
+    memcpy(scene.material.yeoh, (double[]){11493.2, 90.285, 342.129}, sizeof scene.material.yeoh);
+    scene.drive.voltage = voltage_of(&scene, 0.419711);
+    const dea_row held = solve_direct(&scene, "field");
+    assert_state(held, DEA_STATE_SLACK);
+    assert_near(held.strain, -0.558846, 1e-5); /* the table's constants have six digits */
+    scene = paper_scene(DEA_LENS, 1.20006, 0.893825, 0.0);
+    memcpy(scene.material.yeoh, (double[]){23277.7, -4143.42, 538.135}, sizeof scene.material.yeoh);
+    scene.drive.voltage = voltage_of(&scene, 0.62 * 0.155515);
+    assert_state(solve_direct(&scene, "field"), DEA_STATE_OK);
+    scene.drive.voltage = voltage_of(&scene, 0.155515);
+    assert_state(solve_direct(&scene, "field"), DEA_STATE_PULL_IN);
+}
+
 static void field_agrees_with_itself_on_a_finer_mesh(void **state)
 {
     (void)state;
@@ -645,6 +672,7 @@ int main(void)
         cmocka_unit_test(hyperelastic_models_balance_their_forces_at_random_points),
         cmocka_unit_test(field_agrees_with_runge_kutta_over_the_radius),
         cmocka_unit_test(slack_film_far_past_its_tension_still_balances),
+        cmocka_unit_test(membrane_stays_on_the_branch_from_rest),
         cmocka_unit_test(field_agrees_with_itself_on_a_finer_mesh),
         cmocka_unit_test(every_model_says_which_actuators_it_can_do),
     };

@@ -444,7 +444,11 @@ static const char *fault_of_word(const char *at, size_t length, const char *netl
     }
     if (at[-1] == '{') {
         snprintf(sought, sizeof sought, " %.*s=", (int)length, at);
-        return strstr(netlist, sought) ? NULL : "an unknown parameter";
+        const char *given = strstr(netlist, sought);
+        if (given && given[strlen(sought)] == '-' && !strchr("(,", at[-2])) {
+            return "a negative parameter without brackets"; /* it is put in as text */
+        }
+        return given ? NULL : "an unknown parameter";
     }
     if (at[-1] == '(' && at[-2] == 'v') {
         snprintf(sought, sizeof sought, " %.*s 0 ", (int)length, at);
@@ -534,10 +538,11 @@ static void check_netlist(const char *netlist)
 static void judge_of_netlists_finds_what_it_forbids(void **state)
 {
     (void)state;
-    static const char *const netlist = " p1=1.5\nbx3 x3 0 \nbspring edge 0 \n";
+    static const char *const netlist = " p1=1.5\n p4=-1.5\nbx3 x3 0 \nbspring edge 0 \n";
     assert_null(fault_of_card("bx3 x3 0 v={p1}*v(edge)-3*v(x3)", netlist));
     assert_null(fault_of_card(".param p1=1.5e-300 p2=-3", netlist));
     static const char *const bad[] = {"bx3 x3 0 v=1.5*v(edge)",
+                                      "bx3 x3 0 v=1-{p4}",
                                       "bx3 x3 0 v={p2}",
                                       "bx3 x3 0 v=v(x4)",
                                       "bx3 x3 0 v=v(edge)^2",

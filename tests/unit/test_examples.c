@@ -362,6 +362,7 @@ static void sample_data_gives_back_the_constants_it_was_made_from(void **state)
              folder);
     run_program(words);
     check_picture("fit.svg");
+    char path[PATH_LENGTH];
     static const char text[] = "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
                                "material: {base: ./film.yaml, permittivity: 2.8}\n"
                                "drive: {voltage: 1 V}\nmodel: lumped\nstudy: {sweep: {}}\n";
@@ -372,6 +373,7 @@ static void sample_data_gives_back_the_constants_it_was_made_from(void **state)
         assert_relative(scene.material.yeoh[i], wanted[i], 2e-2);
     }
     dea_scene_free(&scene);
+    snprintf(path, sizeof path, "%s/film.yaml", folder);
     assert_int_equal(unlink(path), 0);
 }
 

@@ -18,6 +18,15 @@
 
 #include "engine/ngspice/library.h"
 
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define SANITIZED
+#endif
+#endif
+#ifdef __SANITIZE_ADDRESS__
+#define SANITIZED
+#endif
+
 static const char *const divider = "* a divider of one volt\n"
                                    "v1 a 0 1\n"
                                    "r1 a b 1\n"
@@ -496,7 +505,7 @@ static void run_many(verdict *found, const char *folder)
 static void memory_stays_flat_over_two_thousand_circuits(void **state)
 {
     (void)state;
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SANITIZED
     (void)run_many;
     skip(); /* the sanitizer keeps freed memory back */
 #else

@@ -52,9 +52,6 @@ static radial_state slope_at(const membrane *m, radial_state s)
     const double s11 = stress.w11 - m->annulus_k * l2 * l2;
     const double s12 = stress.w12 - 2.0 * m->annulus_k * area;
     if (!(s11 > 0.0)) {
-        return (radial_state){NAN, NAN}; /* the film is unstable in itself */
-    }
-    if (!(s11 > 0.0)) {
         return (radial_state){NAN, NAN}; /* loss of ellipticity: no such film is stable */
     }
     const double rate = 1.0 + (2.0 * stress.w * (1.0 + t * t * t) + m->annulus_k * area + s12) / s11;

@@ -61,7 +61,6 @@ dea_status dea_read_title(dea_reader *reader, const dea_ref *ref, const dea_node
 dea_status dea_read_model(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_later(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_unavailable(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_sweep(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_material(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_source(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_permittivity(dea_reader *reader, const dea_ref *ref, const dea_node *node);

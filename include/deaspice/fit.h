@@ -1,5 +1,5 @@
 /** @file fit.h
- * Yeoh constants from measured stress-stretch data, by linear least squares.
+ * Yeoh constants from measured stress over stretch, Prony branches from measured stress over time.
  */
 #ifndef DEASPICE_FIT_H
 #define DEASPICE_FIT_H
@@ -11,6 +11,8 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+enum { DEA_RELAXATION_LEAST = 3, DEA_RELAXATION_MOST = 10 }; /**< fewest points of a relaxation test, most branches of a fit */
 
 /** How a specimen was loaded. */
 typedef enum dea_load { DEA_LOAD_UNIAXIAL, DEA_LOAD_EQUIBIAXIAL, DEA_LOAD_COUNT, DEA_LOAD_UNKNOWN = DEA_LOAD_COUNT } dea_load;
@@ -74,8 +76,86 @@ DEA_API void dea_fit_data_free(dea_fit_data *data);
 DEA_API dea_status dea_fit_yeoh(const dea_fit_data *data, int terms, bool relative, dea_fit *fit, dea_error *error);
 /** Nominal stress of the fitted material [Pa] at @p stretch under @p load. */
 DEA_API double dea_fit_stress(const double yeoh[DEA_YEOH_TERMS], dea_load load, double stretch);
-/** Prints the fit as a material file, its quality as comments. @return DEA_OK, DEA_ERROR_IO */
-DEA_API dea_status dea_fit_print(const dea_fit *fit, FILE *stream, dea_error *error);
+
+/** One measured point of a relaxation test. */
+typedef struct dea_relaxation_point {
+    double time;   /**< since the end of the ramp [s], >= 0 */
+    double stress; /**< at the held stretch, nominal or true [Pa], >= 0 */
+} dea_relaxation_point;
+
+/** One relaxation test; zeroed: a step without points. Owns its points; free with dea_relaxation_data_free(). */
+typedef struct dea_relaxation_data {
+    dea_relaxation_point *points; /**< times increasing */
+    size_t count, room;           /**< points in use, points allocated */
+    double ramp;                  /**< duration of the ramp before the hold [s], >= 0, default 0: an ideal step */
+} dea_relaxation_data;
+
+/** A number of branches that was tried. */
+typedef struct dea_relaxation_trial {
+    double residual_relative; /**< as in dea_relaxation [1] */
+    double p;                 /**< chance that noise gains as much by the last branch (F test) [1], NAN: not testable */
+    double long_term;         /**< long-term share of this trial [1], >= 0 */
+} dea_relaxation_trial;
+
+/** Why a fit has no further branch. */
+typedef enum dea_relaxation_end {
+    DEA_RELAXATION_ASKED,     /**< that many were asked for */
+    DEA_RELAXATION_TEST,      /**< the next one gains no more than noise would */
+    DEA_RELAXATION_EXACT,     /**< the residual is rounding already */
+    DEA_RELAXATION_POINTS,    /**< the points determine no more constants */
+    DEA_RELAXATION_LONG_TERM, /**< with the next one, no long-term share is left */
+    DEA_RELAXATION_FULL       /**< DEA_RELAXATION_MOST branches */
+} dea_relaxation_end;
+
+/** Fitted branches and how good they are. */
+typedef struct dea_relaxation {
+    size_t prony_count;                                   /**< branches in use */
+    dea_prony prony[DEA_RELAXATION_MOST];                 /**< of the instantaneous modulus, tau ascending */
+    dea_prony deviation[DEA_RELAXATION_MOST];             /**< their standard errors, NAN where points = constants */
+    double long_term;                                     /**< 1 - sum of g [1], > 0 */
+    double long_term_deviation;                           /**< its standard error [1], NAN where points = constants */
+    double instantaneous;                                 /**< stress after an ideal step [Pa] */
+    double residual_rms;                                  /**< root mean square of (measured - fitted) [Pa] */
+    double residual_relative;                             /**< residual_rms over the rms of the measured stress [1] */
+    size_t count;                                         /**< points */
+    double time_min, time_max, ramp;                      /**< of the data [s] */
+    size_t trial_count;                                   /**< entry i of the trials has i branches */
+    dea_relaxation_trial trials[DEA_RELAXATION_MOST + 1]; /**< 0 branches, 1, ... */
+    dea_relaxation_end end;                               /**< why there is no further branch */
+} dea_relaxation;
+
+/** Reads a relaxation test into @p data, which has no points yet; its ramp stays.
+ *
+ * CSV as dea_fit_read(), with one of `time_s`, `time_ms`, `time_min` (since the end of the ramp, increasing) and one of
+ * `stress_Pa`, `stress_kPa`, `stress_MPa`.
+ * @return DEA_OK, DEA_ERROR_SCENE (message "file:line:column: ..."), DEA_ERROR_USAGE (has points), DEA_ERROR_IO,
+ * DEA_ERROR_MEMORY; @p data has no points on DEA_ERROR_SCENE
+ */
+DEA_API dea_status dea_relaxation_read(const char *path, dea_relaxation_data *data, dea_error *error);
+/** Same from memory; @p name stands in messages. */
+DEA_API dea_status dea_relaxation_parse(const char *text, size_t length, const char *name, dea_relaxation_data *data,
+                                        dea_error *error);
+/** Appends one point. @return DEA_OK, DEA_ERROR_USAGE (a number out of range, a time not after the last), DEA_ERROR_MEMORY */
+DEA_API dea_status dea_relaxation_add(dea_relaxation_data *data, dea_relaxation_point point, dea_error *error);
+/** Frees what the data owns; NULL and zeroed data are fine. */
+DEA_API void dea_relaxation_data_free(dea_relaxation_data *data);
+
+/** Fits Prony branches to a relaxation test: shares by non-negative least squares, times refined from a logarithmic grid.
+ *
+ * @param branches 1 to DEA_RELAXATION_MOST; 0: as many as an F test finds significant at 5 %; never more than (points - 1)/2
+ * @param relative as in dea_fit_yeoh()
+ * @return DEA_OK (also without a branch: the stress does not relax), DEA_ERROR_USAGE (the stress grows, relaxes to nothing, or
+ * does not determine the branches asked for), DEA_ERROR_MEMORY
+ */
+DEA_API dea_status dea_fit_relaxation(const dea_relaxation_data *data, size_t branches, bool relative, dea_relaxation *fit,
+                                      dea_error *error);
+/** Stress of the fitted test at @p time since the end of its ramp [Pa]. */
+DEA_API double dea_relaxation_stress(const dea_relaxation *fit, double time);
+/** Why the fit has no further branch, in words. */
+DEA_API const char *dea_relaxation_reason(const dea_relaxation *fit);
+
+/** Prints fits as a material file, their quality as comments; one of the two may be NULL. @return DEA_OK, DEA_ERROR_IO */
+DEA_API dea_status dea_fit_print(const dea_fit *fit, const dea_relaxation *relaxation, FILE *stream, dea_error *error);
 
 #ifdef __cplusplus
 }

@@ -10,7 +10,7 @@ static void print_number(FILE *stream, const char *before, double value, int dig
     fprintf(stream, "%s%s%s", before, dea_number_text(text, value, digits), after);
 }
 
-static void print_quality(const dea_fit *fit, FILE *stream)
+static void print_yeoh_quality(const dea_fit *fit, FILE *stream)
 {
     static const char *const names[DEA_YEOH_TERMS] = {"C1", "C2", "C3"};
     fprintf(stream, "# Fit of %d Yeoh constants to %zu uniaxial and %zu equi-biaxial points", fit->terms,
@@ -38,14 +38,95 @@ static void print_quality(const dea_fit *fit, FILE *stream)
     }
 }
 
-dea_status dea_fit_print(const dea_fit *fit, FILE *stream, dea_error *error)
+static void print_yeoh(const dea_fit *fit, FILE *stream)
 {
     static const char *const before[DEA_YEOH_TERMS] = {"C1: ", ", C2: ", ", C3: "};
-    print_quality(fit, stream);
-    fputs("# A material file: name it in a scene as  material: {base: FILE, permittivity: 2.8}  with the value of your film.\nyeoh: {", stream);
+    fputs("yeoh: {", stream);
     for (int i = 0; i < fit->terms; i++) {
         print_number(stream, before[i], fit->yeoh[i], 8, " Pa");
     }
     fputs("}\n", stream);
+}
+
+static void print_trials(const dea_relaxation *fit, FILE *stream)
+{
+    for (size_t i = 0; i < fit->trial_count; i++) {
+        const dea_relaxation_trial *trial = &fit->trials[i];
+        fprintf(stream, "#   %2zu branch%s rms error ", i, i == 1 ? ":  " : "es:");
+        print_number(stream, "", 100.0 * trial->residual_relative, 4, " %");
+        print_number(stream, ", long-term share ", trial->long_term, 4, "");
+        if (isfinite(trial->p)) {
+            print_number(stream, ", p = ", trial->p, 3, "");
+        }
+        fputs(i == fit->prony_count ? "  <- taken\n" : "\n", stream);
+    }
+}
+
+/* " +- error", or nothing where the data does not tell it. */
+static void print_deviation(FILE *stream, double deviation, const char *unit)
+{
+    if (isfinite(deviation)) {
+        print_number(stream, " +- ", deviation, 3, unit);
+    }
+}
+
+static void print_relaxation_quality(const dea_relaxation *fit, FILE *stream)
+{
+    fprintf(stream, "# Fit of %zu Prony branch%s to %zu points of a relaxation test", fit->prony_count,
+            fit->prony_count == 1 ? "" : "es", fit->count);
+    print_number(stream, ", ", fit->time_min, 6, " s");
+    print_number(stream, " to ", fit->time_max, 6, " s");
+    print_number(stream, " after a ramp of ", fit->ramp, 6, " s.\n");
+    print_number(stream, "# Residual ", fit->residual_rms, 4, " Pa rms");
+    print_number(stream, " (", 100.0 * fit->residual_relative, 3, " %)");
+    print_number(stream, ", stress after an ideal step ", fit->instantaneous, 6, " Pa");
+    print_number(stream, ", long-term share ", fit->long_term, 6, "");
+    print_deviation(stream, fit->long_term_deviation, "");
+    fputs(".\n# Tried, each against one branch less by an F test:\n", stream);
+    print_trials(fit, stream);
+    fprintf(stream, "# No further branch: %s.\n", dea_relaxation_reason(fit));
+    if (fit->prony_count > 0 && fit->prony[fit->prony_count - 1].tau > fit->time_max - fit->time_min) {
+        fputs("# WARNING: the slowest branch is slower than the test; the long-term share is extrapolated.\n", stream);
+    }
+}
+
+static void print_prony(const dea_relaxation *fit, FILE *stream)
+{
+    fputs(fit->prony_count > 0 ? "prony:\n" : "prony: []\n", stream);
+    for (size_t i = 0; i < fit->prony_count; i++) {
+        print_number(stream, "  - {g: ", fit->prony[i].g, 8, "");
+        print_number(stream, ", tau: ", fit->prony[i].tau, 8, " s}");
+        if (isfinite(fit->deviation[i].g) && isfinite(fit->deviation[i].tau)) {
+            fputs("  #", stream);
+            print_deviation(stream, fit->deviation[i].g, ",");
+            print_deviation(stream, fit->deviation[i].tau, " s");
+        }
+        fputc('\n', stream);
+    }
+}
+
+dea_status dea_fit_print(const dea_fit *fit, const dea_relaxation *relaxation, FILE *stream, dea_error *error)
+{
+    if (fit) {
+        print_yeoh_quality(fit, stream);
+    }
+    if (relaxation) {
+        print_relaxation_quality(relaxation, stream);
+    }
+    fputs(fit ? "# A material file: name it in a scene as  material: {base: FILE, permittivity: 2.8}  with the value of your "
+                "film.\n"
+              : "# A material file: name it in a scene as  material: {base: FILE, yeoh: {C1: 180 kPa}, permittivity: 2.8}  with "
+                "the\n"
+                "# values of your film, or give it a line  base: elastosil-2030  with the name of yours.\n",
+          stream);
+    if (fit) {
+        print_yeoh(fit, stream);
+    }
+    if (fit && relaxation) {
+        fputs("moduli: long-term  # instantaneous, where the stretch was measured faster than the film relaxes\n", stream);
+    }
+    if (relaxation) {
+        print_prony(relaxation, stream);
+    }
     return ferror(stream) ? dea_fail(error, DEA_ERROR_IO, "the fit could not be printed") : DEA_OK;
 }

@@ -1,7 +1,8 @@
-/* Pictures of a material and of a fit: stress and modulus over stretch. */
+/* Pictures of a material and of a fit: stress and modulus over stretch, stress over time. */
 #include "output/picture.h"
 
 #include "output/legend.h"
+#include "support/number.h"
 
 #include <math.h>
 #include <string.h>
@@ -124,32 +125,41 @@ static void write_points(FILE *script, const dea_fit_data *data, const dea_fit *
     fputs("END\n", script);
 }
 
-static void write_fit(const dea_fit *fit, const dea_fit_data *data, FILE *script)
+/* Where axes stand, as shares of the canvas. */
+typedef struct panel {
+    double left, right;
+    int width; /* of the canvas, 1/100 inch */
+} panel;
+
+enum { LINE_ENTRY = 1, POINT_ENTRY = 6 };
+static const double panel_bottom = 0.13, panel_top = 0.965;
+
+/* Opens axes with their titles. */
+static void write_panel(FILE *script, const panel *at, double from, double to, const char *across)
 {
-    const double from = fmin(fit->stretch_min, 1.0), to = fmax(fit->stretch_max, 1.0);
-    dea_plot_style(script);
-    fputs("unset key\nset multiplot\nset xrange [", script);
+    fputs("set xrange [", script);
     dea_gnuplot_number(script, from);
     fputc(':', script);
     dea_gnuplot_number(script, to);
     fputs("]\n", script);
-    write_setting(script, "xlabel", "Stretch λ");
+    write_setting(script, "xlabel", across);
     write_setting(script, "ylabel", "Engineering stress P [kPa]");
+    write_place(script, at->left, at->right, panel_bottom, panel_top);
+}
+
+static void write_fit(const dea_fit *fit, const dea_fit_data *data, const panel *at, FILE *script, dea_legend *legend)
+{
+    const double from = fmin(fit->stretch_min, 1.0), to = fmax(fit->stretch_max, 1.0);
+    write_panel(script, at, from, to, "Stretch λ");
+    const char *before = "plot ";
     for (int load = 0; load < DEA_LOAD_COUNT; load++) {
         if (fit->count[load] > 0) {
             write_stress(script, fit->yeoh, (dea_load)load, from, to);
             write_points(script, data, fit, (dea_load)load);
+            add_entry(legend, load, ", measured", 0, POINT_ENTRY, at->left * at->width, panel_top * FIT_HEIGHT);
+            add_entry(legend, load, ", Yeoh fit", LINE_ENTRY, 0, at->left * at->width, panel_top * FIT_HEIGHT);
         }
     }
-    write_place(script, 0.125, 0.97, 0.13, 0.965);
-    dea_legend legend = {.count = 0};
-    for (int load = 0; load < DEA_LOAD_COUNT; load++) {
-        if (fit->count[load] > 0) {
-            add_entry(&legend, load, ", measured", 0, 6, 0.125 * FIT_WIDTH, 0.965 * FIT_HEIGHT);
-            add_entry(&legend, load, ", Yeoh fit", 1, 0, 0.125 * FIT_WIDTH, 0.965 * FIT_HEIGHT);
-        }
-    }
-    const char *before = "plot ";
     for (int load = 0; load < DEA_LOAD_COUNT; load++) {
         if (fit->count[load] > 0) {
             fprintf(script, "%s$data%d with points pointtype 6 pointsize 0.7 linewidth 1 linecolor '%s'", before, load,
@@ -159,18 +169,94 @@ static void write_fit(const dea_fit *fit, const dea_fit_data *data, FILE *script
         }
     }
     fputc('\n', script);
-    dea_legend_draw(&legend, script, FIT_WIDTH, FIT_HEIGHT);
-    fputs("unset multiplot\nunset output\n", script);
 }
 
-dea_status dea_plot_fit(const dea_fit *fit, const dea_fit_data *data, const char *path, dea_error *error)
+/* The time axis is log10(1 + t/t_1), t_1 the first time after 0: logarithmic, and yet with a place for t = 0. */
+static double time_place(double time, double first)
+{
+    return log10(1.0 + time / first);
+}
+
+static void write_time_tics(FILE *script, double first, double last)
+{
+    fputs("set xtics (\"0\" 0", script);
+    for (double tic = pow(10.0, floor(log10(first))); tic <= last; tic *= 10.0) {
+        if (tic >= 0.99 * first) {
+            char label[DEA_NUMBER_LENGTH];
+            fprintf(script, ", \"%s\" ", dea_number_text(label, tic, 3));
+            dea_gnuplot_number(script, time_place(tic, first));
+        }
+    }
+    fputs(")\n", script);
+}
+
+static void write_relaxation_points(FILE *script, const dea_relaxation_data *data, double first)
+{
+    const size_t step = data->count / POINTS_MAX + 1;
+    fputs("$held << END\n", script);
+    for (size_t i = 0; i < data->count; i += step) {
+        write_pair(script, time_place(data->points[i].time, first), 1e-3 * data->points[i].stress);
+    }
+    fputs("END\n", script);
+}
+
+static void write_relaxation_curve(FILE *script, const dea_relaxation *fit, double first)
+{
+    const double to = time_place(fit->time_max, first);
+    fputs("$relaxed << END\n", script);
+    for (int i = 0; i <= CURVE_STEPS; i++) {
+        const double place = to * i / CURVE_STEPS;
+        write_pair(script, place, 1e-3 * dea_relaxation_stress(fit, first * (pow(10.0, place) - 1.0)));
+    }
+    fputs("END\n", script);
+}
+
+static void write_relaxation(const dea_relaxation *fit, const dea_relaxation_data *data, const panel *at, FILE *script,
+                             dea_legend *legend)
+{
+    const double first = data->points[0].time > 0.0 ? data->points[0].time : data->points[1].time;
+    write_panel(script, at, 0.0, time_place(fit->time_max, first), "Time since the end of the ramp t [s]");
+    fputs("set yrange [0:*]\n", script);
+    write_time_tics(script, first, fit->time_max);
+    write_relaxation_points(script, data, first);
+    write_relaxation_curve(script, fit, first);
+    static const char *const labels[] = {"measured", "Prony fit"};
+    for (int i = 0; i < 2; i++) {
+        dea_legend_entry *entry = dea_legend_add(legend);
+        snprintf(entry->label, sizeof entry->label, "%s", labels[i]);
+        snprintf(entry->colour, sizeof entry->colour, "%s", load_colours[0]);
+        entry->dash = i == 0 ? 0 : LINE_ENTRY;
+        entry->symbol = i == 0 ? POINT_ENTRY : 0;
+        entry->x = at->left * at->width + 16.0;
+        entry->y = panel_bottom * FIT_HEIGHT + 18.0 + DEA_LEGEND_ROW * (1 - i);
+    }
+    fprintf(script, "plot $held with points pointtype 6 pointsize 0.7 linewidth 1 linecolor '%s'", load_colours[0]);
+    fprintf(script, ", $relaxed with lines linewidth 1.8 linecolor '%s'\n", load_colours[0]);
+}
+
+dea_status dea_plot_fit(const dea_fit *fit, const dea_fit_data *data, const dea_relaxation *relaxation,
+                        const dea_relaxation_data *held, const char *path, dea_error *error)
 {
     dea_gnuplot picture;
     const dea_status status = dea_gnuplot_begin(&picture, path, error);
     if (status != DEA_OK) {
         return status;
     }
-    dea_gnuplot_size(&picture, FIT_WIDTH, FIT_HEIGHT);
-    write_fit(fit, data, picture.script);
+    const bool both = fit && relaxation;
+    const int width = both ? 2 * FIT_WIDTH : FIT_WIDTH;
+    const double half = both ? 0.5 : 1.0;
+    const panel first = {0.125 * half, 0.97 * half, width}, second = {1.0 - 0.875 * half, 1.0 - 0.03 * half, width};
+    dea_legend legend = {.count = 0};
+    dea_gnuplot_size(&picture, width, FIT_HEIGHT);
+    dea_plot_style(picture.script);
+    fputs("unset key\nset multiplot\n", picture.script);
+    if (fit) {
+        write_fit(fit, data, &first, picture.script, &legend);
+    }
+    if (relaxation) {
+        write_relaxation(relaxation, held, &second, picture.script, &legend);
+    }
+    dea_legend_draw(&legend, picture.script, width, FIT_HEIGHT);
+    fputs("unset multiplot\nunset output\n", picture.script);
     return dea_gnuplot_finish(&picture, true, error);
 }

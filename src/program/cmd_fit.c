@@ -10,17 +10,59 @@
 #include "output/atomic.h"
 #include "program/program.h"
 
+/* Data and fits of one call. */
+typedef struct work {
+    dea_fit_data stretch;           /* owned */
+    dea_relaxation_data relaxation; /* owned */
+    dea_fit yeoh;
+    dea_relaxation prony;
+    const dea_fit *yeoh_given; /* NULL: no data of that kind */
+    const dea_relaxation *prony_given;
+} work;
+
 static dea_load load_of(dea_given_mode mode)
 {
     static const dea_load loads[] = {DEA_LOAD_UNKNOWN, DEA_LOAD_UNIAXIAL, DEA_LOAD_EQUIBIAXIAL};
     return loads[mode];
 }
 
-static dea_status read_all(const dea_arguments *arguments, dea_fit_data *data, dea_error *error)
+static bool complain_mismatch(const dea_arguments *arguments)
+{
+    const bool relaxation = arguments->relaxation != NULL;
+    if (!relaxation && arguments->operand_count == 0) {
+        dea_complain("fit needs a file; see deaspice fit --help");
+    } else if (!relaxation && (!isnan(arguments->ramp) || arguments->branches > 0)) {
+        dea_complain("--%s goes with --relaxation", isnan(arguments->ramp) ? "branches" : "ramp");
+    } else if (relaxation && arguments->operand_count == 0 && arguments->terms > 0) {
+        dea_complain("--terms goes with data of stress over stretch");
+    } else {
+        return false;
+    }
+    return true;
+}
+
+static dea_status fit_stretch(const dea_arguments *arguments, work *w, dea_error *error)
 {
     dea_status status = DEA_OK;
-    for (size_t i = 0; i < arguments->operand_count && status == DEA_OK; i++)
-        status = dea_fit_read(arguments->operands[i].path, load_of(arguments->operands[i].mode), data, error);
+    for (size_t i = 0; i < arguments->operand_count && status == DEA_OK; i++) {
+        status = dea_fit_read(arguments->operands[i].path, load_of(arguments->operands[i].mode), &w->stretch, error);
+    }
+    if (status == DEA_OK) {
+        const int terms = arguments->terms ? (int)arguments->terms : DEA_YEOH_TERMS;
+        status = dea_fit_yeoh(&w->stretch, terms, arguments->relative, &w->yeoh, error);
+        w->yeoh_given = &w->yeoh;
+    }
+    return status;
+}
+
+static dea_status fit_relaxation(const dea_arguments *arguments, work *w, dea_error *error)
+{
+    w->relaxation.ramp = isnan(arguments->ramp) ? 0.0 : arguments->ramp;
+    dea_status status = dea_relaxation_read(arguments->relaxation, &w->relaxation, error);
+    if (status == DEA_OK) {
+        status = dea_fit_relaxation(&w->relaxation, arguments->branches, arguments->relative, &w->prony, error);
+        w->prony_given = &w->prony;
+    }
     return status;
 }
 
@@ -28,58 +70,103 @@ static dea_status write_text(const char *path, const char *text, size_t length, 
 {
     dea_atomic file;
     dea_status status = dea_atomic_open(&file, path, error);
-    if (status != DEA_OK)
+    if (status != DEA_OK) {
         return status;
+    }
     status = dea_atomic_write(&file, text, length, error);
     dea_status closed = dea_atomic_close(&file, status == DEA_OK, status == DEA_OK ? error : NULL);
     return status != DEA_OK ? status : closed;
 }
 
-static dea_status write_fit(const dea_fit *fit, const char *path, dea_error *error)
+static dea_status write_fit(const work *w, const char *path, dea_error *error)
 {
     char *text = NULL;
     size_t length = 0;
     FILE *stream = open_memstream(&text, &length);
-    if (!stream)
+    if (!stream) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
-    dea_status status = dea_fit_print(fit, stream, error);
-    if (fclose(stream) != 0 && status == DEA_OK)
+    }
+    dea_status status = dea_fit_print(w->yeoh_given, w->prony_given, stream, error);
+    if (fclose(stream) != 0 && status == DEA_OK) {
         status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
-    if (status == DEA_OK)
+    }
+    if (status == DEA_OK) {
         status = write_text(path, text, length, error);
+    }
     free(text);
     return status;
 }
 
-static void tell(const dea_arguments *arguments, const dea_fit *fit)
+static void warn(const work *w)
 {
-    if (!isnan(fit->unstable_stretch))
-        dea_complain("warning: a tangent modulus of the fit is not positive from stretch %.4g on", fit->unstable_stretch);
-    if (arguments->quiet || (!arguments->output && !arguments->plot))
-        return;
+    if (w->yeoh_given && !isnan(w->yeoh.unstable_stretch)) {
+        dea_complain("warning: a tangent modulus of the fit is not positive from stretch %.4g on", w->yeoh.unstable_stretch);
+    }
+    if (w->prony_given && w->prony.prony_count == 0) {
+        dea_complain("warning: the stress does not relax measurably; no branch");
+    }
+    if (w->prony_given && w->prony.prony_count > 0 &&
+        w->prony.prony[w->prony.prony_count - 1].tau > w->prony.time_max - w->prony.time_min) {
+        dea_complain("warning: the slowest branch is slower than the test; the long-term share is extrapolated");
+    }
+}
+
+static void tell_stretch(const dea_fit *fit)
+{
     fprintf(stderr,
             "%d term%s from %zu uniaxial and %zu equi-biaxial points, stretch %.4g to %.4g: R^2 = %.6f, rms residual %.4g Pa\n",
             fit->terms, fit->terms == 1 ? "" : "s", fit->count[DEA_LOAD_UNIAXIAL], fit->count[DEA_LOAD_EQUIBIAXIAL],
             fit->stretch_min, fit->stretch_max, fit->r_squared, fit->residual_rms);
 }
 
+static void tell_relaxation(const dea_relaxation *fit)
+{
+    fprintf(stderr, "%8s %12s %10s\n", "branch", "tau [s]", "g");
+    for (size_t i = 0; i < fit->prony_count; i++) {
+        fprintf(stderr, "%8zu %12.6g %10.6f\n", i + 1, fit->prony[i].tau, fit->prony[i].g);
+    }
+    fprintf(stderr, "%8s %12s %10.6f\n", "rest", "long-term", fit->long_term);
+    fprintf(stderr, "%zu branch%s from %zu points, %.4g s to %.4g s: rms error %.3g %%; up to %zu tried, no further one: %s\n",
+            fit->prony_count, fit->prony_count == 1 ? "" : "es", fit->count, fit->time_min, fit->time_max,
+            100.0 * fit->residual_relative, fit->trial_count - 1, dea_relaxation_reason(fit));
+}
+
+static dea_status work_out(const dea_arguments *arguments, work *w, dea_error *error)
+{
+    dea_status status = arguments->operand_count > 0 ? fit_stretch(arguments, w, error) : DEA_OK;
+    if (status == DEA_OK && arguments->relaxation) {
+        status = fit_relaxation(arguments, w, error);
+    }
+    if (status == DEA_OK && (arguments->output || !arguments->plot)) {
+        status = write_fit(w, arguments->output ? arguments->output : "-", error);
+    }
+    if (status == DEA_OK && arguments->plot) {
+        status = dea_plot_fit(w->yeoh_given, &w->stretch, w->prony_given, &w->relaxation, arguments->plot, error);
+    }
+    return status;
+}
+
 static dea_exit run(const dea_arguments *arguments)
 {
-    dea_fit_data data = {0};
-    dea_fit fit;
+    work w = {.yeoh_given = NULL};
     dea_error error = {0};
+    if (complain_mismatch(arguments)) {
+        return DEA_EXIT_USAGE;
+    }
     dea_signals_catch();
-    dea_status status = read_all(arguments, &data, &error);
-    if (status == DEA_OK)
-        status =
-            dea_fit_yeoh(&data, arguments->terms ? (int)arguments->terms : DEA_YEOH_TERMS, arguments->relative, &fit, &error);
-    if (status == DEA_OK && (arguments->output || !arguments->plot))
-        status = write_fit(&fit, arguments->output ? arguments->output : "-", &error);
-    if (status == DEA_OK && arguments->plot)
-        status = dea_plot_fit(&fit, &data, arguments->plot, &error);
-    if (status == DEA_OK)
-        tell(arguments, &fit);
-    dea_fit_data_free(&data);
+    const dea_status status = work_out(arguments, &w, &error);
+    if (status == DEA_OK) {
+        warn(&w);
+    }
+    const bool talk = status == DEA_OK && !arguments->quiet && (arguments->output || arguments->plot);
+    if (talk && w.yeoh_given) {
+        tell_stretch(&w.yeoh);
+    }
+    if (talk && w.prony_given) {
+        tell_relaxation(&w.prony);
+    }
+    dea_fit_data_free(&w.stretch);
+    dea_relaxation_data_free(&w.relaxation);
     return status == DEA_OK ? DEA_EXIT_DONE : dea_complain_error(&error);
 }
 
@@ -88,14 +175,21 @@ const dea_command dea_command_fit = {
     .summary = "material constants from measured data",
     .help = "Usage: deaspice fit [OPTION]... [DATA]...\n"
             "\n"
-            "Fits Yeoh constants to measured stress over stretch and prints them as a material\n"
-            "for a scene. DATA is a CSV file with the columns stretch, stress_Pa (or stress_kPa,\n"
+            "Fits Yeoh constants to measured stress over stretch, Prony branches to measured\n"
+            "stress over time at a held stretch, or both, and prints them as a material for a\n"
+            "scene. DATA is a CSV file with the columns stretch, stress_Pa (or stress_kPa,\n"
             "stress_MPa; nominal stress) and mode (uniaxial or equibiaxial), - is standard input.\n"
             "Files without the column mode are given by --uniaxial or --equibiaxial.\n"
             "\n"
             "      --uniaxial FILE     data of a uniaxial test; may be repeated\n"
             "      --equibiaxial FILE  data of an equi-biaxial test; may be repeated\n"
             "      --terms N           1 (neo-Hookean), 2 or 3 (default) constants\n"
+            "      --relaxation FILE   data of a relaxation test: columns time_s (or time_ms,\n"
+            "                          time_min; since the end of the ramp) and stress_Pa (...)\n"
+            "      --ramp TIME         duration of the ramp before the hold, e.g. \"2 s\"; default:\n"
+            "                          an ideal step\n"
+            "      --branches N        Prony branches, 1 to 10; default: as many as an F test\n"
+            "                          finds significant at 5 %\n"
             "      --relative          relative instead of absolute errors count\n"
             "  -o, --output FILE       write the material to FILE, - is standard output\n"
             "      --plot FILE         draw data and fit, FILE ends in .svg or .png\n"
@@ -103,10 +197,11 @@ const dea_command dea_command_fit = {
             "  -h, --help              this text\n"
             "  -V, --version           the version\n"
             "\n"
-            "Example:\n"
-            "  deaspice fit --uniaxial pull.csv --equibiaxial bulge.csv -o film.yaml --plot fit.svg\n",
+            "Examples:\n"
+            "  deaspice fit --uniaxial pull.csv --equibiaxial bulge.csv -o film.yaml --plot fit.svg\n"
+            "  deaspice fit --uniaxial pull.csv --relaxation hold.csv --ramp \"2 s\" -o film.yaml\n",
     .takes = DEA_TAKES_OUTPUT | DEA_TAKES_PLOT | DEA_TAKES_QUIET | DEA_TAKES_FIT,
-    .least = 1,
+    .least = 0,
     .most = SIZE_MAX,
     .run = run,
 };

@@ -1,0 +1,363 @@
+/* Prony branches of a relaxation test. After a ramp of constant rate and duration T that ends at t = 0, the relative modulus
+ * E(t) = 1 - sum g_i (1 - e^(-t/tau_i)) gives, by superposition of the steps of the ramp,
+ *
+ *     S(t) = S_0 (g_inf + sum g_i e^(-t/tau_i) r(T/tau_i)),   r(x) = (1 - e^-x)/x,   r(0) = 1: an ideal step.
+ *
+ * The number of branches grows while an F test finds the gain of the last one, 2 constants, significant; with 2 degrees of
+ * freedom the chance is p = (R_m/R_(m-1))^((n - 2m - 1)/2) in closed form, R being squared residuals. */
+#include "deaspice/fit.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "material/fit_branches.h"
+
+/* Chance of a gain by noise up to which a branch counts as significant. */
+static const double significance = 0.05;
+/* Chance of growth by noise up to which data is refused as growing. */
+static const double growth_chance = 1e-3;
+/* Residual, as a share of the rms stress, and share of a branch that are rounding. */
+static const double rounding = 1e-9;
+/* Long-term share below which nothing is left. */
+static const double long_term_least = 1e-6;
+
+dea_status dea_relaxation_add(dea_relaxation_data *data, dea_relaxation_point point, dea_error *error)
+{
+    const double last = data->count > 0 ? data->points[data->count - 1].time : -1.0;
+    if (!(point.time >= 0.0) || !isfinite(point.time) || !(point.time > last) || !(point.stress >= 0.0) ||
+        !isfinite(point.stress)) {
+        return dea_fail(error, DEA_ERROR_USAGE,
+                        "a point of a relaxation test needs a time >= 0 after the last and a stress >= 0");
+    }
+    if (data->count == data->room) {
+        const size_t room = data->room > 0 ? 2 * data->room : 64;
+        dea_relaxation_point *points = realloc(data->points, room * sizeof *points);
+        if (!points) {
+            return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+        }
+        data->points = points;
+        data->room = room;
+    }
+    data->points[data->count++] = point;
+    return DEA_OK;
+}
+
+void dea_relaxation_data_free(dea_relaxation_data *data)
+{
+    if (data) {
+        free(data->points);
+        *data = (dea_relaxation_data){0};
+    }
+}
+
+double dea_relaxation_stress(const dea_relaxation *fit, double time)
+{
+    double share = fit->long_term;
+    for (size_t i = 0; i < fit->prony_count; i++) {
+        const dea_prony *branch = &fit->prony[i];
+        share += branch->g * exp(-time / branch->tau) * dea_ramp_share(fit->ramp, branch->tau);
+    }
+    return fit->instantaneous * share;
+}
+
+static double long_term_of(const dea_branches *c)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k <= c->count; k++) {
+        sum += c->shares[k];
+    }
+    return c->shares[0] / sum;
+}
+
+/* Whether each branch has a share, and a time of its own. */
+static bool branches_distinct(const dea_branches *c)
+{
+    for (size_t k = 0; k < c->count; k++) {
+        bool distinct = c->shares[k + 1] > rounding;
+        for (size_t i = 0; i < k; i++) {
+            distinct = distinct && fabs(c->logs[i] - c->logs[k]) > 1e-6;
+        }
+        if (!distinct) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* p of the F test of @p more against @p less, NAN without a degree of freedom. */
+static double gain_chance(const dea_held *held, const dea_branches *less, const dea_branches *more)
+{
+    const double freedom = (double)held->rows - 2.0 * (double)more->count - 1.0;
+    const double least = rounding * rounding * held->squares;
+    if (!branches_distinct(more)) {
+        return 1.0;
+    }
+    return freedom > 0.0 ? pow(fmax(more->squares, least) / fmax(less->squares, least), 0.5 * freedom) : NAN;
+}
+
+static void trial_note(const dea_held *held, dea_relaxation *fit, const dea_branches *c, double chance)
+{
+    double residuals = 0.0, squares = 0.0;
+    for (size_t i = 0; i < held->rows; i++) {
+        const dea_relaxation_point *point = &held->data->points[i];
+        double stress = c->shares[0];
+        for (size_t k = 0; k < c->count; k++) {
+            const double tau = exp(c->logs[k]);
+            stress += c->shares[k + 1] * exp(-point->time / tau) * dea_ramp_share(held->data->ramp, tau);
+        }
+        const double residual = point->stress / held->scale - stress;
+        residuals += residual * residual;
+        squares += point->stress / held->scale * (point->stress / held->scale);
+    }
+    fit->trials[fit->trial_count++] = (dea_relaxation_trial){sqrt(residuals / squares), chance, long_term_of(c)};
+}
+
+/* Whether the fit goes on to @p more; where not, fit->end says why. */
+static bool branch_accept(const dea_branches *more, double chance, bool asked, dea_relaxation *fit)
+{
+    if (!asked && (isnan(chance) ? more->count > 1 : chance > significance)) {
+        fit->end = isnan(chance) ? DEA_RELAXATION_POINTS : DEA_RELAXATION_TEST;
+        return false;
+    }
+    if (!branches_distinct(more)) {
+        fit->end = DEA_RELAXATION_POINTS;
+        return false;
+    }
+    if (!(long_term_of(more) > long_term_least)) {
+        fit->end = DEA_RELAXATION_LONG_TERM;
+        return false;
+    }
+    return true;
+}
+
+/* Adds branches while they are worth it. */
+static dea_branches search_run(dea_held *held, size_t asked, dea_relaxation *fit)
+{
+    const size_t points_most = (held->rows - 1) / 2;
+    const size_t most = asked > 0 ? asked : points_most < DEA_RELAXATION_MOST ? points_most : DEA_RELAXATION_MOST;
+    dea_branches best = {.count = 0};
+    dea_branches_solve(held, &best);
+    trial_note(held, fit, &best, NAN);
+    fit->end = asked > 0                            ? DEA_RELAXATION_ASKED
+               : points_most <= DEA_RELAXATION_MOST ? DEA_RELAXATION_POINTS
+                                                    : DEA_RELAXATION_FULL;
+    while (best.count < most && held->memory) {
+        if (asked == 0 && best.squares <= rounding * rounding * held->squares) {
+            fit->end = DEA_RELAXATION_EXACT;
+            break;
+        }
+        const dea_branches more = dea_branches_next(held, &best);
+        const double chance = gain_chance(held, &best, &more);
+        trial_note(held, fit, &more, chance);
+        if (!branch_accept(&more, chance, asked > 0, fit)) {
+            break;
+        }
+        best = more;
+    }
+    return best;
+}
+
+static void branches_sort(dea_branches *c)
+{
+    for (size_t k = 1; k < c->count; k++) {
+        for (size_t i = k; i > 0 && c->logs[i - 1] > c->logs[i]; i--) {
+            const double log_tau = c->logs[i], share = c->shares[i + 1];
+            c->logs[i] = c->logs[i - 1];
+            c->shares[i + 1] = c->shares[i];
+            c->logs[i - 1] = log_tau;
+            c->shares[i] = share;
+        }
+    }
+}
+
+/* Inverse W of the singular values and directions of the Jacobian, columns scaled to length 1: W = V S^-1 D^-1, so that the
+ * covariance is sigma^2 W W^T. False where the Jacobian has no full rank. */
+static bool spread_find(dea_held *held, const dea_branches *c, double spread[DEA_BRANCHES_COLUMNS][DEA_BRANCHES_COLUMNS])
+{
+    const size_t columns = 2 * c->count + 1;
+    double length[DEA_BRANCHES_COLUMNS], singular[DEA_BRANCHES_COLUMNS], vt[DEA_BRANCHES_COLUMNS * DEA_BRANCHES_COLUMNS],
+        rest[DEA_BRANCHES_COLUMNS], left;
+    dea_branches_jacobian(held, c, held->matrix, held->rows);
+    for (size_t j = 0; j < columns; j++) {
+        length[j] = sqrt(dea_squares(held->matrix + j * held->rows, held->rows));
+        for (size_t i = 0; i < held->rows && length[j] > 0.0; i++) {
+            held->matrix[j * held->rows + i] /= length[j];
+        }
+    }
+    const lapack_int rows = (lapack_int)held->rows, order = (lapack_int)columns;
+    if (LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'N', 'S', rows, order, held->matrix, rows, singular, &left, 1, vt, order, rest) != 0 ||
+        !(singular[columns - 1] > 1e-12 * singular[0])) {
+        return false;
+    }
+    for (size_t j = 0; j < columns; j++) {
+        for (size_t k = 0; k < columns; k++) {
+            spread[j][k] = vt[j * columns + k] / singular[k] / length[j];
+        }
+    }
+    return true;
+}
+
+/* Standard errors. With A = a_inf + sum a_i, dg_j = (da_j - g_j sum_k da_k)/A and dtau = tau dln tau. */
+static void deviations_find(dea_held *held, const dea_branches *c, dea_relaxation *fit)
+{
+    const size_t columns = 2 * c->count + 1;
+    const double freedom = (double)held->rows - (double)columns, sum = fit->instantaneous / held->scale;
+    double spread[DEA_BRANCHES_COLUMNS][DEA_BRANCHES_COLUMNS], variance[DEA_BRANCHES_COLUMNS] = {0.0};
+    const bool known = freedom > 0.0 && spread_find(held, c, spread);
+    const double sigma = known ? sqrt(c->squares / freedom) : NAN;
+    for (size_t k = 0; k < columns && known; k++) {
+        double all = 0.0;
+        for (size_t j = 0; j <= c->count; j++) {
+            all += spread[j][k];
+        }
+        for (size_t j = 0; j < columns; j++) {
+            const double change = j <= c->count ? (spread[j][k] - c->shares[j] / sum * all) / sum : spread[j][k];
+            variance[j] += change * change;
+        }
+    }
+    fit->long_term_deviation = sigma * sqrt(variance[0]);
+    for (size_t i = 0; i < c->count; i++) {
+        fit->deviation[i].g = sigma * sqrt(variance[i + 1]);
+        fit->deviation[i].tau = sigma * sqrt(variance[c->count + 1 + i]) * fit->prony[i].tau;
+    }
+}
+
+static void fit_fill(dea_held *held, dea_branches *c, dea_relaxation *fit)
+{
+    double sum = 0.0;
+    branches_sort(c);
+    for (size_t k = 0; k <= c->count; k++) {
+        sum += c->shares[k];
+    }
+    fit->prony_count = c->count;
+    fit->long_term = c->shares[0] / sum;
+    fit->instantaneous = sum * held->scale;
+    for (size_t k = 0; k < c->count; k++) {
+        fit->prony[k] = (dea_prony){.g = c->shares[k + 1] / sum, .tau = exp(c->logs[k])};
+    }
+    deviations_find(held, c, fit);
+    double stress = 0.0;
+    for (size_t i = 0; i < held->rows; i++) {
+        stress += pow(held->data->points[i].stress, 2.0) / (double)held->rows;
+    }
+    fit->residual_relative = fit->trials[c->count].residual_relative;
+    fit->residual_rms = fit->residual_relative * sqrt(stress);
+}
+
+/* Whether the mirror image of the data relaxes. */
+static dea_status growth_find(const dea_relaxation_data *data, bool relative, bool *grows, dea_error *error)
+{
+    dea_relaxation_data mirror = {.ramp = data->ramp};
+    dea_relaxation fit = {0};
+    double most = 0.0;
+    dea_status status = DEA_OK;
+    for (size_t i = 0; i < data->count; i++) {
+        most = fmax(most, data->points[i].stress);
+    }
+    for (size_t i = 0; i < data->count && status == DEA_OK; i++) {
+        const dea_relaxation_point point = {data->points[i].time, 2.0 * most - data->points[i].stress};
+        status = dea_relaxation_add(&mirror, point, error);
+    }
+    dea_held held = {.rows = 0};
+    if (status == DEA_OK) {
+        status = dea_held_begin(&held, &mirror, relative, error);
+    }
+    if (status == DEA_OK) {
+        search_run(&held, 0, &fit);
+        *grows = fit.trial_count > 1 && !(fit.trials[1].p > growth_chance);
+        status = held.memory ? DEA_OK : dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+    }
+    dea_held_end(&held);
+    dea_relaxation_data_free(&mirror);
+    return status;
+}
+
+static dea_status data_examine(const dea_relaxation_data *data, size_t branches, dea_error *error)
+{
+    if (data->count < DEA_RELAXATION_LEAST) {
+        return dea_fail(error, DEA_ERROR_USAGE, "%zu points; a relaxation test needs at least %d", data->count,
+                        DEA_RELAXATION_LEAST);
+    }
+    if (branches > DEA_RELAXATION_MOST || branches > (data->count - 1) / 2) {
+        return dea_fail(error, DEA_ERROR_USAGE,
+                        "%zu branches were asked for; %zu points determine %zu at most, and no fit has more than %d", branches,
+                        data->count, (data->count - 1) / 2, DEA_RELAXATION_MOST);
+    }
+    const double from = data->points[0].time, to = data->points[data->count - 1].time;
+    if (!(to - from >= from)) {
+        return dea_fail(
+            error, DEA_ERROR_USAGE,
+            "the first point lies %.6g s after the ramp and the last one %.6g s: too late to tell what came before; time "
+            "counts from the end of the ramp",
+            from, to);
+    }
+    if (!(data->ramp >= 0.0) || !isfinite(data->ramp)) {
+        return dea_fail(error, DEA_ERROR_USAGE, "the duration of the ramp is negative or not finite; 0 is an ideal step");
+    }
+    return DEA_OK;
+}
+
+/* What speaks against the branches found, though the search went through. */
+static dea_status outcome_examine(const dea_relaxation_data *data, size_t asked, bool relative, const dea_branches *best,
+                                  const dea_relaxation *fit, dea_error *error)
+{
+    bool grows = false;
+    const dea_status status = best->count == 0 ? growth_find(data, relative, &grows, error) : DEA_OK;
+    if (status != DEA_OK) {
+        return status;
+    }
+    const dea_relaxation_point *first = data->points, *last = first + data->count - 1;
+    if (grows) {
+        return dea_fail(error, DEA_ERROR_USAGE,
+                        "the stress grows from %.6g Pa to %.6g Pa at the held stretch; a relaxation test falls", first->stress,
+                        last->stress);
+    }
+    if (fit->end == DEA_RELAXATION_LONG_TERM && (best->count == 0 || asked > 0)) {
+        return dea_fail(error, DEA_ERROR_USAGE,
+                        "branch %zu leaves no long-term stress, which a film needs; measure longer than %.6g s", best->count + 1,
+                        last->time);
+    }
+    if (best->count < asked) {
+        return dea_fail(error, DEA_ERROR_USAGE, "%zu branches were asked for, the data tells %zu apart", asked, best->count);
+    }
+    return DEA_OK;
+}
+
+dea_status dea_fit_relaxation(const dea_relaxation_data *data, size_t branches, bool relative, dea_relaxation *fit,
+                              dea_error *error)
+{
+    dea_status status = data_examine(data, branches, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    *fit = (dea_relaxation){.count = data->count,
+                            .time_min = data->points[0].time,
+                            .time_max = data->points[data->count - 1].time,
+                            .ramp = data->ramp};
+    dea_held held;
+    status = dea_held_begin(&held, data, relative, error);
+    if (status == DEA_OK) {
+        dea_branches best = search_run(&held, branches, fit);
+        status = held.memory ? outcome_examine(data, branches, relative, &best, fit, error)
+                             : dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+        if (status == DEA_OK) {
+            fit_fill(&held, &best, fit);
+        }
+    }
+    dea_held_end(&held);
+    return status;
+}
+
+const char *dea_relaxation_reason(const dea_relaxation *fit)
+{
+    static const char *const reasons[] = {
+        [DEA_RELAXATION_ASKED] = "as many as asked for",
+        [DEA_RELAXATION_TEST] = "one more gains no more than noise would (F test, 5 %)",
+        [DEA_RELAXATION_EXACT] = "the residual is rounding",
+        [DEA_RELAXATION_POINTS] = "the points determine no more",
+        [DEA_RELAXATION_LONG_TERM] = "one more leaves no long-term stress",
+        [DEA_RELAXATION_FULL] = "no fit has more",
+    };
+    return (unsigned)fit->end < sizeof reasons / sizeof *reasons ? reasons[fit->end] : "unknown";
+}

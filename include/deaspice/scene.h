@@ -38,9 +38,41 @@ typedef struct dea_actuator {
     double refractive_index; /**< of the lens liquid [1], > 1, NAN: none */
 } dea_actuator;
 
+/** Kinds of waveform. A file and a list of points are both points. */
+typedef enum dea_wave_kind { DEA_WAVE_NONE, DEA_WAVE_STEP, DEA_WAVE_POINTS, DEA_WAVE_SINE } dea_wave_kind;
+
+/** 0 V, then @p voltage from @p on to @p off; each edge rises or falls linearly within @p rise. */
+typedef struct dea_step {
+    double on;      /**< begin of the rising edge [s], >= 0 */
+    double off;     /**< begin of the falling edge [s], >= on + rise, NAN: never */
+    double voltage; /**< [V] */
+    double rise;    /**< [s], >= 0, default 1 us; 0 is a jump */
+} dea_step;
+
+/** offset + amplitude sin(2 pi frequency (t - delay) + phase), held at its first value before the delay. */
+typedef struct dea_sine {
+    double offset;    /**< [V], default 0 */
+    double amplitude; /**< [V] */
+    double frequency; /**< [Hz], > 0 */
+    double phase;     /**< [rad], default 0 */
+    double delay;     /**< [s], >= 0, default 0 */
+} dea_sine;
+
+/** Voltage of the source over time. */
+typedef struct dea_waveform {
+    dea_wave_kind kind;
+    dea_step step;
+    dea_sine sine;
+    double *times;    /**< points, strictly increasing, point_count of them [s]; owned by the scene */
+    double *voltages; /**< their voltages, linear in between and held before the first and after the last [V]; owned too */
+    size_t point_count;
+    double period; /**< what step or points say before this time repeats [s], NAN: once */
+} dea_waveform;
+
 /** Electrical side. */
 typedef struct dea_drive {
-    double voltage;            /**< static voltage U of the source [V] */
+    double voltage;            /**< static voltage U of the source [V], NAN: a transient, or an AC study with a bias */
+    dea_waveform waveform;     /**< of a transient */
     double series_resistance;  /**< R_s, source and electrodes [Ohm], >= 0, NAN: none */
     double leakage_resistance; /**< R_p of the film [Ohm], > 0, NAN: none */
 } dea_drive;
@@ -57,16 +89,46 @@ typedef struct dea_axis {
     size_t count;                 /**< >= 1 */
 } dea_axis;
 
-/** A scene. Owns its title and axes; free with dea_scene_free(). */
+/** What a study asks for. */
+typedef enum dea_study_kind { DEA_STUDY_SWEEP, DEA_STUDY_TRANSIENT, DEA_STUDY_AC } dea_study_kind;
+
+/** Most windows over which a transient averages, and most samples of one. */
+enum { DEA_WINDOWS = 8, DEA_SAMPLES_MAX = 4000000 };
+
+/** A window of time. */
+typedef struct dea_window {
+    double from, to; /**< [s], 0 <= from < to <= until */
+} dea_window;
+
+/** A transient from t = 0 on. */
+typedef struct dea_transient {
+    double until;   /**< end [s], > 0 */
+    double every;   /**< interval of the samples [s], 0 < every <= until, default until/1000 */
+    bool from_bias; /**< starts in the relaxed equilibrium under the first voltage (true), or at rest (default) */
+    dea_window averages[DEA_WINDOWS];
+    size_t average_count;
+} dea_transient;
+
+/** A frequency response about the equilibrium under the bias. */
+typedef struct dea_ac {
+    double from, to;          /**< [Hz], 0 < from <= to */
+    size_t points_per_decade; /**< >= 1, default 50 */
+    double bias;              /**< source voltage [V], default drive.voltage */
+} dea_ac;
+
+/** A scene. Owns its title, waveform and axes; free with dea_scene_free(). */
 typedef struct dea_scene {
-    char *title;                   /**< may be empty, never NULL */
+    char *title; /**< may be empty, never NULL */
     dea_actuator actuator;
     dea_material material;
     dea_drive drive;
     const struct dea_model *models[DEA_SCENE_MODELS]; /**< models to run one after the other, model_count of them */
     size_t model_count;                               /**< >= 1 */
-    double accuracy;               /**< wanted relative error of the solution [1], 0 < accuracy < 1, default 1e-6 */
-    dea_axis *axes;                /**< sweep axes in the order of the file, axis_count of them; none is one point */
+    double accuracy;         /**< wanted relative error of the solution [1], 0 < accuracy < 1, default 1e-6 */
+    dea_study_kind study;    /**< sweep, transient or AC */
+    dea_transient transient; /**< of a transient */
+    dea_ac ac;               /**< of an AC study */
+    dea_axis *axes;          /**< axes of the sweep, or of `over`, in the order of the file; none is one point */
     size_t axis_count;
 } dea_scene;
 
@@ -78,9 +140,10 @@ typedef struct dea_setting {
 /** Reads a scene.
  *
  * A setting names its key by the whole dotted path or by the end of it (`prestretch`, `yeoh.C1`) and replaces what the file
- * says; coverage and a radius replace each other. Of several settings of one key the last holds. A key that the scene sweeps takes
- * no scalar setting: set its axis, `study.sweep.prestretch=[1.3]`, or `study.sweep={}` for none. A swept key counts as given:
- * without a scalar of its own it holds the first value of its axis. An axis of one point is `from`, with `to` left out or equal.
+ * says; coverage and a radius replace each other. Of several settings of one key the last holds. A key that the scene sweeps
+ * takes no scalar setting: set its axis, `study.sweep.prestretch=[1.3]`, or `study.sweep={}` for none. A swept key counts as
+ * given: without a scalar of its own it holds the first value of its axis. An axis of one point is `from`, with `to` left out or
+ * equal.
  *
  * @param path     file name, "-" for standard input; only regular files and pipes are read, at most 16 MiB
  * @param settings overrides with the same checks and units as the file, may be NULL when @p setting_count is 0
@@ -92,8 +155,8 @@ DEA_API dea_status dea_scene_read(const char *path, const dea_setting *settings,
                                   dea_scene *scene, dea_error *error);
 /** Same from memory; @p name stands in messages and relative material files are found beside @p folder. */
 DEA_API dea_status dea_scene_parse(const char *text, size_t length, const char *name, const char *folder,
-                                   const dea_setting *settings, size_t setting_count, const char *model,
-                                   dea_scene *scene, dea_error *error);
+                                   const dea_setting *settings, size_t setting_count, const char *model, dea_scene *scene,
+                                   dea_error *error);
 /** Frees what the scene owns; NULL and a zeroed scene are fine. */
 DEA_API void dea_scene_free(dea_scene *scene);
 /** Points of the scene's sweep for one model: product of the axis lengths, 1 without axes. */

@@ -9,7 +9,12 @@
 
 static const char no_memory[] = "out of memory";
 
-static const char *drain(int file, char **text, size_t *length)
+static const char *too_large(size_t most)
+{
+    return most > DEA_FILE_MAX ? "larger than 64 MiB" : "larger than 16 MiB";
+}
+
+static const char *drain(int file, size_t most, char **text, size_t *length)
 {
     size_t room = 16384;
     size_t used = 0;
@@ -26,8 +31,8 @@ static const char *drain(int file, char **text, size_t *length)
         }
         used += (size_t)got;
         *text = bytes;
-        if (used > DEA_FILE_MAX) {
-            return "larger than 16 MiB";
+        if (used > most * 1024 * 1024) {
+            return too_large(most);
         }
         if (used == room) {
             room *= 2;
@@ -50,20 +55,20 @@ static const char *type_refused(mode_t mode, bool pipe)
     return NULL;
 }
 
-dea_status dea_file_read(const char *path, bool pipe, char **text, size_t *length, const char **why)
+dea_status dea_file_read(const char *path, bool pipe, size_t most, char **text, size_t *length, const char **why)
 {
     struct stat status;
     *text = NULL;
     *length = 0;
     const char *refused = NULL;
     if (strcmp(path, "-") == 0) {
-        refused = drain(STDIN_FILENO, text, length);
+        refused = drain(STDIN_FILENO, most, text, length);
     } else {
         refused = stat(path, &status) ? strerror(errno) : type_refused(status.st_mode, pipe);
         const int file = refused ? -1 : open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
         if (!refused) {
             refused = file < 0 ? strerror(errno) : fstat(file, &status) ? strerror(errno) : type_refused(status.st_mode, pipe);
-            refused = refused ? refused : drain(file, text, length);
+            refused = refused ? refused : drain(file, most, text, length);
         }
         if (file >= 0) {
             close(file);

@@ -6,11 +6,12 @@
 
 #include "deaspice/status.h"
 
-/* Largest scene or material file [bytes]. */
-enum { DEA_FILE_MAX = 16 * 1024 * 1024 };
+/* Largest file [MiB]: of a scene or a material, and of a waveform. */
+enum { DEA_FILE_MAX = 16, DEA_WAVE_FILE_MAX = 64 };
 
-/* Reads @p path ("-": standard input) into @p text, which the caller frees; a pipe is taken only where @p pipe is true.
+/* Reads @p path ("-": standard input), at most @p most MiB, into @p text, which the caller frees; a pipe is taken only where
+ * @p pipe is true.
  * Returns DEA_OK, or DEA_ERROR_IO or DEA_ERROR_MEMORY with @p why (static, or from strerror) saying why not. */
-dea_status dea_file_read(const char *path, bool pipe, char **text, size_t *length, const char **why);
+dea_status dea_file_read(const char *path, bool pipe, size_t most, char **text, size_t *length, const char **why);
 
 #endif

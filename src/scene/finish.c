@@ -1,6 +1,7 @@
 /* What only the whole scene shows. */
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "deaspice/model.h"
 #include "scene/reader.h"
@@ -10,31 +11,25 @@ typedef struct need {
     const char *parent, *path;
 } need;
 
-static dea_status fail_missing(dea_reader *reader, const char *parent, const char *path)
-{
-    dea_ref ref;
-    const dea_node *holder = dea_tree_child(reader->root, parent);
-    const dea_place *place = holder ? &holder->place : &reader->root->place;
-    return dea_place_fail(place, reader->error, path, "missing; accepted: %s", dea_key_find(path, &ref) ? ref.key->accepted : "");
-}
-
 static dea_status needs_check(dea_reader *reader)
 {
     static const need needs[] = {
-        {"actuator", "actuator.frame_radius"}, {"actuator", "actuator.film_thickness"},
-        {"actuator", "actuator.prestretch"},   {"drive", "drive.voltage"},
-        {"material", "material.yeoh.C1"},      {"material", "material.permittivity"},
+        {"actuator", "actuator.frame_radius"}, {"actuator", "actuator.film_thickness"}, {"actuator", "actuator.prestretch"},
+        {"material", "material.yeoh.C1"},      {"material", "material.permittivity"},   {"drive", "drive.voltage"},
     };
     if (!reader->kind_known) {
-        return fail_missing(reader, "actuator", "actuator.kind");
+        return dea_reader_missing(reader, "actuator", "actuator.kind");
     }
     if (!dea_tree_child(reader->root, "material")) {
-        return fail_missing(reader, "material", "material");
+        return dea_reader_missing(reader, "material", "material");
     }
     for (size_t i = 0; i < sizeof needs / sizeof *needs; i++) {
         dea_ref ref;
+        if (strcmp(needs[i].path, "drive.voltage") == 0 && reader->scene->study != DEA_STUDY_SWEEP) {
+            continue;
+        }
         if (dea_key_find(needs[i].path, &ref) && isnan(*(const double *)((const char *)reader->scene + dea_ref_offset(&ref)))) {
-            return fail_missing(reader, needs[i].parent, needs[i].path);
+            return dea_reader_missing(reader, needs[i].parent, needs[i].path);
         }
     }
     const dea_actuator *actuator = &reader->scene->actuator;
@@ -43,15 +38,7 @@ static dea_status needs_check(dea_reader *reader)
                               "missing; accepted: coverage, e.g. 0.5, or %s",
                               actuator->kind == DEA_LENS ? "lens_radius" : "electrode_radius");
     }
-    return reader->scene->model_count > 0 ? DEA_OK : fail_missing(reader, "", "model");
-}
-
-/* The place of whoever gave a scalar, else the scene's. */
-static const dea_place *place_of(dea_reader *reader, size_t offset, const char *parent)
-{
-    const dea_given *given = dea_reader_given(reader, offset);
-    const dea_node *holder = dea_tree_child(reader->root, parent);
-    return given->node ? &given->node->place : holder ? &holder->place : &reader->root->place;
+    return reader->scene->model_count > 0 ? DEA_OK : dea_reader_missing(reader, "", "model");
 }
 
 static bool swept(dea_reader *reader, size_t offset)
@@ -68,7 +55,7 @@ static dea_status radius_check(dea_reader *reader)
         actuator->divide_radius < actuator->frame_radius) {
         return DEA_OK;
     }
-    return dea_place_fail(place_of(reader, divide, "actuator"), reader->error, dea_reader_given(reader, divide)->ref.path,
+    return dea_place_fail(dea_reader_place(reader, divide, "actuator"), reader->error, dea_reader_given(reader, divide)->ref.path,
                           "out of range (%g m); accepted: less than frame_radius, %g m", actuator->divide_radius,
                           actuator->frame_radius);
 }
@@ -83,7 +70,7 @@ static dea_status permittivity_check(dea_reader *reader)
         value > 0.0) {
         return DEA_OK;
     }
-    return dea_place_fail(place_of(reader, slope, "material"), reader->error, "material.permittivity",
+    return dea_place_fail(dea_reader_place(reader, slope, "material"), reader->error, "material.permittivity",
                           "falls to %g at the pre-stretch %g; accepted: a permittivity > 0 there", value,
                           scene->actuator.prestretch);
 }
@@ -99,7 +86,7 @@ static dea_status prony_check(dea_reader *reader)
         return DEA_OK;
     }
     const size_t first = offsetof(dea_scene, material.prony);
-    return dea_place_fail(place_of(reader, first, "material"), reader->error, "material.prony",
+    return dea_place_fail(dea_reader_place(reader, first, "material"), reader->error, "material.prony",
                           "the shares g sum to %g; accepted: less than 1, so that a long-term modulus stays", sum);
 }
 
@@ -111,7 +98,7 @@ static dea_status optics_check(dea_reader *reader)
         return DEA_OK;
     }
     const size_t given = length ? offsetof(dea_scene, actuator.focal_length) : offsetof(dea_scene, actuator.refractive_index);
-    return dea_place_fail(place_of(reader, given, "actuator"), reader->error, "actuator.optics",
+    return dea_place_fail(dea_reader_place(reader, given, "actuator"), reader->error, "actuator.optics",
                           "%s is missing; accepted: both keys together", length ? "refractive_index" : "focal_length");
 }
 
@@ -121,5 +108,8 @@ dea_status dea_reader_finish(dea_reader *reader)
     status = status ? status : radius_check(reader);
     status = status ? status : permittivity_check(reader);
     status = status ? status : prony_check(reader);
-    return status ? status : optics_check(reader);
+    status = status ? status : optics_check(reader);
+    status = status ? status : dea_models_finish(reader);
+    status = status ? status : dea_waveform_finish(reader);
+    return status ? status : dea_study_finish(reader);
 }

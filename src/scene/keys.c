@@ -15,10 +15,27 @@
         .path = name, .read = dea_read_scalar, .offset = AT(member), .unit = si, .suffix = ending, .low = from, .high = to,      \
         .open = ends, .kinds = has, .words = shown, .accepted = help                                                             \
     }
+#define PART(name, member, si, ending, from, to, ends, shown, mapping, help)                                                     \
+    {                                                                                                                            \
+        .path = name, .read = dea_read_scalar, .offset = AT(member), .unit = si, .suffix = ending, .low = from, .high = to,      \
+        .open = ends, .kinds = DEA_KEY_BOTH, .words = shown, .within = mapping, .accepted = help                                 \
+    }
+#define ENTRY(name, list, member, si, ending, from, to, ends, shown, help)                                                       \
+    {                                                                                                                            \
+        .path = name, .read = dea_read_scalar, .offset = AT(list[0].member), .stride = sizeof(((dea_scene *)0)->list[0]),        \
+        .unit = si, .suffix = ending, .low = from, .high = to, .open = ends, .kinds = DEA_KEY_BOTH, .words = shown,              \
+        .accepted = help                                                                                                         \
+    }
 #define OTHER(name, reader, help)                                                                                                \
     {                                                                                                                            \
         .path = name, .read = reader, .offset = DEA_KEY_NOWHERE, .kinds = DEA_KEY_BOTH, .accepted = help                         \
     }
+
+#define STEP "drive.waveform.step"
+#define SINE "drive.waveform.sine"
+#define TRANSIENT "study.transient"
+#define AVERAGE "study.transient.average"
+#define AC "study.ac"
 
 static const dea_key keys[] = {
     OTHER("title", dea_read_title, "one line of text, at most 1000 bytes"),
@@ -70,27 +87,80 @@ static const dea_key keys[] = {
            "a density > 0, e.g. 1080 kg/m^3"),
     OTHER("material.prony", dea_read_prony, "a list of at most 64 branches, e.g. [{g: 0.2, tau: 0.5 s}]"),
     OTHER("material.prony.#", dea_read_mapping, "a branch, e.g. {g: 0.2, tau: 0.5 s}"),
-    SCALAR("material.prony.#.g", material.prony[0].g, "1", "", 0, 1, true, DEA_KEY_BOTH, 3, "a share > 0 and < 1, e.g. 0.2"),
-    SCALAR("material.prony.#.tau", material.prony[0].tau, "s", "_s", 0, INFINITY, true, DEA_KEY_BOTH, 3,
-           "a time > 0, e.g. 0.5 s"),
+    ENTRY("material.prony.#.g", material.prony, g, "1", "", 0, 1, true, 3, "a share > 0 and < 1, e.g. 0.2"),
+    ENTRY("material.prony.#.tau", material.prony, tau, "s", "_s", 0, INFINITY, true, 3, "a time > 0, e.g. 0.5 s"),
     OTHER("material.moduli", dea_read_moduli, "long-term, instantaneous"),
     SCALAR("material.retardation", material.retardation, "s", "_s", 0, INFINITY, true, DEA_KEY_BOTH, 1, "a time > 0, e.g. 1 ms"),
     SCALAR("material.modulus", material.modulus, "Pa", "_Pa", 0, INFINITY, true, DEA_KEY_BOTH, 1, "a modulus > 0, e.g. 1.2 MPa"),
     SCALAR("material.breakdown", material.breakdown, "V/m", "_V_per_m", 0, INFINITY, true, DEA_KEY_BOTH, 1,
            "a field > 0, e.g. 80 V/um"),
-    OTHER("drive", dea_read_mapping, "a mapping with voltage, ..."),
-    SCALAR("drive.voltage", drive.voltage, "V", "_V", -INFINITY, INFINITY, true, DEA_KEY_BOTH, 1, "a voltage, e.g. 4500 V"),
+    OTHER("drive", dea_read_mapping, "a mapping with voltage or waveform, ..."),
+    {.path = "drive.voltage",
+     .read = dea_read_scalar,
+     .offset = AT(drive.voltage),
+     .unit = "V",
+     .suffix = "_V",
+     .low = -INFINITY,
+     .high = INFINITY,
+     .open = true,
+     .kinds = DEA_KEY_BOTH,
+     .words = 1,
+     .instead = "drive.waveform",
+     .accepted = "a voltage, e.g. 4500 V"},
     SCALAR("drive.series_resistance", drive.series_resistance, "ohm", "_Ohm", 0, INFINITY, false, DEA_KEY_BOTH, 1,
            "a resistance >= 0, e.g. 1 MOhm"),
     SCALAR("drive.leakage_resistance", drive.leakage_resistance, "ohm", "_Ohm", 0, INFINITY, true, DEA_KEY_BOTH, 1,
            "a resistance > 0, e.g. 100 GOhm"),
-    OTHER("drive.waveform", dea_read_unavailable, "voltage"),
+    OTHER("drive.waveform", dea_read_waveform, "a mapping with step, points, sine or file"),
+    OTHER(STEP, dea_read_mapping, "a mapping with on, off, voltage and rise, e.g. {on: 5 s, off: 15 s, voltage: 4500 V}"),
+    PART(STEP ".on", drive.waveform.step.on, "s", "_s", 0, INFINITY, false, 2, STEP, "a time >= 0, e.g. 5 s"),
+    PART(STEP ".off", drive.waveform.step.off, "s", "_s", 0, INFINITY, true, 2, STEP, "a time >= on + rise, e.g. 15 s"),
+    PART(STEP ".voltage", drive.waveform.step.voltage, "V", "_V", -INFINITY, INFINITY, true, 2, STEP, "a voltage, e.g. 4500 V"),
+    PART(STEP ".rise", drive.waveform.step.rise, "s", "_s", 0, INFINITY, false, 2, STEP, "a time >= 0, e.g. 1 us"),
+    OTHER("drive.waveform.points", dea_read_points, "a list of [time, voltage], e.g. [[0 s, 0 V], [5 s, 4500 V]]"),
+    OTHER(SINE, dea_read_mapping,
+          "a mapping with amplitude, frequency, offset, phase and delay, e.g. {amplitude: 100 V, frequency: 50 Hz}"),
+    PART(SINE ".offset", drive.waveform.sine.offset, "V", "_V", -INFINITY, INFINITY, true, 2, SINE, "a voltage, e.g. 4000 V"),
+    PART(SINE ".amplitude", drive.waveform.sine.amplitude, "V", "_V", -INFINITY, INFINITY, true, 2, SINE,
+         "a voltage, e.g. 100 V"),
+    PART(SINE ".frequency", drive.waveform.sine.frequency, "Hz", "_Hz", 0, INFINITY, true, 2, SINE,
+         "a frequency > 0, e.g. 50 Hz"),
+    PART(SINE ".phase", drive.waveform.sine.phase, "rad", "_rad", -INFINITY, INFINITY, true, 2, SINE, "an angle, e.g. 90 deg"),
+    PART(SINE ".delay", drive.waveform.sine.delay, "s", "_s", 0, INFINITY, false, 2, SINE, "a time >= 0, e.g. 5 s"),
+    OTHER("drive.waveform.file", dea_read_wave_file, "the name of a CSV file with the columns time_s,voltage_V"),
+    PART("drive.waveform.period", drive.waveform.period, "s", "_s", 0, INFINITY, true, 1, "drive.waveform",
+         "a time, at least the last one of the waveform, e.g. 20 s"),
     OTHER("model", dea_read_model, "a model name or a list of them"),
-    OTHER("study", dea_read_later, "a mapping with sweep, e.g. {sweep: {}} for the scene as one point"),
+    OTHER("study", dea_read_mapping, "a mapping with sweep, transient or ac, e.g. {sweep: {}} for the scene as one point"),
     OTHER("study.sweep", dea_read_later, "a mapping of axes, e.g. {coverage: [0.25, 0.5]}"),
-    OTHER("study.transient", dea_read_unavailable, "sweep"),
-    OTHER("study.ac", dea_read_unavailable, "sweep"),
-    OTHER("study.over", dea_read_unavailable, "sweep"),
+    OTHER(TRANSIENT, dea_read_mapping, "a mapping with until, every, average, start and over, e.g. {until: 25 s, every: 10 ms}"),
+    PART(TRANSIENT ".until", transient.until, "s", "_s", 0, INFINITY, true, 0, TRANSIENT, "a time > 0, e.g. 25 s"),
+    PART(TRANSIENT ".every", transient.every, "s", "_s", 0, INFINITY, true, 0, TRANSIENT, "a time > 0, e.g. 10 ms"),
+    OTHER(AVERAGE, dea_read_average, "a window of time, e.g. {from: 6 s, to: 8 s}, or a list of at most 8"),
+    PART(AVERAGE ".from", transient.averages[0].from, "s", "_s", 0, INFINITY, false, 0, AVERAGE, "a time >= 0, e.g. 6 s"),
+    PART(AVERAGE ".to", transient.averages[0].to, "s", "_s", 0, INFINITY, true, 0, AVERAGE, "a time > from, e.g. 8 s"),
+    OTHER(AVERAGE ".#", dea_read_mapping, "a window of time, e.g. {from: 6 s, to: 8 s}"),
+    ENTRY(AVERAGE ".#.from", transient.averages, from, "s", "_s", 0, INFINITY, false, 0, "a time >= 0, e.g. 6 s"),
+    ENTRY(AVERAGE ".#.to", transient.averages, to, "s", "_s", 0, INFINITY, true, 0, "a time > from, e.g. 8 s"),
+    OTHER(TRANSIENT ".start", dea_read_start, "rest, bias"),
+    {.path = TRANSIENT ".over",
+     .read = dea_read_later,
+     .offset = DEA_KEY_NOWHERE,
+     .kinds = DEA_KEY_BOTH,
+     .within = TRANSIENT ".over",
+     .accepted = "a mapping of axes, e.g. {coverage: [0.25, 0.5]}"},
+    OTHER(AC, dea_read_mapping, "a mapping with from, to, points_per_decade, bias and over, e.g. {from: 1 Hz, to: 10 kHz}"),
+    PART(AC ".from", ac.from, "Hz", "_Hz", 0, INFINITY, true, 0, AC, "a frequency > 0, e.g. 1 Hz"),
+    PART(AC ".to", ac.to, "Hz", "_Hz", 0, INFINITY, true, 0, AC, "a frequency >= from, e.g. 10 kHz"),
+    OTHER(AC ".points_per_decade", dea_read_points_per_decade, "a whole number 1 ... 10000"),
+    PART(AC ".bias", ac.bias, "V", "_V", -INFINITY, INFINITY, true, 1, AC, "a voltage, e.g. 4500 V"),
+    {.path = AC ".over",
+     .read = dea_read_later,
+     .offset = DEA_KEY_NOWHERE,
+     .kinds = DEA_KEY_BOTH,
+     .within = AC ".over",
+     .accepted = "a mapping of axes, e.g. {coverage: [0.25, 0.5]}"},
+    OTHER("study.over", dea_read_later, "a mapping of axes, e.g. {coverage: [0.25, 0.5]}"),
     SCALAR("accuracy", accuracy, "1", "", 0, 1, true, DEA_KEY_BOTH, 0, "a relative error > 0 and < 1, e.g. 1e-6"),
 };
 
@@ -135,6 +205,11 @@ static void ref_set(dea_ref *ref, const dea_key *key, size_t index)
     }
 }
 
+const dea_key *dea_key_at(size_t index)
+{
+    return index < KEY_COUNT ? &keys[index] : NULL;
+}
+
 bool dea_key_find(const char *path, dea_ref *ref)
 {
     char name[DEA_NAME_LENGTH];
@@ -160,11 +235,18 @@ static bool ends_with(const char *path, const char *name)
     return part > 0 && part < whole && indexed && path[whole - part - 1] == '.' && strcmp(path + whole - part, name) == 0;
 }
 
-bool dea_key_resolve(const char *name, dea_ref *ref)
+bool dea_key_has_place(const dea_key *key, const dea_node *root)
+{
+    return (!key->within || dea_tree_find(root, key->within)) && !(key->instead && dea_tree_find(root, key->instead));
+}
+
+bool dea_key_resolve(const char *name, const dea_node *root, dea_ref *ref)
 {
     char wanted[DEA_NAME_LENGTH];
     size_t index = 0;
+    const dea_key *placed = NULL;
     size_t found = 0;
+    size_t found_placed = 0;
     if (dea_key_find(name, ref)) {
         return true;
     }
@@ -173,16 +255,22 @@ bool dea_key_resolve(const char *name, dea_ref *ref)
     }
     for (size_t i = 0; i < KEY_COUNT; i++) {
         if (ends_with(keys[i].path, wanted)) {
-            ref_set(ref, &keys[i], index);
+            const bool here = dea_key_has_place(&keys[i], root);
+            placed = here || found == 0 ? &keys[i] : placed;
+            found_placed += here;
             found++;
         }
     }
-    return found == 1;
+    if (found == 1 || found_placed == 1) {
+        ref_set(ref, placed, index);
+        return true;
+    }
+    return false;
 }
 
 size_t dea_ref_offset(const dea_ref *ref)
 {
-    return ref->key->offset + ref->index * sizeof(dea_prony);
+    return ref->key->offset + ref->index * ref->key->stride;
 }
 
 static const char *last_component(const char *path)
@@ -208,7 +296,7 @@ static const dea_key *nearest(const char *parent, const char *name)
     for (size_t i = 0; i < KEY_COUNT; i++) {
         const char *word = last_component(keys[i].path);
         const bool elsewhere = parent ? !child_of(keys[i].path, parent) : strchr(keys[i].path, '#') != NULL;
-        const bool apart = elsewhere || word[0] == '#' || keys[i].read == dea_read_unavailable;
+        const bool apart = elsewhere || word[0] == '#';
         const size_t distance = apart ? SIZE_MAX : dea_text_distance(word, name);
         if (distance < least && dea_text_likely(word, distance)) {
             best = &keys[i];
@@ -222,6 +310,25 @@ static size_t append(char out[DEA_KEY_ROOM], size_t used, const char *between, c
 {
     const int more = used < DEA_KEY_ROOM ? snprintf(out + used, DEA_KEY_ROOM - used, "%s%s", between, word) : 0;
     return used + (size_t)(more > 0 ? more : 0);
+}
+
+bool dea_key_ambiguous(const char *name, char out[DEA_KEY_ROOM])
+{
+    char wanted[DEA_NAME_LENGTH];
+    size_t index = 0;
+    size_t found = 0;
+    size_t used = 0;
+    out[0] = '\0';
+    if (!name_normalise(name, wanted, &index)) {
+        return false;
+    }
+    for (size_t i = 0; i < KEY_COUNT; i++) {
+        if (ends_with(keys[i].path, wanted)) {
+            used = append(out, used, found ? ", " : "", keys[i].path);
+            found++;
+        }
+    }
+    return found > 1;
 }
 
 void dea_key_suggest(const char *parent, const char *name, char out[DEA_KEY_ROOM])
@@ -241,7 +348,7 @@ void dea_key_suggest(const char *parent, const char *name, char out[DEA_KEY_ROOM
     }
     const char *between = meant ? " accepted: " : "; accepted: ";
     for (size_t i = 0; i < KEY_COUNT; i++) {
-        if (child_of(keys[i].path, place) && keys[i].read != dea_read_unavailable) {
+        if (child_of(keys[i].path, place)) {
             used = append(out, used, between, last_component(keys[i].path));
             between = ", ";
         }

@@ -21,12 +21,15 @@ struct dea_key {
     const char *path; /* dotted; a component "#" stands for an index */
     dea_status (*read)(dea_reader *reader, const dea_ref *ref, const dea_node *node);
     size_t offset;        /* of the double in dea_scene, DEA_KEY_NOWHERE for what is no scalar */
+    size_t stride;        /* from one index to the next, 0 without "#" */
     const char *unit;     /* "1" without dimension */
     const char *suffix;   /* of the result column, e.g. "_m" */
     double low, high;     /* range */
     bool open;            /* the range is without its ends */
     unsigned kinds;       /* of actuator that have it */
     size_t words;         /* components of the path that its result column shows at least, 0: cannot be a sweep axis */
+    const char *within;   /* key that the scene must give for this one to have a place (the inner `over`: itself), NULL: none */
+    const char *instead;  /* key that takes the place of this one, NULL: none */
     const char *accepted; /* for messages: range and an example */
 };
 
@@ -37,10 +40,17 @@ struct dea_ref {
     char path[DEA_NAME_LENGTH]; /* with the index, e.g. material.prony.0.tau */
 };
 
+/* Key number @p index, NULL past the end. */
+const dea_key *dea_key_at(size_t index);
 /* Finds a key by its whole path. */
 bool dea_key_find(const char *path, dea_ref *ref);
-/* Finds a key by its whole path or by the end of it ("coverage", "yeoh.C1") where only one key ends so. */
-bool dea_key_resolve(const char *name, dea_ref *ref);
+/* Finds a key by its whole path or by the end of it ("coverage", "yeoh.C1") where only one key ends so, or only one of those that
+ * have a place in the scene @p root. */
+bool dea_key_resolve(const char *name, const dea_node *root, dea_ref *ref);
+/* True where the scene @p root has what the key stands in, and nothing that takes its place. */
+bool dea_key_has_place(const dea_key *key, const dea_node *root);
+/* Lists the keys that end in @p name where there are several ("a, b"); false where there is one or none. */
+bool dea_key_ambiguous(const char *name, char out[DEA_KEY_ROOM]);
 /* Place of the scalar in dea_scene. */
 size_t dea_ref_offset(const dea_ref *ref);
 /* Says what an unknown key below @p parent ("", "actuator", ...) could mean: "; did you mean ...?; accepted: ...". */

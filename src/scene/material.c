@@ -28,36 +28,10 @@ static dea_status mapping_read(dea_reader *reader, const dea_node *node)
     return dea_reader_children(reader, "material", node);
 }
 
-/* The file that @p node names, seen from the folder of the file that names it; NULL without memory. */
-static char *path_of(dea_reader *reader, const dea_node *node)
-{
-    const char *folder = node->text[0] == '/' ? "" : node->place.origin->folder;
-    const size_t room = strlen(folder) + strlen(node->text) + 2;
-    char *path = dea_arena_take(&reader->arena, room);
-    if (path) {
-        snprintf(path, room, "%s%s%s", folder, folder[0] ? "/" : "", node->text);
-    }
-    return path;
-}
-
-/* What stands before positions of a material file. */
-static dea_origin *origin_of(dea_reader *reader, const char *path)
-{
-    char shown[10 * 256 + 8];
-    const char *slash = strrchr(path, '/');
-    dea_origin *origin = dea_arena_take(&reader->arena, sizeof *origin);
-    dea_text_clip(path, 256, shown, sizeof shown);
-    if (origin) {
-        origin->name = dea_arena_copy(&reader->arena, shown, strlen(shown));
-        origin->folder = slash == path ? "/" : slash ? dea_arena_copy(&reader->arena, path, (size_t)(slash - path)) : ".";
-    }
-    return origin && origin->name && origin->folder ? origin : NULL;
-}
-
 static dea_status file_parse(dea_reader *reader, const char *path, const char *text, size_t length)
 {
     dea_node *root = NULL;
-    dea_origin *origin = origin_of(reader, path);
+    dea_origin *origin = dea_reader_origin(reader, path);
     if (!origin) {
         return dea_reader_memory(reader);
     }
@@ -75,7 +49,7 @@ static dea_status file_read(dea_reader *reader, const dea_ref *ref, const dea_no
     char shown[DEA_TEXT_ROOM];
     char *text = NULL;
     size_t length = 0;
-    char *path = path_of(reader, node);
+    char *path = dea_reader_path(reader, node);
     if (!path) {
         return dea_reader_memory(reader);
     }
@@ -83,7 +57,7 @@ static dea_status file_read(dea_reader *reader, const dea_ref *ref, const dea_no
         return dea_reader_refuse(reader, ref, node, "materials name each other as base in a circle");
     }
     const char *refused = NULL;
-    const dea_status read = dea_file_read(path, false, &text, &length, &refused);
+    const dea_status read = dea_file_read(path, false, DEA_FILE_MAX, &text, &length, &refused);
     if (read == DEA_ERROR_MEMORY) {
         return dea_reader_memory(reader);
     }

@@ -83,10 +83,12 @@ static void symbol_map(ut_system *system, const unit_symbol *symbol)
 static ut_system *small_build(void)
 {
     static const unit_symbol symbols[] = {
-        {"m", NULL, true},       {"kg", NULL, false},     {"s", NULL, true},      {"A", NULL, true},
-        {"g", "0.001 kg", true}, {"N", "kg.m.s-2", true}, {"Pa", "N.m-2", true},  {"J", "N.m", true},
-        {"W", "J.s-1", true},    {"C", "A.s", true},      {"V", "W.A-1", true},   {"ohm", "V.A-1", true},
-        {"F", "C.V-1", true},    {"Hz", "s-1", true},     {"min", "60 s", false}, {"h", "3600 s", false},
+        {"m", NULL, true},      {"kg", NULL, false},     {"s", NULL, true},
+        {"A", NULL, true},      {"g", "0.001 kg", true}, {"N", "kg.m.s-2", true},
+        {"Pa", "N.m-2", true},  {"J", "N.m", true},      {"W", "J.s-1", true},
+        {"C", "A.s", true},     {"V", "W.A-1", true},    {"ohm", "V.A-1", true},
+        {"F", "C.V-1", true},   {"Hz", "s-1", true},     {"min", "60 s", false},
+        {"h", "3600 s", false}, {"rad", NULL, false},    {"deg", "0.017453292519943295 rad", false},
     };
     ut_system *system = ut_new_system();
     for (size_t i = 0; system && i < sizeof symbols / sizeof *symbols; i++) {
@@ -122,8 +124,8 @@ typedef struct spelling {
 static const spelling *spelling_find(const char *text)
 {
     static const spelling signs[] = {
-        {"\xC2\xB5", "u"},  {"\xCE\xBC", "u"},  {"\xCE\xA9", "ohm"}, {"\xE2\x84\xA6", "ohm"},
-        {"\xC2\xB2", "^2"}, {"\xC2\xB3", "^3"}, {"\xC2\xB7", "."},   {"Ohm", "ohm"},
+        {"\xC2\xB5", "u"},  {"\xCE\xBC", "u"}, {"\xCE\xA9", "ohm"}, {"\xE2\x84\xA6", "ohm"}, {"\xC2\xB2", "^2"},
+        {"\xC2\xB3", "^3"}, {"\xC2\xB7", "."}, {"Ohm", "ohm"},      {"\xC2\xB0", "deg"},
     };
     for (size_t i = 0; i < sizeof signs / sizeof *signs; i++) {
         if (strncmp(text, signs[i].written, strlen(signs[i].written)) == 0) {
@@ -228,6 +230,12 @@ static conversion convert(ut_system *system, const char *unit, const char *targe
     return result;
 }
 
+/* The whole system takes an angle as a mere number, which would make 6.28 Hz of 60 rpm. */
+static bool angle_slips_in(const char *target)
+{
+    return strcmp(target, "Hz") == 0;
+}
+
 static conversion convert_any(dea_units *units, const char *unit, const char *target, double *factor)
 {
     conversion result = UNKNOWN_UNIT;
@@ -239,7 +247,7 @@ static conversion convert_any(dea_units *units, const char *unit, const char *ta
     if (units->small.system) {
         result = convert(units->small.system, unit, target, factor);
     }
-    if (result == UNKNOWN_UNIT) {
+    if (result == UNKNOWN_UNIT && !angle_slips_in(target)) {
         if (!units->whole.tried) {
             units->whole = (unit_system){ut_read_xml(NULL), true};
         }
@@ -265,7 +273,8 @@ static bool factor_find(dea_units *units, const char *written, const char *targe
     if (strcmp(unit, units->last_unit) != 0 || strcmp(target, units->last_target) != 0) {
         const conversion result = convert_any(units, unit, target, factor);
         if (result == UNKNOWN_UNIT) {
-            const char *missing = units->whole.system ? "" : ", and the UDUNITS database of further units cannot be read";
+            const char *missing =
+                units->whole.system || !units->whole.tried ? "" : ", and the UDUNITS database of further units cannot be read";
             snprintf(reason, DEA_REASON_LENGTH, "unknown unit \"%s\"%s", shown, missing);
         } else if (result == OTHER_DIMENSION) {
             snprintf(reason, DEA_REASON_LENGTH, "wrong dimension: \"%s\" does not convert to %s", shown, target);
@@ -348,6 +357,18 @@ bool dea_quantity_read(dea_units *units, const char *text, const char *unit, dou
     const char *written = text + length;
     written += strspn(written, " \t");
     return number_convert(units, number, value, reason) && unit_apply(units, written, unit, value, reason);
+}
+
+bool dea_number_read(dea_units *units, const char *text, size_t length, double *value)
+{
+    char number[UNIT_LENGTH];
+    char reason[DEA_REASON_LENGTH];
+    if (length == 0 || length >= sizeof number) {
+        return false;
+    }
+    memcpy(number, text, length);
+    number[length] = '\0';
+    return number_length(number) == length && number_convert(units, number, value, reason);
 }
 
 bool dea_count_read(const char *text, size_t most, size_t *value)

@@ -16,6 +16,8 @@ void dea_units_close(dea_units *units);
 
 /* Reads "30 mm" as a number of @p unit ("1": a bare number or a percentage). On false, @p reason says why not. */
 bool dea_quantity_read(dea_units *units, const char *text, const char *unit, double *value, char reason[DEA_REASON_LENGTH]);
+/* Reads the @p length bytes at @p text as one plain number. */
+bool dea_number_read(dea_units *units, const char *text, size_t length, double *value);
 /* Reads a whole number 1 ... @p most. */
 bool dea_count_read(const char *text, size_t most, size_t *value);
 

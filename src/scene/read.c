@@ -34,6 +34,37 @@ dea_given *dea_reader_given(dea_reader *reader, size_t offset)
     return &reader->given[offset / sizeof(double)];
 }
 
+dea_status dea_reader_missing(dea_reader *reader, const char *parent, const char *path)
+{
+    dea_ref ref;
+    const dea_node *holder = dea_tree_find(reader->root, parent);
+    const dea_place *place = holder ? &holder->place : &reader->root->place;
+    return dea_place_fail(place, reader->error, path, "missing; accepted: %s", dea_key_find(path, &ref) ? ref.key->accepted : "");
+}
+
+const dea_place *dea_reader_place(dea_reader *reader, size_t offset, const char *parent)
+{
+    const dea_given *given = dea_reader_given(reader, offset);
+    const dea_node *holder = dea_tree_find(reader->root, parent);
+    return given->node ? &given->node->place : holder ? &holder->place : &reader->root->place;
+}
+
+dea_status dea_reader_index(dea_reader *reader, const dea_ref *ref, const dea_place *place)
+{
+    const bool window = strncmp(ref->path, "study.transient.average.", 24) == 0;
+    const bool listed = strchr(ref->key->path, '#') != NULL;
+    const size_t count = window ? reader->scene->transient.average_count : reader->scene->material.prony_count;
+    if (window && !listed && count > 1) {
+        return dea_place_fail(place, reader->error, ref->path,
+                              "the transient has %zu windows; name one of them, e.g. study.transient.average.0.from", count);
+    }
+    if (!listed || ref->index < count) {
+        return DEA_OK;
+    }
+    return dea_place_fail(place, reader->error, ref->path, "the %s has %zu %s, counted from 0", window ? "transient" : "material",
+                          count, window ? "windows" : "branches");
+}
+
 static dea_status fail_unknown(dea_reader *reader, const char *path, const dea_node *node)
 {
     char subject[DEA_TEXT_ROOM];
@@ -109,7 +140,7 @@ static dea_status fail_both(dea_reader *reader, const dea_ref *ref, const dea_no
 {
     if (other->node->place.origin->setting && !node->place.origin->setting) {
         return dea_place_fail(&other->node->place, reader->error, other->ref.path,
-                              "contradicts %s, which the scene sweeps; set study.sweep too", ref->path);
+                              "contradicts %s, which the scene sweeps; set %s too", ref->path, reader->axes);
     }
     return dea_place_fail(&node->key_at, reader->error, ref->path, "contradicts %s, which is %s too; give one of them",
                           other->ref.path, other->swept ? "swept" : "given");
@@ -216,31 +247,31 @@ dea_status dea_read_later(dea_reader *reader, const dea_ref *ref, const dea_node
     return DEA_OK;
 }
 
-dea_status dea_read_unavailable(dea_reader *reader, const dea_ref *ref, const dea_node *node)
-{
-    return dea_place_fail(&node->key_at, reader->error, ref->path, "is not available in this version; accepted: %s",
-                          ref->key->accepted);
-}
+/* What a model must be able to do. */
+typedef struct ability {
+    bool lens, dynamic;
+} ability;
 
-static void model_names(bool lens, char *out, size_t room)
+static void model_list(ability wanted, char *out, size_t room)
 {
     size_t used = 0;
     out[0] = '\0';
     for (size_t i = 0; i < dea_model_count() && used < room; i++) {
         const dea_model *model = dea_model_at(i);
-        if (!lens || model->lens) {
+        if ((!wanted.lens || model->lens) && (!wanted.dynamic || model->dynamic)) {
             used += (size_t)snprintf(out + used, room - used, "%s%s", used ? ", " : "", model->name);
         }
     }
 }
 
-static dea_status model_fail(dea_reader *reader, const dea_node *node, const char *what, bool lens)
+static dea_status model_fail(dea_reader *reader, const dea_node *node, const char *what, ability wanted)
 {
     char shown[DEA_TEXT_ROOM];
     char names[DEA_KEY_ROOM];
     char meant[DEA_KEY_ROOM] = "";
-    model_names(lens, names, sizeof names);
-    for (size_t i = 0; node->kind == DEA_NODE_SCALAR && !lens && i < dea_model_count(); i++) {
+    model_list(wanted, names, sizeof names);
+    const bool any = !wanted.lens && !wanted.dynamic;
+    for (size_t i = 0; node->kind == DEA_NODE_SCALAR && any && i < dea_model_count(); i++) {
         const char *name = dea_model_at(i)->name;
         const size_t distance = dea_text_distance(name, node->text);
         if (distance > 0 && dea_text_likely(name, distance)) {
@@ -251,24 +282,39 @@ static dea_status model_fail(dea_reader *reader, const dea_node *node, const cha
                           meant, names);
 }
 
+dea_status dea_models_finish(dea_reader *reader)
+{
+    const dea_scene *scene = reader->scene;
+    const bool transient = scene->study == DEA_STUDY_TRANSIENT;
+    for (size_t i = 0; i < scene->model_count && scene->study != DEA_STUDY_SWEEP; i++) {
+        if (!scene->models[i]->dynamic) {
+            return model_fail(reader, reader->model_names[i],
+                              transient ? "cannot do a transient" : "cannot do a frequency response",
+                              (ability){.lens = scene->actuator.kind == DEA_LENS, .dynamic = true});
+        }
+    }
+    return DEA_OK;
+}
+
 static dea_status model_add(dea_reader *reader, const dea_node *node)
 {
     dea_scene *scene = reader->scene;
     const dea_model *model = node->kind == DEA_NODE_SCALAR ? dea_model_find(node->text) : NULL;
     if (!model) {
-        return model_fail(reader, node, "unknown model", false);
+        return model_fail(reader, node, "unknown model", (ability){0});
     }
     for (size_t i = 0; i < scene->model_count; i++) {
         if (scene->models[i] == model) {
-            return model_fail(reader, node, "named twice", false);
+            return model_fail(reader, node, "named twice", (ability){0});
         }
     }
     if (scene->model_count == DEA_SCENE_MODELS) {
-        return model_fail(reader, node, "too many models", false);
+        return model_fail(reader, node, "too many models", (ability){0});
     }
     if (scene->actuator.kind == DEA_LENS && !model->lens) {
-        return model_fail(reader, node, "cannot do a lens", true);
+        return model_fail(reader, node, "cannot do a lens", (ability){.lens = true});
     }
+    reader->model_names[scene->model_count] = node;
     scene->models[scene->model_count++] = model;
     return DEA_OK;
 }
@@ -284,7 +330,7 @@ dea_status dea_read_model(dea_reader *reader, const dea_ref *ref, const dea_node
         return model_add(reader, node);
     }
     if (node->kind == DEA_NODE_MAPPING || node->count == 0) {
-        return model_fail(reader, node, "not a model name", false);
+        return model_fail(reader, node, "not a model name", (ability){0});
     }
     for (const dea_node *name = node->first; name; name = name->next) {
         const dea_status status = model_add(reader, name);

@@ -32,13 +32,21 @@ struct dea_reader {
     const char *model;       /* replaces the scene's model, may be NULL */
     dea_override *overrides; /* settings of scalars, in order */
     bool kind_known;
-    size_t material_depth;             /* files that name files */
-    dea_given given[DEA_READER_SLOTS]; /* by place in dea_scene */
+    size_t material_depth;                         /* files that name files */
+    const char *axes;                              /* path of the mapping that the axes stand in */
+    const dea_node *model_names[DEA_SCENE_MODELS]; /* who named the scene's models */
+    dea_given given[DEA_READER_SLOTS];             /* by place in dea_scene */
 };
 
 /* Fails at the place of a value: "...: path: what (value); accepted: ...". */
 dea_status dea_reader_refuse(dea_reader *reader, const dea_ref *ref, const dea_node *node, const char *what);
 dea_status dea_reader_memory(dea_reader *reader);
+/* Fails because @p path is missing, at the place of the mapping @p parent ("": of the scene). */
+dea_status dea_reader_missing(dea_reader *reader, const char *parent, const char *path);
+/* The place of whoever gave the scalar, else of the mapping @p parent, else the scene's. */
+const dea_place *dea_reader_place(dea_reader *reader, size_t offset, const char *parent);
+/* Fails where the key is one of a list (a Prony branch, a window) that the scene has not. */
+dea_status dea_reader_index(dea_reader *reader, const dea_ref *ref, const dea_place *place);
 /* Who gave the scalar at that place of dea_scene. */
 dea_given *dea_reader_given(dea_reader *reader, size_t offset);
 /* Text of a scalar fit for a message. */
@@ -60,19 +68,46 @@ dea_status dea_read_kind(dea_reader *reader, const dea_ref *ref, const dea_node 
 dea_status dea_read_title(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_model(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_later(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_unavailable(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_material(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_source(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_permittivity(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_prony(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_moduli(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_waveform(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_points(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_wave_file(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_average(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_start(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_points_per_decade(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+
+/* The file that @p node names, seen from the folder of the file that names it; NULL without memory. */
+char *dea_reader_path(dea_reader *reader, const dea_node *node);
+/* What stands before positions in the file @p path, NULL without memory. */
+dea_origin *dea_reader_origin(dea_reader *reader, const char *path);
+
+/* Room for @p count points of the waveform, counted from 0 on. */
+dea_status dea_points_new(dea_reader *reader, size_t count);
+/* What is wrong with the time of point @p index after the one before it, NULL: nothing. */
+const char *dea_points_fault(const dea_waveform *waveform, size_t index);
+/* Shortest time between two edges of a waveform [s]. */
+#define DEA_EDGE_MIN 1e-12
 
 /* Parses settings; puts those of other things than scalars into the tree, before it is read. */
 dea_status dea_settings_graft(dea_reader *reader, const dea_setting *settings, size_t count);
 /* Applies the settings of scalars, after the tree has been read. */
 dea_status dea_settings_apply(dea_reader *reader);
-/* Reads what the study asks, after all scalars. */
+/* Finds what the study asks, and reads its axes, after all scalars. */
 dea_status dea_reader_study(dea_reader *reader);
+/* Reads the axes in the mapping @p axes, whose path is reader->axes. */
+dea_status dea_reader_axes(dea_reader *reader, const dea_node *axes);
+/* Frees the scene's waveform and leaves none. */
+void dea_waveform_drop(dea_scene *scene);
+/* Puts defaults into the waveform and checks it as a whole, swept keys at all their values. */
+dea_status dea_waveform_finish(dea_reader *reader);
+/* Puts defaults into a transient or an AC study and checks it as a whole. */
+dea_status dea_study_finish(dea_reader *reader);
+/* Refuses models that cannot do the scene's study. */
+dea_status dea_models_finish(dea_reader *reader);
 /* What only the whole scene shows: missing keys, contradictions. */
 dea_status dea_reader_finish(dea_reader *reader);
 

@@ -20,7 +20,14 @@ static dea_status scene_clear(dea_scene *scene)
                      .focal_length = NAN,
                      .refractive_index = NAN},
         .material = dea_material_default(),
-        .drive = {.voltage = NAN, .series_resistance = NAN, .leakage_resistance = NAN},
+        .drive = {.voltage = NAN,
+                  .waveform = {.step = {.on = NAN, .off = NAN, .voltage = NAN, .rise = NAN},
+                               .sine = {.offset = NAN, .amplitude = NAN, .frequency = NAN, .phase = NAN, .delay = NAN},
+                               .period = NAN},
+                  .series_resistance = NAN,
+                  .leakage_resistance = NAN},
+        .transient = {.until = NAN, .every = NAN},
+        .ac = {.from = NAN, .to = NAN, .points_per_decade = 50, .bias = NAN},
         .accuracy = 1e-6,
     };
     return scene->title ? DEA_OK : DEA_ERROR_MEMORY;
@@ -115,7 +122,7 @@ dea_status dea_scene_read(const char *path, const dea_setting *settings, size_t 
     const char *slash = input ? NULL : strrchr(path, '/');
     *scene = (dea_scene){0};
     const char *refused = NULL;
-    const dea_status read = dea_file_read(path, true, &text, &length, &refused);
+    const dea_status read = dea_file_read(path, true, DEA_FILE_MAX, &text, &length, &refused);
     if (read) {
         return dea_fail(error, read, "%s: cannot read the scene: %s",
                         input ? "standard input" : dea_text_clip(path, 256, shown, sizeof shown), refused);
@@ -123,8 +130,8 @@ dea_status dea_scene_read(const char *path, const dea_setting *settings, size_t 
     char *folder = slash ? strndup(path, slash == path ? 1 : (size_t)(slash - path)) : strdup(".");
     dea_status status = DEA_ERROR_MEMORY;
     if (folder) {
-        status = dea_scene_parse(text, length, input ? "standard input" : path, folder, settings, setting_count, model, scene,
-                                 error);
+        status =
+            dea_scene_parse(text, length, input ? "standard input" : path, folder, settings, setting_count, model, scene, error);
     } else {
         dea_fail(error, DEA_ERROR_MEMORY, "out of memory while reading the scene");
     }
@@ -140,6 +147,8 @@ void dea_scene_free(dea_scene *scene)
             free(scene->axes[i].values);
         }
         free(scene->axes);
+        free(scene->drive.waveform.times);
+        free(scene->drive.waveform.voltages);
         free(scene->title);
         *scene = (dea_scene){0};
     }

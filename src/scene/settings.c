@@ -83,42 +83,104 @@ static dea_node *mapping_enter(setting_reader *self, dea_node *parent, const cha
     return made;
 }
 
-/* Puts @p node at the dotted @p path of the tree. Where a file has no mapping on the way, reading the file will say so. */
-static dea_status graft(setting_reader *self, const char *path, dea_node *node)
+/* The mapping at the dotted @p path, made where there is none; the one that stops short of it where something else is on the way.
+ * NULL without memory. */
+static dea_node *path_enter(setting_reader *self, const char *path)
 {
-    dea_arena *arena = &self->reader->arena;
-    char *key = dea_arena_copy(arena, path, strlen(path));
-    dea_node *parent = self->reader->root;
-    while (key && parent && parent->kind == DEA_NODE_MAPPING) {
+    char *key = dea_arena_copy(&self->reader->arena, path, strlen(path));
+    dea_node *node = key ? self->reader->root : NULL;
+    while (node && key && node->kind == DEA_NODE_MAPPING) {
         char *dot = strchr(key, '.');
-        if (!dot) {
-            dea_tree_put(parent, key, node);
-            return DEA_OK;
+        if (dot) {
+            *dot = '\0';
         }
-        *dot = '\0';
-        parent = mapping_enter(self, parent, key);
-        key = dot + 1;
+        node = mapping_enter(self, node, key);
+        key = dot ? dot + 1 : NULL;
     }
-    return key && parent ? DEA_OK : dea_reader_memory(self->reader);
+    return node;
 }
 
-/* Puts an axis into study.sweep, in the place of the axis of the same key if there is one. */
-static dea_status graft_axis(setting_reader *self, const dea_ref *ref, dea_node *node)
+/* Keys of which a scene gives one: a setting of one takes those of the file away. */
+static void alternatives_remove(setting_reader *self, const char *path)
 {
-    dea_node *study = mapping_enter(self, self->reader->root, "study");
-    dea_node *sweep = study && study->kind == DEA_NODE_MAPPING ? mapping_enter(self, study, "sweep") : study;
-    const char *key = dea_arena_copy(&self->reader->arena, ref->path, strlen(ref->path));
-    if (!sweep || !key) {
+    static const char *const groups[][4] = {
+        {"study.sweep", "study.transient", "study.ac"},
+        {"study.over", "study.transient.over", "study.ac.over"},
+        {"drive.waveform.step", "drive.waveform.points", "drive.waveform.sine", "drive.waveform.file"},
+    };
+    for (size_t i = 0; i < sizeof groups / sizeof *groups; i++) {
+        bool member = false;
+        for (size_t k = 0; k < 4 && groups[i][k]; k++) {
+            member = member || strcmp(groups[i][k], path) == 0;
+        }
+        for (size_t k = 0; member && k < 4 && groups[i][k]; k++) {
+            const char *other = groups[i][k];
+            const char *dot = strrchr(other, '.');
+            const dea_node *node = dea_tree_find(self->reader->root, other);
+            if (node && strcmp(other, path) != 0 && !node->place.origin->setting) {
+                char parent[DEA_NAME_LENGTH];
+                snprintf(parent, sizeof parent, "%.*s", (int)(dot - other), other);
+                dea_tree_remove(path_enter(self, parent), dot + 1);
+            }
+        }
+    }
+}
+
+/* Puts @p node at the place of a key that is no scalar. Where a file has no mapping on the way, reading the file will say so. */
+static dea_status graft(setting_reader *self, const dea_ref *ref, dea_node *node)
+{
+    char parent[DEA_NAME_LENGTH];
+    const char *dot = strrchr(ref->path, '.');
+    snprintf(parent, sizeof parent, "%.*s", dot ? (int)(dot - ref->path) : 0, ref->path);
+    if (strchr(ref->key->path, '#')) {
+        return dea_place_fail(&self->place, self->reader->error, ref->path,
+                              "cannot be set as a whole; accepted: all of %s, or its "
+                              "scalars",
+                              parent);
+    }
+    dea_node *holder = dot ? path_enter(self, parent) : self->reader->root;
+    const char *key = dea_arena_copy(&self->reader->arena, dot ? dot + 1 : ref->path, strlen(dot ? dot + 1 : ref->path));
+    if (!holder || !key) {
         return dea_reader_memory(self->reader);
     }
-    for (const dea_node *axis = sweep->kind == DEA_NODE_MAPPING ? sweep->first : NULL; axis; axis = axis->next) {
+    if (holder->kind == DEA_NODE_MAPPING) {
+        dea_tree_put(holder, key, node);
+        alternatives_remove(self, ref->path);
+    }
+    return DEA_OK;
+}
+
+/* Where the axes of `over` stand: where the scene has them, else where the setting says. */
+static const char *axes_path(const setting_reader *self, const char *said)
+{
+    static const char *const overs[] = {"study.over", "study.transient.over", "study.ac.over"};
+    if (strcmp(said, "study.sweep") == 0) {
+        return said;
+    }
+    for (size_t i = 0; i < sizeof overs / sizeof *overs; i++) {
+        if (dea_tree_find(self->reader->root, overs[i])) {
+            return overs[i];
+        }
+    }
+    return said;
+}
+
+/* Puts an axis among those of the scene, in the place of the axis of the same key if there is one. */
+static dea_status graft_axis(setting_reader *self, const char *said, const dea_ref *ref, dea_node *node)
+{
+    dea_node *axes = path_enter(self, axes_path(self, said));
+    const char *key = dea_arena_copy(&self->reader->arena, ref->path, strlen(ref->path));
+    if (!axes || !key) {
+        return dea_reader_memory(self->reader);
+    }
+    for (const dea_node *axis = axes->kind == DEA_NODE_MAPPING ? axes->first : NULL; axis; axis = axis->next) {
         dea_ref other;
-        if (dea_key_resolve(axis->key, &other) && strcmp(other.path, ref->path) == 0) {
+        if (dea_key_resolve(axis->key, self->reader->root, &other) && strcmp(other.path, ref->path) == 0) {
             key = axis->key;
         }
     }
-    if (sweep->kind == DEA_NODE_MAPPING) {
-        dea_tree_put(sweep, key, node);
+    if (axes->kind == DEA_NODE_MAPPING) {
+        dea_tree_put(axes, key, node);
     }
     return DEA_OK;
 }
@@ -127,8 +189,11 @@ static dea_status fail_key(setting_reader *self, const char *parent, const char 
 {
     char shown[DEA_TEXT_ROOM];
     char help[DEA_KEY_ROOM];
-    dea_key_suggest(parent, name, help);
     dea_text_clip(self->name, DEA_TEXT_SHOWN, shown, sizeof shown);
+    if (dea_key_ambiguous(name, help)) {
+        return dea_place_fail(&self->place, self->reader->error, shown, "could mean several keys; accepted: one of %s", help);
+    }
+    dea_key_suggest(parent, name, help);
     return dea_place_fail(&self->place, self->reader->error, shown, "unknown key%s", help);
 }
 
@@ -147,76 +212,96 @@ static dea_status fail_unknown(setting_reader *self)
     return fail_key(self, parent, dot ? dot + 1 : self->name);
 }
 
-/* Name of the axis in "study.sweep.AXIS" or "sweep.AXIS", NULL for other keys. */
-static const char *axis_name(const char *name)
+/* Name of the axis in "study.sweep.AXIS", "sweep.AXIS", "over.AXIS" and so on, and the mapping it stands in; NULL for other keys.
+ */
+static const char *axis_name(const char *name, const char **path)
 {
-    static const char *const fronts[] = {"study.sweep.", "sweep."};
-    for (size_t i = 0; i < sizeof fronts / sizeof *fronts; i++) {
-        if (strncmp(name, fronts[i], strlen(fronts[i])) == 0) {
-            return name + strlen(fronts[i]);
+    static const char *const paths[] = {"study.sweep", "study.over", "study.transient.over", "study.ac.over"};
+    const size_t front = strlen("study.");
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        const char *start = strncmp(name, "study.", front) == 0 ? paths[i] : paths[i] + front;
+        const size_t length = strlen(start);
+        if (strncmp(name, start, length) == 0 && name[length] == '.') {
+            *path = paths[i];
+            return name + length + 1;
         }
     }
     return NULL;
 }
 
-static dea_status setting_graft(dea_reader *reader, const char *text, dea_override **last)
+static dea_status override_add(dea_reader *reader, const dea_ref *ref, dea_node *node)
+{
+    dea_override **last = &reader->overrides;
+    while (*last) {
+        last = &(*last)->next;
+    }
+    *last = dea_arena_take(&reader->arena, sizeof **last);
+    if (!*last) {
+        return dea_reader_memory(reader);
+    }
+    **last = (dea_override){.ref = *ref, .node = node};
+    return DEA_OK;
+}
+
+/* Parses a setting and puts it where it belongs; one that is no structure waits for the @p last round. */
+static dea_status setting_graft(dea_reader *reader, const char *text, bool last, bool *done)
 {
     setting_reader self = {.reader = reader};
     dea_ref ref;
     dea_node *node = NULL;
+    const char *path = NULL;
     dea_status status = setting_split(&self, text);
     if (status) {
         return status;
     }
-    const char *axis = axis_name(self.name);
-    if (!dea_key_resolve(axis ? axis : self.name, &ref)) {
-        return axis ? fail_key(&self, "study.sweep", axis) : fail_unknown(&self);
+    const char *axis = axis_name(self.name, &path);
+    const bool found = dea_key_resolve(axis ? axis : self.name, reader->root, &ref);
+    const bool structure = found && (axis || ref.key->offset == DEA_KEY_NOWHERE);
+    if (!structure && !last) {
+        return DEA_OK;
+    }
+    *done = true;
+    if (!found) {
+        return axis ? fail_key(&self, path, axis) : fail_unknown(&self);
     }
     status = value_parse(&self, &node);
     if (status) {
         return status;
     }
-    if (axis) {
-        return graft_axis(&self, &ref, node);
-    }
-    if (ref.key->offset == DEA_KEY_NOWHERE) {
-        return graft(&self, ref.path, node);
-    }
-    dea_override *override = dea_arena_take(&reader->arena, sizeof *override);
-    if (!override) {
-        return dea_reader_memory(reader);
-    }
-    *override = (dea_override){.ref = ref, .node = node};
-    if (*last) {
-        (*last)->next = override;
-    } else {
-        reader->overrides = override;
-    }
-    *last = override;
-    return DEA_OK;
+    return axis ? graft_axis(&self, path, &ref, node) : structure ? graft(&self, &ref, node) : override_add(reader, &ref, node);
 }
 
+/* Two rounds, first of structures: which scalar a short name means depends on the rest of the scene. */
 dea_status dea_settings_graft(dea_reader *reader, const dea_setting *settings, size_t count)
 {
-    dea_override *last = NULL;
-    for (size_t i = 0; i < count; i++) {
-        const dea_status status = setting_graft(reader, settings[i].text, &last);
-        if (status) {
-            return status;
-        }
+    bool *done = dea_arena_take(&reader->arena, count + 1);
+    dea_status status = done ? DEA_OK : dea_reader_memory(reader);
+    for (size_t i = 0; i < 2 * count && !status; i++) {
+        const size_t at = i % count;
+        status = done[at] ? DEA_OK : setting_graft(reader, settings[at].text, i >= count, &done[at]);
     }
-    return DEA_OK;
+    return status;
+}
+
+/* A scalar of a part is set where the scene has that part. */
+static dea_status part_check(dea_reader *reader, const dea_override *override)
+{
+    const dea_ref *ref = &override->ref;
+    dea_ref part;
+    const dea_status status = dea_reader_index(reader, ref, &override->node->place);
+    const char *within = ref->key->within;
+    if (status || !within || dea_tree_find(reader->root, within) || !dea_key_find(within, &part)) {
+        return status;
+    }
+    return dea_place_fail(&override->node->place, reader->error, ref->path, "the scene has no %s; accepted for that: %s", within,
+                          part.key->accepted);
 }
 
 dea_status dea_settings_apply(dea_reader *reader)
 {
     for (const dea_override *override = reader->overrides; override; override = override->next) {
-        const dea_ref *ref = &override->ref;
-        if (strchr(ref->key->path, '#') && ref->index >= reader->scene->material.prony_count) {
-            return dea_place_fail(&override->node->place, reader->error, ref->path,
-                                  "the material has %zu branches, counted from 0", reader->scene->material.prony_count);
-        }
-        const dea_status status = ref->key->read(reader, ref, override->node);
+        dea_status status = part_check(reader, override);
+        status = status ? status : override->ref.key->read(reader, &override->ref, override->node);
         if (status) {
             return status;
         }

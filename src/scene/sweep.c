@@ -1,4 +1,4 @@
-/* Reading of the study: the axes of a sweep. */
+/* Reading of axes: those of a sweep, and those over which a transient or an AC study repeats. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -26,9 +26,9 @@ typedef struct axis_reader {
 
 static dea_status axis_fail(const axis_reader *self, const dea_node *node, const char *what, const char *accepted)
 {
-    char subject[DEA_NAME_LENGTH + 16];
+    char subject[2 * DEA_NAME_LENGTH];
     char shown[DEA_TEXT_ROOM];
-    snprintf(subject, sizeof subject, "study.sweep.%s", self->ref.path);
+    snprintf(subject, sizeof subject, "%s.%s", self->reader->axes, self->ref.path);
     dea_reader_show(node, shown);
     return dea_place_fail(&node->place, self->reader->error, subject, "%s (%s); accepted: %s", what, shown, accepted);
 }
@@ -79,11 +79,11 @@ static void values_space(dea_axis *axis, double from, double to, bool logarithmi
 static dea_status keys_check(const axis_reader *self)
 {
     char shown[DEA_TEXT_ROOM];
-    char subject[DEA_TEXT_ROOM + DEA_NAME_LENGTH + 16];
+    char subject[DEA_TEXT_ROOM + 2 * DEA_NAME_LENGTH];
     for (const dea_node *child = self->node->first; child; child = child->next) {
         const char *key = child->key;
         if (strcmp(key, "from") != 0 && strcmp(key, "to") != 0 && strcmp(key, "points") != 0 && strcmp(key, "spacing") != 0) {
-            snprintf(subject, sizeof subject, "study.sweep.%s.%s", self->ref.path,
+            snprintf(subject, sizeof subject, "%s.%s.%s", self->reader->axes, self->ref.path,
                      dea_text_clip(key, DEA_TEXT_SHOWN, shown, sizeof shown));
             return dea_place_fail(&child->key_at, self->reader->error, subject,
                                   "unknown key; accepted: from, to, points, spacing");
@@ -169,9 +169,8 @@ static dea_status axis_claim(const axis_reader *self)
     const bool scalar_set = given->node && given->node->place.origin->setting && !given->node->key;
     if (scalar_set && !self->node->place.origin->setting) {
         char shown[DEA_TEXT_ROOM];
-        return dea_place_fail(&given->node->place, reader->error, self->ref.path,
-                              "is swept by the scene; set study.sweep.%s=[%s] instead", self->ref.path,
-                              dea_reader_show(given->node, shown));
+        return dea_place_fail(&given->node->place, reader->error, self->ref.path, "is swept by the scene; set %s.%s=[%s] instead",
+                              reader->axes, self->ref.path, dea_reader_show(given->node, shown));
     }
     const bool known = given->node || !isnan(*(double *)((char *)reader->scene + offset));
     const dea_status status = dea_reader_claim(reader, &self->ref, self->node, true);
@@ -179,6 +178,27 @@ static dea_status axis_claim(const axis_reader *self)
         memcpy((char *)reader->scene + offset, self->axis->values, sizeof(double));
     }
     return status;
+}
+
+/* A key is swept where the scene has a place for it. */
+static dea_status place_check(const axis_reader *self)
+{
+    const dea_key *key = self->ref.key;
+    dea_reader *reader = self->reader;
+    if (reader->scene->study == DEA_STUDY_AC && dea_ref_offset(&self->ref) == offsetof(dea_scene, drive.voltage)) {
+        return dea_place_fail(&self->node->key_at, reader->error, self->ref.path,
+                              "is not what an AC study varies; accepted: study.ac.bias, by its short name bias");
+    }
+    if (dea_key_has_place(key, reader->root)) {
+        return DEA_OK;
+    }
+    if (key->within && !dea_tree_find(reader->root, key->within)) {
+        return dea_place_fail(&self->node->key_at, reader->error, self->ref.path,
+                              "cannot be swept: the scene has no %s; accepted: any scalar of the scene", key->within);
+    }
+    return dea_place_fail(&self->node->key_at, reader->error, self->ref.path,
+                          "contradicts %s, which is given; accepted: a scalar of that, e.g. drive.waveform.step.voltage",
+                          key->instead);
 }
 
 /* What a key must be to be swept here. */
@@ -189,9 +209,10 @@ static dea_status key_check(const axis_reader *self)
         return dea_place_fail(&self->node->key_at, self->reader->error, self->ref.path,
                               "cannot be swept; accepted: any scalar, e.g. voltage");
     }
-    if (strchr(self->ref.key->path, '#') && self->ref.index >= material->prony_count) {
-        return dea_place_fail(&self->node->key_at, self->reader->error, self->ref.path,
-                              "the material has %zu branches, counted from 0", material->prony_count);
+    dea_status status = dea_reader_index(self->reader, &self->ref, &self->node->key_at);
+    status = status ? status : place_check(self);
+    if (status) {
+        return status;
     }
     if (strcmp(self->ref.path, "material.permittivity") == 0 && material->permittivity_per_stretch != 0.0) {
         return dea_place_fail(&self->node->key_at, self->reader->error, self->ref.path,
@@ -229,25 +250,29 @@ static dea_status axis_read(const axis_reader *self)
 static dea_status fail_axis(dea_reader *reader, const dea_node *node)
 {
     char shown[DEA_TEXT_ROOM];
-    char subject[DEA_TEXT_ROOM + 16];
+    char subject[DEA_TEXT_ROOM + DEA_NAME_LENGTH];
     char help[DEA_KEY_ROOM];
+    dea_text_clip(node->key, DEA_TEXT_SHOWN, shown, sizeof shown);
+    snprintf(subject, sizeof subject, "%s.%s", reader->axes, shown);
+    if (dea_key_ambiguous(node->key, help)) {
+        return dea_place_fail(&node->key_at, reader->error, subject, "could mean several keys; accepted: one of %s", help);
+    }
     dea_key_suggest("study.sweep", node->key, help);
-    snprintf(subject, sizeof subject, "study.sweep.%s", dea_text_clip(node->key, DEA_TEXT_SHOWN, shown, sizeof shown));
     return dea_place_fail(&node->key_at, reader->error, subject,
                           "unknown key%s; accepted: any scalar of the scene, e.g. coverage, prestretch, voltage", help);
 }
 
-static dea_status sweep_read(dea_reader *reader, const dea_node *sweep)
+static dea_status axes_read(dea_reader *reader, const dea_node *axes)
 {
     dea_scene *scene = reader->scene;
-    scene->axes = calloc(sweep->count + 1, sizeof *scene->axes);
+    scene->axes = calloc(axes->count + 1, sizeof *scene->axes);
     if (!scene->axes) {
         return dea_reader_memory(reader);
     }
     double points = 1.0;
-    for (const dea_node *node = sweep->first; node; node = node->next) {
+    for (const dea_node *node = axes->first; node; node = node->next) {
         axis_reader self = {.reader = reader, .axis = &scene->axes[scene->axis_count], .node = node};
-        if (!dea_key_resolve(node->key, &self.ref)) {
+        if (!dea_key_resolve(node->key, reader->root, &self.ref)) {
             return fail_axis(reader, node);
         }
         const dea_status status = axis_read(&self);
@@ -257,14 +282,18 @@ static dea_status sweep_read(dea_reader *reader, const dea_node *sweep)
         }
         points *= (double)self.axis->count;
         if (points > STUDY_POINTS_MAX || points > (double)(SIZE_MAX / 2 / DEA_SCENE_MODELS)) {
-            return dea_place_fail(&node->key_at, reader->error, "study.sweep", "more than 1e12 points");
+            return dea_place_fail(&node->key_at, reader->error, reader->axes, "more than 1e12 points");
         }
     }
     return DEA_OK;
 }
 
+/* The focal length is a column of its own in a transient: an axis of it takes more of its path too. */
 static bool column_taken(const dea_scene *scene, size_t index)
 {
+    if (scene->study == DEA_STUDY_TRANSIENT && strcmp(scene->axes[index].column, "focal_length_m") == 0) {
+        return true;
+    }
     for (size_t i = 0; i < scene->axis_count; i++) {
         if (i != index && strcmp(scene->axes[i].column, scene->axes[index].column) == 0) {
             return true;
@@ -284,27 +313,9 @@ static void columns_part(dea_scene *scene)
     }
 }
 
-dea_status dea_reader_study(dea_reader *reader)
+dea_status dea_reader_axes(dea_reader *reader, const dea_node *axes)
 {
-    const dea_node *study = dea_tree_child(reader->root, "study");
-    const dea_node *sweep = dea_tree_child(study, "sweep");
-    dea_ref ref;
-    if (!study || !dea_key_find("study", &ref)) {
-        return dea_place_fail(&reader->root->place, reader->error, "study",
-                              "missing; write study: {sweep: {}} for the scene as one point");
-    }
-    dea_status status = dea_read_mapping(reader, &ref, study);
-    if (status) {
-        return status;
-    }
-    if (!sweep || !dea_key_find("study.sweep", &ref)) {
-        return dea_place_fail(&study->place, reader->error, "study",
-                              "asks for nothing; write {sweep: {}} for the scene as one point");
-    }
-    if (sweep->kind != DEA_NODE_MAPPING) {
-        return dea_reader_refuse(reader, &ref, sweep, "not a mapping");
-    }
-    status = sweep_read(reader, sweep);
+    const dea_status status = axes_read(reader, axes);
     columns_part(reader->scene);
     return status;
 }

@@ -416,3 +416,33 @@ void dea_tree_put(dea_node *node, const char *key, dea_node *child)
     child->next = old->next;
     node->last = node->last == old ? child : node->last;
 }
+
+const dea_node *dea_tree_find(const dea_node *node, const char *path)
+{
+    while (node && node->kind == DEA_NODE_MAPPING) {
+        const size_t length = strcspn(path, ".");
+        const dea_node *child = node->first;
+        while (child && !(strncmp(child->key, path, length) == 0 && child->key[length] == '\0')) {
+            child = child->next;
+        }
+        if (!child || path[length] == '\0') {
+            return child;
+        }
+        node = child;
+        path += length + 1;
+    }
+    return NULL;
+}
+
+void dea_tree_remove(dea_node *node, const char *key)
+{
+    dea_node *before = NULL;
+    for (dea_node *child = node->first; child; before = child, child = child->next) {
+        if (strcmp(child->key, key) == 0) {
+            *(before ? &before->next : &node->first) = child->next;
+            node->last = node->last == child ? before : node->last;
+            node->count--;
+            return;
+        }
+    }
+}

@@ -48,6 +48,10 @@ dea_node *dea_tree_scalar(dea_arena *arena, const dea_origin *origin, const char
 dea_node *dea_tree_mapping(dea_arena *arena, const dea_place *place);
 /* Child of a mapping by key; NULL without one, or where @p node is NULL or no mapping. */
 dea_node *dea_tree_child(const dea_node *node, const char *key);
+/* What stands at the dotted @p path ("drive.waveform.step") below @p node, NULL where nothing does. */
+const dea_node *dea_tree_find(const dea_node *node, const char *path);
+/* Takes the child of that key out of a mapping; nothing happens without one. */
+void dea_tree_remove(dea_node *node, const char *key);
 /* Puts @p child under @p key, last or in the place of one of that key. */
 void dea_tree_put(dea_node *node, const char *key, dea_node *child);
 /* True where text is valid UTF-8 without control characters but tab and line breaks; else the place of the first that is not. */

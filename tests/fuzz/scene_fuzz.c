@@ -1,4 +1,5 @@
 /* libFuzzer target of the scene reader. Files cannot be named (no folder), axes are kept short by -DDEA_AXIS_VALUES_MAX. */
+#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,6 +27,21 @@ static size_t setting_split(const uint8_t *data, size_t size, char **setting)
     return *setting ? length + 1 : 0;
 }
 
+/* What engines rely on in a scene that has been read. */
+static bool scene_sound(const dea_scene *scene)
+{
+    const dea_waveform *waveform = &scene->drive.waveform;
+    const dea_transient *transient = &scene->transient;
+    const bool times = waveform->kind != DEA_WAVE_POINTS || (waveform->point_count > 0 && waveform->times && waveform->voltages);
+    const bool step = waveform->kind != DEA_WAVE_STEP || !(waveform->step.off < waveform->step.on + waveform->step.rise);
+    if (scene->study == DEA_STUDY_TRANSIENT) {
+        return times && step && waveform->kind != DEA_WAVE_NONE && transient->every > 0.0 && transient->every <= transient->until;
+    }
+    const dea_ac *ac = &scene->ac;
+    const bool range = scene->study != DEA_STUDY_AC || (ac->from > 0.0 && ac->from <= ac->to && isfinite(ac->bias));
+    return waveform->kind == DEA_WAVE_NONE && range;
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     dea_scene scene;
@@ -33,9 +49,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     char *text = NULL;
     const size_t start = setting_split(data, size, &text);
     const dea_setting setting = {.text = text};
-    const dea_status status = dea_scene_parse((const char *)data + start, size - start, "fuzz", NULL, &setting, text ? 1 : 0,
-                                              NULL, &scene, &error);
-    if ((status == DEA_OK) != (error.message[0] == '\0') || (status == DEA_OK && dea_scene_point_count(&scene) == 0)) {
+    const dea_status status =
+        dea_scene_parse((const char *)data + start, size - start, "fuzz", NULL, &setting, text ? 1 : 0, NULL, &scene, &error);
+    if ((status == DEA_OK) != (error.message[0] == '\0') ||
+        (status == DEA_OK && (dea_scene_point_count(&scene) == 0 || !scene_sound(&scene)))) {
         abort();
     }
     for (const char *c = error.message; *c; c++) {

@@ -25,6 +25,13 @@
     "drive: {voltage: 4500 V}\n"                                                                                                 \
     "model: lumped\n"
 #define ONE "study: {sweep: {}}\n"
+/* What a scene without a drive holds, and the step of a film that is switched on and off. */
+#define FILM                                                                                                                     \
+    "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"                       \
+    "material: elastosil-2030\nmodel: lumped\n"
+#define SWITCHED "drive: {waveform: {step: {on: 5 s, off: 15 s, voltage: 4500 V}}}\n"
+#define TRANSIENT "study: {transient: {until: 25 s}}\n"
+#define AC "study: {ac: {from: 1 Hz, to: 10 kHz}}\n"
 
 /* A scene that must be good. */
 typedef struct loaded {
@@ -434,8 +441,11 @@ static void bad_settings_are_refused_by_name(void **state)
     refuse(DOT ONE, "coverage=[0.5", "--set coverage=[0.5: syntax: ");
     refuse(DOT ONE, "coverage=0.5\x01", "--set coverage=0.5\\x01: setting: a control character");
     refuse(DOT ONE, "drive.waveform={step: {}}",
-           "--set drive.waveform={step: {}}: drive.waveform: is not available in this version");
-    refuse(DOT ONE, "study.transient={}", "--set study.transient={}: study.transient: is not available in this version");
+           "--set drive.waveform={step: {}}: drive.waveform: belongs to study.transient, but the study is sweep");
+    refuse(DOT ONE, "study.transient={until: 1 s}",
+           "t:3:18: drive.waveform: missing; a transient takes it in place of drive.voltage");
+    refuse(DOT ONE, "prony.0={g: 0.1, tau: 1 s}",
+           "--set prony.0={g: 0.1, tau: 1 s}: material.prony.0: cannot be set as a whole; accepted: all of material.prony");
     refuse(DOT ONE, "prony.0.tau=1 s", "--set prony.0.tau=1 s: material.prony.0.tau: the material has 0 branches");
     refuse(sweep, "prestretch=1.3",
            "--set prestretch=1.3: actuator.prestretch: is swept by the scene; set study.sweep.actuator.prestretch=[1.3] instead");
@@ -535,6 +545,398 @@ static void lens_takes_its_own_keys(void **state)
     dea_scene_free(&it.scene);
 }
 
+static void step_of_the_documentation_is_read(void **state)
+{
+    (void)state;
+    loaded it;
+    load(&it,
+         FILM
+         "drive: {waveform: {step: {on: 5 s, off: 15 s, voltage: 4500 V, rise: 1 ms}, period: 20 s}, series_resistance: 1 MOhm}\n"
+         "study: {transient: {until: 25 s, every: 10 ms, average: {from: 6 s, to: 8 s}, start: bias}}\n",
+         NULL);
+    const dea_waveform *waveform = &it.scene.drive.waveform;
+    assert_int_equal(it.scene.study, DEA_STUDY_TRANSIENT);
+    assert_int_equal(waveform->kind, DEA_WAVE_STEP);
+    assert_true(waveform->step.on == 5.0 && waveform->step.off == 15.0);
+    assert_true(waveform->step.voltage == 4500.0 && waveform->step.rise == 1e-3);
+    assert_true(waveform->period == 20.0);
+    assert_true(isnan(it.scene.drive.voltage));
+    assert_true(it.scene.drive.series_resistance == 1e6);
+    assert_true(it.scene.transient.until == 25.0 && it.scene.transient.every == 0.01);
+    assert_true(it.scene.transient.from_bias);
+    assert_int_equal(it.scene.transient.average_count, 1);
+    assert_true(it.scene.transient.averages[0].from == 6.0 && it.scene.transient.averages[0].to == 8.0);
+    assert_int_equal(dea_scene_point_count(&it.scene), 1);
+    dea_scene_free(&it.scene);
+}
+
+static void what_a_transient_leaves_out_has_its_default(void **state)
+{
+    (void)state;
+    loaded it;
+    load(&it, FILM "drive: {waveform: {step: {on: 0 s, voltage: 1 kV}}}\n" TRANSIENT, NULL);
+    assert_true(it.scene.drive.waveform.step.rise == 1e-6);
+    assert_true(isnan(it.scene.drive.waveform.step.off));
+    assert_true(isnan(it.scene.drive.waveform.period));
+    assert_true(it.scene.transient.every == 0.025);
+    assert_false(it.scene.transient.from_bias);
+    assert_int_equal(it.scene.transient.average_count, 0);
+    assert_int_equal(it.scene.axis_count, 0);
+    dea_scene_free(&it.scene);
+    load(&it, FILM "drive: {waveform: {sine: {amplitude: 100 V, frequency: 50 Hz}}}\n" TRANSIENT, NULL);
+    assert_true(it.scene.drive.waveform.sine.offset == 0.0);
+    assert_true(it.scene.drive.waveform.sine.phase == 0.0 && it.scene.drive.waveform.sine.delay == 0.0);
+    dea_scene_free(&it.scene);
+}
+
+static void jump_of_a_step_is_a_rise_of_zero(void **state)
+{
+    (void)state;
+    loaded it;
+    load(&it, FILM SWITCHED TRANSIENT, "rise=0 s");
+    assert_true(it.scene.drive.waveform.step.rise == 0.0);
+    dea_scene_free(&it.scene);
+    load(&it, FILM "drive: {waveform: {step: {on: 1 s, off: 2 s, voltage: 1 kV, rise: 1 s}, period: 3 s}}\n" TRANSIENT, NULL);
+    assert_true(it.scene.drive.waveform.step.rise == 1.0);
+    dea_scene_free(&it.scene);
+}
+
+static void points_are_read_in_their_order(void **state)
+{
+    (void)state;
+    loaded it;
+    load(&it, FILM "drive: {waveform: {points: [[0 s, 0 V], [5 s, 4.5 kV], [5001 ms, -1 V]], period: 6 s}}\n" TRANSIENT, NULL);
+    const dea_waveform *waveform = &it.scene.drive.waveform;
+    assert_int_equal(waveform->kind, DEA_WAVE_POINTS);
+    assert_int_equal(waveform->point_count, 3);
+    assert_true(waveform->times[0] == 0.0 && waveform->times[1] == 5.0 && waveform->times[2] == 5.001);
+    assert_true(waveform->voltages[0] == 0.0 && waveform->voltages[1] == 4500.0 && waveform->voltages[2] == -1.0);
+    assert_true(waveform->period == 6.0);
+    dea_scene_free(&it.scene);
+}
+
+static void sine_is_read_with_its_phase_in_degrees_or_radians(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *phase;
+        double radians;
+    } cases[] = {{"phase=90 deg", DEA_PI / 2.0}, {"phase=-1.5 rad", -1.5}, {"phase=180\xC2\xB0", DEA_PI}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        loaded it;
+        load(&it,
+             FILM "drive: {waveform: {sine: {offset: 4 kV, amplitude: 100 V, frequency: 1 kHz, phase: 0 rad, delay: 2 "
+                  "ms}}}\n" TRANSIENT,
+             cases[i].phase);
+        const dea_sine *sine = &it.scene.drive.waveform.sine;
+        assert_int_equal(it.scene.drive.waveform.kind, DEA_WAVE_SINE);
+        assert_true(sine->offset == 4000.0 && sine->amplitude == 100.0 && sine->frequency == 1000.0 && sine->delay == 0.002);
+        assert_true(fabs(sine->phase - cases[i].radians) <= 1e-15);
+        dea_scene_free(&it.scene);
+    }
+}
+
+/* Writes @p text to a file in a new scratch folder, reads a scene beside it, and cleans up. */
+static dea_status read_beside(loaded *self, const char *text, size_t length)
+{
+    char folder[] = "/tmp/dea-wave-XXXXXX";
+    char path[64];
+    static const char scene[] = FILM "drive: {waveform: {file: drive.csv}}\n" TRANSIENT;
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/drive.csv", folder);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    assert_int_equal(fwrite(text, 1, length, file), length);
+    assert_int_equal(fclose(file), 0);
+    const dea_status status = dea_scene_parse(scene, strlen(scene), "t", folder, NULL, 0, NULL, &self->scene, &self->error);
+    unlink(path);
+    rmdir(folder);
+    return status;
+}
+
+static void waveform_of_a_file_is_read_with_and_without_a_header(void **state)
+{
+    (void)state;
+    static const char *const files[] = {
+        "time_s,voltage_V\n0,0\n5,4500\n5.5,-1e-3\n",
+        "0,0\n5,4500\n5.5,-1e-3",
+        "\xEF\xBB\xBFtime_s, voltage_V\r\n0 ,0\r\n\r\n 5,\t+4500.\r\n5.5,-.001\r\n\r\n",
+    };
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        loaded it;
+        assert_int_equal(read_beside(&it, files[i], strlen(files[i])), DEA_OK);
+        const dea_waveform *waveform = &it.scene.drive.waveform;
+        assert_int_equal(waveform->kind, DEA_WAVE_POINTS);
+        assert_int_equal(waveform->point_count, 3);
+        assert_true(waveform->times[0] == 0.0 && waveform->times[1] == 5.0 && waveform->times[2] == 5.5);
+        assert_true(waveform->voltages[0] == 0.0 && waveform->voltages[1] == 4500.0 && waveform->voltages[2] == -1e-3);
+        dea_scene_free(&it.scene);
+    }
+}
+
+/* A million rows are read, one more is refused. */
+static void waveform_of_a_file_has_at_most_a_million_rows(void **state)
+{
+    (void)state;
+    for (size_t rows = 1000000; rows <= 1000001; rows++) {
+        char *text = malloc(rows * 16);
+        size_t used = 0;
+        loaded it;
+        assert_non_null(text);
+        for (size_t i = 0; i < rows; i++) {
+            used += (size_t)snprintf(text + used, 16, "%zu,%zu\n", i, i % 7);
+        }
+        const dea_status status = read_beside(&it, text, used);
+        free(text);
+        if (rows == 1000000) {
+            assert_int_equal(status, DEA_OK);
+            assert_int_equal(it.scene.drive.waveform.point_count, rows);
+            assert_true(it.scene.drive.waveform.times[rows - 1] == (double)(rows - 1));
+            dea_scene_free(&it.scene);
+        } else {
+            assert_int_equal(status, DEA_ERROR_SCENE);
+            assert_non_null(strstr(it.error.message, "drive.csv:1000001:1: drive.waveform.file: too many rows"));
+        }
+    }
+}
+
+static void no_waveform_file_is_read_without_a_folder(void **state)
+{
+    (void)state;
+    static const char text[] = FILM "drive: {waveform: {file: drive.csv}}\n" TRANSIENT;
+    loaded it;
+    assert_int_equal(dea_scene_parse(text, strlen(text), "t", NULL, NULL, 0, NULL, &it.scene, &it.error), DEA_ERROR_SCENE);
+    assert_non_null(strstr(it.error.message, "drive.waveform.file: files cannot be named here"));
+}
+
+static void averages_are_one_window_or_a_list(void **state)
+{
+    (void)state;
+    loaded it;
+    load(&it, FILM SWITCHED "study: {transient: {until: 25 s, average: [{from: 6 s, to: 8 s}, {from: 16 s, to: 25 s}]}}\n",
+         "average.1.from=17 s");
+    assert_int_equal(it.scene.transient.average_count, 2);
+    assert_true(it.scene.transient.averages[0].from == 6.0 && it.scene.transient.averages[0].to == 8.0);
+    assert_true(it.scene.transient.averages[1].from == 17.0 && it.scene.transient.averages[1].to == 25.0);
+    dea_scene_free(&it.scene);
+    load(&it, FILM SWITCHED "study: {transient: {until: 25 s, average: {from: 6 s, to: 8 s}}}\n",
+         "study.transient.average.to=9 s");
+    assert_true(it.scene.transient.averages[0].to == 9.0);
+    dea_scene_free(&it.scene);
+    refuse(FILM SWITCHED "study: {transient: {until: 25 s, average: [{from: 6 s, to: 8 s}]}}\n", "average.1.to=9 s",
+           "--set average.1.to=9 s: study.transient.average.1.to: the transient has 1 windows, counted from 0");
+    refuse(FILM SWITCHED "study: {transient: {until: 25 s, average: [{from: 1 s, to: 2 s}, {from: 3 s, to: 4 s}]}}\n",
+           "average.to=9 s", "--set average.to=9 s: study.transient.average.to: the transient has 2 windows; name one of them");
+    refuse(FILM SWITCHED TRANSIENT, "average.to=9 s",
+           "--set average.to=9 s: study.transient.average.to: the scene has no study.transient.average");
+}
+
+static void frequency_response_takes_its_bias_from_the_study_or_the_drive(void **state)
+{
+    (void)state;
+    loaded it;
+    load(&it, DOT AC, NULL);
+    assert_int_equal(it.scene.study, DEA_STUDY_AC);
+    assert_true(it.scene.ac.from == 1.0 && it.scene.ac.to == 1e4);
+    assert_int_equal(it.scene.ac.points_per_decade, 50);
+    assert_true(it.scene.ac.bias == 4500.0 && it.scene.drive.voltage == 4500.0);
+    dea_scene_free(&it.scene);
+    load(&it, FILM "study: {ac: {from: 1 Hz, to: 1 Hz, points_per_decade: 10000, bias: 3 kV}}\n", NULL);
+    assert_int_equal(it.scene.ac.points_per_decade, 10000);
+    assert_true(it.scene.ac.bias == 3000.0);
+    assert_true(isnan(it.scene.drive.voltage));
+    dea_scene_free(&it.scene);
+    load(&it, FILM "study: {ac: {from: 1 Hz, to: 10 Hz}, over: {bias: [1 kV, 2 kV]}}\n", NULL);
+    assert_true(it.scene.ac.bias == 1000.0);
+    assert_string_equal(it.scene.axes[0].column, "bias_V");
+    assert_int_equal(it.scene.axes[0].offset, offsetof(dea_scene, ac.bias));
+    dea_scene_free(&it.scene);
+}
+
+static void over_stands_inside_its_study_or_beside_it(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {
+        FILM SWITCHED "study: {transient: {until: 25 s, over: {coverage: [0.2, 0.5], prestretch: [1.1, 1.2, 1.3]}}}\n",
+        FILM SWITCHED "study: {transient: {until: 25 s}, over: {coverage: [0.2, 0.5], prestretch: [1.1, 1.2, 1.3]}}\n",
+        DOT "study: {ac: {from: 1 Hz, to: 10 Hz, over: {coverage: [0.2, 0.5], prestretch: [1.1, 1.2, 1.3]}}}\n",
+        DOT "study: {over: {coverage: [0.2, 0.5], prestretch: [1.1, 1.2, 1.3]}, ac: {from: 1 Hz, to: 10 Hz}}\n",
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        loaded it;
+        load(&it, texts[i], NULL);
+        assert_int_equal(it.scene.axis_count, 2);
+        assert_string_equal(it.scene.axes[0].key, "actuator.coverage");
+        assert_string_equal(it.scene.axes[1].key, "actuator.prestretch");
+        assert_true(it.scene.axes[1].changes_film);
+        assert_int_equal(dea_scene_point_count(&it.scene), 6);
+        dea_scene_free(&it.scene);
+        load(&it, texts[i], "over.coverage=[0.1, 0.2, 0.3]");
+        assert_int_equal(it.scene.axis_count, 2);
+        assert_int_equal(it.scene.axes[0].count, 3);
+        dea_scene_free(&it.scene);
+        load(&it, texts[i], "study.over={prestretch: [1.1]}");
+        assert_int_equal(dea_scene_point_count(&it.scene), 1);
+        dea_scene_free(&it.scene);
+    }
+}
+
+static void scalars_of_the_waveform_are_axes(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *waveform, *axis, *key, *column;
+        size_t offset;
+    } cases[] = {
+        {"step: {on: 1 s, voltage: 1 V}", "voltage: [1 V]", "drive.waveform.step.voltage", "step_voltage_V",
+         offsetof(dea_scene, drive.waveform.step.voltage)},
+        {"step: {on: 1 s}", "step.voltage: [1 V]", "drive.waveform.step.voltage", "step_voltage_V",
+         offsetof(dea_scene, drive.waveform.step.voltage)},
+        {"step: {voltage: 1 V}", "on: [1 s]", "drive.waveform.step.on", "step_on_s", offsetof(dea_scene, drive.waveform.step.on)},
+        {"step: {on: 1 s, voltage: 1 V}", "rise: [1 ms]", "drive.waveform.step.rise", "step_rise_s",
+         offsetof(dea_scene, drive.waveform.step.rise)},
+        {"sine: {amplitude: 1 V}", "frequency: [1 Hz]", "drive.waveform.sine.frequency", "sine_frequency_Hz",
+         offsetof(dea_scene, drive.waveform.sine.frequency)},
+        {"sine: {amplitude: 1 V, frequency: 1 Hz}", "phase: [90 deg]", "drive.waveform.sine.phase", "sine_phase_rad",
+         offsetof(dea_scene, drive.waveform.sine.phase)},
+        {"points: [[0 s, 1 V]]", "period: [1 s]", "drive.waveform.period", "period_s",
+         offsetof(dea_scene, drive.waveform.period)},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[1024];
+        loaded it;
+        snprintf(text, sizeof text, FILM "drive: {waveform: {%s}}\nstudy: {transient: {until: 1 s}, over: {%s}}\n",
+                 cases[i].waveform, cases[i].axis);
+        load(&it, text, NULL);
+        assert_string_equal(it.scene.axes[0].key, cases[i].key);
+        assert_string_equal(it.scene.axes[0].column, cases[i].column);
+        assert_int_equal(it.scene.axes[0].offset, cases[i].offset);
+        assert_true(*(double *)((char *)&it.scene + cases[i].offset) == 1.0 || it.scene.axes[0].values[0] != 1.0);
+        dea_scene_free(&it.scene);
+    }
+}
+
+static void axis_of_the_focal_length_leaves_the_column_of_a_transient_alone(void **state)
+{
+    (void)state;
+    loaded it;
+    load(&it,
+         "actuator: {kind: lens, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2,\n"
+         "           optics: {refractive_index: 1.4}}\nmaterial: elastosil-2030\nmodel: lumped\n" SWITCHED
+         "study: {transient: {until: 25 s}, over: {focal_length: [20 mm, 22 mm]}}\n",
+         NULL);
+    assert_string_equal(it.scene.axes[0].column, "optics_focal_length_m");
+    dea_scene_free(&it.scene);
+}
+
+static void voltage_is_that_of_the_step_where_a_scene_has_one(void **state)
+{
+    (void)state;
+    loaded it;
+    load(&it, FILM SWITCHED TRANSIENT, "voltage=3 kV");
+    assert_true(it.scene.drive.waveform.step.voltage == 3000.0);
+    assert_true(isnan(it.scene.drive.voltage));
+    dea_scene_free(&it.scene);
+    load(&it, DOT ONE, "voltage=3 kV");
+    assert_true(it.scene.drive.voltage == 3000.0);
+    dea_scene_free(&it.scene);
+    load(&it, DOT AC, "voltage=3 kV");
+    assert_true(it.scene.ac.bias == 3000.0);
+    dea_scene_free(&it.scene);
+    refuse(FILM "drive: {waveform: {points: [[0 s, 0 V]]}}\n" TRANSIENT, "voltage=3 kV",
+           "--set voltage=3 kV: voltage: could mean several keys; accepted: one of drive.voltage, drive.waveform.step.voltage");
+    refuse(FILM SWITCHED TRANSIENT, "drive.voltage=3 kV",
+           "--set drive.voltage=3 kV: drive.voltage: contradicts drive.waveform, which is given too");
+    refuse(
+        FILM "drive: {waveform: {sine: {amplitude: 1 V, frequency: 1 Hz}}}\n" TRANSIENT, "rise=1 s",
+        "--set rise=1 s: drive.waveform.step.rise: the scene has no drive.waveform.step; accepted for that: a mapping with on");
+}
+
+static void settings_change_a_transient(void **state)
+{
+    (void)state;
+    loaded it;
+    load(&it, FILM SWITCHED TRANSIENT, "study.transient={until: 10 s, every: 1 s}");
+    assert_true(it.scene.transient.until == 10.0 && it.scene.transient.every == 1.0);
+    dea_scene_free(&it.scene);
+    load(&it, FILM SWITCHED TRANSIENT, "study.transient.until=10s");
+    assert_true(it.scene.transient.until == 10.0 && it.scene.transient.every == 0.01);
+    dea_scene_free(&it.scene);
+    load(&it, FILM SWITCHED TRANSIENT, "study={transient: {until: 1 s, start: bias}}");
+    assert_true(it.scene.transient.until == 1.0 && it.scene.transient.from_bias);
+    dea_scene_free(&it.scene);
+    load(&it, FILM SWITCHED TRANSIENT, "start=bias");
+    assert_true(it.scene.transient.from_bias && it.scene.transient.until == 25.0);
+    dea_scene_free(&it.scene);
+    load(&it, FILM SWITCHED TRANSIENT, "step.off=20 s");
+    assert_true(it.scene.drive.waveform.step.off == 20.0);
+    dea_scene_free(&it.scene);
+    load(&it, FILM SWITCHED TRANSIENT, "drive.waveform.points=[[0 s, 0 V], [1 s, 1 V]]");
+    assert_int_equal(it.scene.drive.waveform.kind, DEA_WAVE_POINTS);
+    assert_true(isnan(it.scene.drive.waveform.step.on));
+    dea_scene_free(&it.scene);
+    load(&it, DOT AC, "points_per_decade=7");
+    assert_int_equal(it.scene.ac.points_per_decade, 7);
+    dea_scene_free(&it.scene);
+}
+
+static dea_status parse_with(loaded *self, const char *text, const char *first, const char *second)
+{
+    const dea_setting settings[] = {{first}, {second}};
+    self->error = (dea_error){.status = DEA_OK};
+    return dea_scene_parse(text, strlen(text), "t", NULL, settings, 2, NULL, &self->scene, &self->error);
+}
+
+static void settings_turn_a_static_scene_into_a_transient_and_back(void **state)
+{
+    (void)state;
+    static const char *const waveform[] = {"drive.waveform={step: {on: 0 s, voltage: 1 V}}", "study.transient={until: 1 s}"};
+    static const char *const voltage[] = {"drive.voltage=2 kV", "study.sweep={}"};
+    loaded it;
+    for (size_t first = 0; first < 2; first++) {
+        assert_int_equal(parse_with(&it, DOT ONE, waveform[first], waveform[1 - first]), DEA_OK);
+        assert_int_equal(it.scene.study, DEA_STUDY_TRANSIENT);
+        assert_true(isnan(it.scene.drive.voltage));
+        dea_scene_free(&it.scene);
+        assert_int_equal(parse_with(&it, FILM SWITCHED TRANSIENT, voltage[first], voltage[1 - first]), DEA_OK);
+        assert_int_equal(it.scene.study, DEA_STUDY_SWEEP);
+        assert_true(it.scene.drive.voltage == 2000.0);
+        assert_int_equal(it.scene.drive.waveform.kind, DEA_WAVE_NONE);
+        dea_scene_free(&it.scene);
+        const dea_status status =
+            parse_with(&it, DOT ONE, first ? "voltage=7 V" : waveform[0], first ? waveform[0] : "voltage=7 V");
+        assert_int_equal(status, DEA_ERROR_SCENE);
+    }
+    assert_int_equal(parse_with(&it, DOT "study: {transient: {until: 1 s}}\n", "voltage=7 V", waveform[0]), DEA_OK);
+    assert_true(it.scene.drive.waveform.step.voltage == 7.0);
+    dea_scene_free(&it.scene);
+}
+
+static void swept_step_is_checked_at_all_its_values(void **state)
+{
+    (void)state;
+    loaded it;
+    load(&it, FILM SWITCHED "study: {transient: {until: 25 s}, over: {on: [1 s, 14 s], rise: [0 s, 1 s]}}\n", NULL);
+    dea_scene_free(&it.scene);
+    refuse(FILM SWITCHED "study: {transient: {until: 25 s}, over: {on: [1 s, 14 s], rise: [0 s, 2 s]}}\n", NULL,
+           "t:4:41: drive.waveform.step.off: out of range (15 s)");
+    refuse(
+        FILM
+        "drive: {waveform: {points: [[0 s, 0 V], [2 s, 1 V]]}}\nstudy: {transient: {until: 25 s}, over: {period: [3 s, 1 s]}}\n",
+        NULL, "t:5:50: drive.waveform.period: out of range");
+}
+
+static void model_argument_is_checked_against_the_study(void **state)
+{
+    (void)state;
+    loaded it;
+    assert_int_equal(parse(&it, FILM SWITCHED TRANSIENT, NULL, "coverage,lame"), DEA_OK);
+    dea_scene_free(&it.scene);
+    assert_int_equal(parse(&it, FILM SWITCHED TRANSIENT, NULL, "lumped,field"), DEA_ERROR_SCENE);
+    assert_string_equal(it.error.message, "--model: model: cannot do a transient (field); accepted: lumped, coverage, lame");
+    dea_scene_free(&it.scene);
+}
+
 /* First line of a bad scene: "# expect: LINE:COLUMN: KEY: ...", or "# expect: @FILE:LINE..." where a material file is to blame.
  */
 static bool expectation(const char *path, char out[512])
@@ -576,7 +978,7 @@ static void every_bad_scene_is_refused_at_its_place(void **state)
         count++;
     }
     closedir(folder);
-    assert_true(count >= 100);
+    assert_true(count >= 190);
 }
 
 static void hostile_bytes_are_refused(void **state)
@@ -700,6 +1102,24 @@ int main(void)
         cmocka_unit_test(no_material_file_is_read_without_a_folder),
         cmocka_unit_test(builtin_materials_carry_their_source),
         cmocka_unit_test(lens_takes_its_own_keys),
+        cmocka_unit_test(step_of_the_documentation_is_read),
+        cmocka_unit_test(what_a_transient_leaves_out_has_its_default),
+        cmocka_unit_test(jump_of_a_step_is_a_rise_of_zero),
+        cmocka_unit_test(points_are_read_in_their_order),
+        cmocka_unit_test(sine_is_read_with_its_phase_in_degrees_or_radians),
+        cmocka_unit_test(waveform_of_a_file_is_read_with_and_without_a_header),
+        cmocka_unit_test(waveform_of_a_file_has_at_most_a_million_rows),
+        cmocka_unit_test(no_waveform_file_is_read_without_a_folder),
+        cmocka_unit_test(averages_are_one_window_or_a_list),
+        cmocka_unit_test(frequency_response_takes_its_bias_from_the_study_or_the_drive),
+        cmocka_unit_test(over_stands_inside_its_study_or_beside_it),
+        cmocka_unit_test(scalars_of_the_waveform_are_axes),
+        cmocka_unit_test(axis_of_the_focal_length_leaves_the_column_of_a_transient_alone),
+        cmocka_unit_test(voltage_is_that_of_the_step_where_a_scene_has_one),
+        cmocka_unit_test(settings_change_a_transient),
+        cmocka_unit_test(settings_turn_a_static_scene_into_a_transient_and_back),
+        cmocka_unit_test(swept_step_is_checked_at_all_its_values),
+        cmocka_unit_test(model_argument_is_checked_against_the_study),
         cmocka_unit_test(every_bad_scene_is_refused_at_its_place),
         cmocka_unit_test(hostile_bytes_are_refused),
         cmocka_unit_test(huge_texts_are_refused_shortly),

@@ -14,7 +14,7 @@ ALL_CFLAGS  = -std=c11 -D_POSIX_C_SOURCE=200809L -D_DEFAULT_SOURCE $(WARNINGS) -
 SUNDIALS_7 := $(filter /%,$(shell $(CC) -print-file-name=libsundials_core.so 2>/dev/null))
 SUNDIALS_CORE := $(if $(SUNDIALS_7),-lsundials_core,-lsundials_generic)
 MPI := $(if $(SUNDIALS_7),$(firstword $(foreach name,ompi-c ompi mpich mpi-c mpi,$(if $(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo yes),$(name)))))
-LIBS = -lngspice -lfyaml -ludunits2 -llapacke -lsundials_ida -lsundials_kinsol -lsundials_nvecserial -lsundials_sunmatrixdense \
+LIBS = -lngspice -lfyaml -ludunits2 -llapacke -lsundials_ida -lsundials_arkode -lsundials_kinsol -lsundials_nvecserial -lsundials_sunmatrixdense \
        -lsundials_sunlinsoldense $(SUNDIALS_CORE) \
        $(if $(MPI),$(shell $(PKG_CONFIG) --libs $(MPI))) -ldl -lm
 

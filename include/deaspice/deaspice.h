@@ -7,6 +7,7 @@
 #include "deaspice/engine.h"
 #include "deaspice/fit.h"
 #include "deaspice/material.h"
+#include "deaspice/measures.h"
 #include "deaspice/model.h"
 #include "deaspice/output.h"
 #include "deaspice/plot.h"

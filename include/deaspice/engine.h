@@ -16,6 +16,7 @@ typedef struct dea_engine {
     const char *summary; /**< one line for --help */
     bool isolated;       /**< runs only inside a worker process: a foreign library that can crash, hang or be poisoned */
     double patience;     /**< a worker that needs longer than this for one point, on average over its block, hangs [s] */
+    double run_patience; /**< the same for one transient or frequency response [s] */
     size_t block;        /**< points that one call of sweep() takes best */
     /** NULL where the engine can do this model and scene, else why not (one phrase, static). */
     const char *(*refuses)(const dea_scene *scene, const dea_model *model);
@@ -25,9 +26,18 @@ typedef struct dea_engine {
      * Anything but DEA_OK leaves the session unusable; rows are then undefined. */
     dea_status (*sweep)(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count, dea_row *rows,
                         dea_error *error);
+    /** Runs one transient: fills the samples of the layout, and the summary. All axes of @p scene are at their place. A run that
+     * ends early (pull_in, failed) is no failure of this call: the rows tell. NULL: the engine has no time domain. */
+    dea_status (*transient)(void *session, const dea_scene *scene, const dea_model *model, dea_sample *samples,
+                            dea_summary *summary, dea_error *error);
+    /** Computes one frequency response: fills the rows of the layout. NULL: the engine has none. */
+    dea_status (*ac)(void *session, const dea_scene *scene, const dea_model *model, dea_response *rows, dea_error *error);
     /** Ends a session; NULL is fine. */
     void (*end)(void *session);
 } dea_engine;
+
+/** NULL where the engine can do the scene's study with this model, else why not (one phrase, static). */
+DEA_API const char *dea_engine_refuses(const dea_engine *engine, const dea_scene *scene, const dea_model *model);
 
 /** Number of engines. */
 DEA_API size_t dea_engine_count(void);
@@ -36,11 +46,12 @@ DEA_API const dea_engine *dea_engine_at(size_t index);
 /** Engine by name, NULL if there is none. */
 DEA_API const dea_engine *dea_engine_find(const char *name);
 
-/** How a study is run and who listens. Every callback may be NULL except rows. */
+/** How a study is run and who listens. Every callback may be NULL except points. */
 typedef struct dea_run_options {
     size_t jobs; /**< worker processes, >= 1; 1 keeps an engine that is not isolated in this process */
-    /** Takes rows in order; @p first counts over models (slowest) and points. A failure ends the run with its status. */
-    dea_status (*rows)(void *user, size_t first, const dea_row *rows, size_t count, dea_error *error);
+    /** Takes the results of @p count points in order, each as the scene's dea_layout says; @p first counts over models (slowest)
+     * and points. A failure ends the run with its status. */
+    dea_status (*points)(void *user, size_t first, const void *points, size_t count, dea_error *error);
     void (*progress)(void *user, size_t done, size_t total);
     void (*log)(void *user, const char *line); /**< what engines say about points that failed */
     bool (*stop)(void *user);                  /**< polled at least 10 times a second: true ends the run as interrupted */
@@ -54,7 +65,8 @@ typedef struct dea_run_options {
  * @return DEA_OK, DEA_ERROR_UNSUPPORTED (the engine refuses a model; nothing was run), DEA_ERROR_ENGINE (no session could begin),
  *         DEA_ERROR_INTERRUPTED, DEA_ERROR_MEMORY, or what the rows callback returned
  */
-DEA_API dea_status dea_study_run(const dea_scene *scene, const dea_engine *engine, const dea_run_options *options, dea_error *error);
+DEA_API dea_status dea_study_run(const dea_scene *scene, const dea_engine *engine, const dea_run_options *options,
+                                 dea_error *error);
 
 #ifdef __cplusplus
 }

@@ -46,19 +46,32 @@ DEA_API void dea_point_place(const dea_scene *scene, dea_point *point);
 /** True where all numbers of the point are in their ranges (a grid can hold a corner that is not). */
 DEA_API bool dea_point_valid(const dea_point *point);
 
+/** A linear network about rest: m u'' + r u' + (stiffness + softening U^2) u + branches = force U^2, with the film's capacitance
+ * C0 + C1 u + C2 u^2/2. One half of dC/du is force - softening u (physics: F_DEA = U^2/2 dC/du). */
+typedef struct dea_linear {
+    double stiffness;      /**< long-term, of all passive springs [N/m] */
+    double softening;      /**< negative where the voltage softens [N/m/V^2] */
+    double force;          /**< outward [N/V^2] */
+    double capacitance[3]; /**< C0 [F], C1 [F/m], C2 [F/m^2] */
+} dea_linear;
+
 struct dea_network;
 struct dea_symbols;
 
 /** A static model. */
 typedef struct dea_model {
-    const char *name;      /**< e.g. "lumped" */
-    const char *equation;  /**< e.g. "Eqs. 19-23" */
+    const char *name;       /**< e.g. "lumped" */
+    const char *equation;   /**< e.g. "Eqs. 19-23" */
     const char *leaves_out; /**< what it neglects */
-    bool lens;             /**< can do a lens too */
+    bool lens;              /**< can do a lens too */
     /** The model's own equations (engine `direct`); fills every field of @p row. @p accuracy is what the user wants. */
     void (*solve)(const dea_point *point, double accuracy, dea_row *row);
     /** Adds its elements and limits to a network in displacement form; NULL where the model is not a network. */
     void (*network)(const struct dea_symbols *symbols, struct dea_network *network);
+    /** Coefficients of the linear network (engine `direct` in transients); NULL where the network is not linear. */
+    void (*linear)(const dea_point *point, dea_linear *linear);
+    /** Can do transients and frequency responses. */
+    bool dynamic;
     /** It is the boundary value problem of the axisymmetric membrane along the radius. */
     bool membrane;
 } dea_model;
@@ -69,6 +82,10 @@ DEA_API size_t dea_model_count(void);
 DEA_API const dea_model *dea_model_at(size_t index);
 /** Model by name, NULL if there is none. */
 DEA_API const dea_model *dea_model_find(const char *name);
+
+/** Mass of film and electrodes that moves with the disc edge [kg], 0 without density: Rayleigh with the shape of Lame's solution,
+ * the electrodes' mass per area counted over the pre-stretched film (physics: section 5). */
+DEA_API double dea_point_mass(const dea_scene *scene, const dea_point *point);
 
 #ifdef __cplusplus
 }

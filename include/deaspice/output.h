@@ -1,5 +1,5 @@
 /** @file output.h
- * Writers of static studies (CSV, NetCDF). Rows come in order, block after block, so memory does not grow
+ * Writers of studies (CSV, NetCDF). Points come in order, block after block, so memory does not grow
  * with the study. A file appears whole under its name or not at all.
  */
 #ifndef DEASPICE_OUTPUT_H
@@ -24,10 +24,11 @@ typedef struct dea_writer dea_writer;
  */
 DEA_API dea_status dea_writer_open(const dea_scene *scene, const char *engine, const char *path, const char *format,
                                    dea_writer **writer, dea_error *error);
-/** Appends @p count rows, the first of them being row number @p first: models slowest, last axis fastest. */
-DEA_API dea_status dea_writer_rows(dea_writer *writer, size_t first, const dea_row *rows, size_t count, dea_error *error);
-/** Ends the file: renames it into place when @p keep is true and all rows came, else removes what was written. Frees the writer;
- * NULL is fine. A program that catches a signal calls it with @p keep false, from its main flow. */
+/** Appends the rows of @p count points, laid out as dea_layout_of() says, the first of them being point number @p first: models
+ * slowest, last axis fastest. */
+DEA_API dea_status dea_writer_points(dea_writer *writer, size_t first, const void *points, size_t count, dea_error *error);
+/** Ends the file: renames it into place when @p keep is true and all points came, else removes what was written. Frees the
+ * writer; NULL is fine. A program that catches a signal calls it with @p keep false, from its main flow. */
 DEA_API dea_status dea_writer_finish(dea_writer *writer, bool keep, dea_error *error);
 
 #ifdef __cplusplus

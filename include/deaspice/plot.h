@@ -1,5 +1,5 @@
 /** @file plot.h
- * Pictures (SVG, PNG) through gnuplot: of static studies, of a material, of a fit. A picture appears whole or not at all.
+ * Pictures (SVG, PNG) through gnuplot: of studies, of a material, of a fit. A picture appears whole or not at all.
  * The format is that of the path's ending, .svg or .png; "-" is not taken.
  */
 #ifndef DEASPICE_PLOT_H
@@ -20,14 +20,17 @@ typedef struct dea_plot dea_plot;
  * bounded.
  *
  * One long axis gives strain and displacement over that axis, a curve for each value of the other axes and each model (24 at
- * most); two axes of more than 12 values and one model give a map of the displacement.
+ * most); two axes of more than 12 values and one model give a map of the displacement. A transient gives strain, voltage, and
+ * current and focal length where the scene has them, over time; a frequency response gives displacement and impedance: a curve for
+ * each run (24 at most), thinned without losing its peaks.
  * @param[out] plot the caller ends it with dea_plot_finish()
  * @return DEA_OK, DEA_ERROR_USAGE (ending, a single point, too many curves), DEA_ERROR_IO, DEA_ERROR_MISSING (no gnuplot),
  *         DEA_ERROR_MEMORY
  */
 DEA_API dea_status dea_plot_begin(const dea_scene *scene, const char *path, dea_plot **plot, dea_error *error);
-/** Takes @p count rows, the first of them being row number @p first: models slowest, last axis fastest. */
-DEA_API void dea_plot_rows(dea_plot *plot, size_t first, const dea_row *rows, size_t count);
+/** Takes the rows of @p count points, laid out as dea_layout_of() says, the first of them being point number @p first: models
+ * slowest, last axis fastest. */
+DEA_API void dea_plot_points(dea_plot *plot, size_t first, const void *points, size_t count);
 /** Draws when @p keep is true, and frees the plot; NULL is fine.
  * @return DEA_OK, DEA_ERROR_USAGE (no point has an equilibrium), DEA_ERROR_IO, DEA_ERROR_ENGINE (gnuplot failed: its words),
  *         DEA_ERROR_MISSING, DEA_ERROR_MEMORY */
@@ -36,8 +39,10 @@ DEA_API dea_status dea_plot_finish(dea_plot *plot, bool keep, dea_error *error);
 /** Draws nominal stress (uniaxial and equi-biaxial) and operating modulus of a material over stretch 1 to 2. Returns as
  * dea_plot_finish(). */
 DEA_API dea_status dea_plot_material(const dea_material *material, const char *path, dea_error *error);
-/** Draws measured points and fitted curves. Returns as dea_plot_finish(). */
-DEA_API dea_status dea_plot_fit(const dea_fit *fit, const dea_fit_data *data, const char *path, dea_error *error);
+/** Draws measured points and fitted curves: stress over stretch, stress over time, or both side by side; @p fit or @p relaxation
+ * may be NULL, not both. Returns as dea_plot_finish(). */
+DEA_API dea_status dea_plot_fit(const dea_fit *fit, const dea_fit_data *data, const dea_relaxation *relaxation,
+                                const dea_relaxation_data *held, const char *path, dea_error *error);
 
 #ifdef __cplusplus
 }

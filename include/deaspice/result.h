@@ -1,5 +1,5 @@
 /** @file result.h
- * One row of a static study.
+ * Rows of a study: of a static point, of a transient, of a frequency response, and how they lie in memory.
  */
 #ifndef DEASPICE_RESULT_H
 #define DEASPICE_RESULT_H
@@ -11,11 +11,11 @@ extern "C" {
 #endif
 
 /** States of a static point: code, name, meaning. */
-#define DEA_STATE_LIST(X)                                                            \
-    X(DEA_STATE_OK, "ok", "equilibrium within all limits")                           \
-    X(DEA_STATE_SLACK, "slack", "a region lost its tension: the film wrinkles")      \
-    X(DEA_STATE_PULL_IN, "pull_in", "no equilibrium connected to rest")              \
-    X(DEA_STATE_BREAKDOWN, "breakdown", "true field above the breakdown strength")   \
+#define DEA_STATE_LIST(X)                                                                                                        \
+    X(DEA_STATE_OK, "ok", "equilibrium within all limits")                                                                       \
+    X(DEA_STATE_SLACK, "slack", "a region lost its tension: the film wrinkles")                                                  \
+    X(DEA_STATE_PULL_IN, "pull_in", "no equilibrium connected to rest")                                                          \
+    X(DEA_STATE_BREAKDOWN, "breakdown", "true field above the breakdown strength")                                               \
     X(DEA_STATE_FAILED, "failed", "not solved")
 
 typedef enum dea_state {
@@ -50,6 +50,69 @@ typedef struct dea_column {
 
 enum { DEA_ROW_COLUMNS = 4 };
 DEA_API extern const dea_column dea_row_columns[DEA_ROW_COLUMNS];
+
+/** One sample of a transient; from a pull_in or failed on, all numbers but time and voltage are NAN. */
+typedef struct dea_sample {
+    double time;         /**< [s] */
+    double voltage;      /**< of the source, before an edge that lies at this very time [V] */
+    double displacement; /**< u, outward [m] */
+    double strain;       /**< s [1] */
+    double velocity;     /**< du/dt [m/s] */
+    double force;        /**< F_DEA over the full circumference, outward [N] */
+    double current;      /**< of the source, where the scene has an electrical port [A] */
+    double charge;       /**< of the film, where the scene has an electrical port [C] */
+    double focal_length; /**< of a lens with optics [m] */
+    dea_state state;
+} dea_sample;
+
+/** What a transient tells besides its samples. Energies are those between start and end of the run [J]. */
+typedef struct dea_summary {
+    double error;    /**< estimated error of the displacement, relative to its peak [1] */
+    double work;     /**< put in by the source */
+    double electric; /**< stored in the film's capacitance */
+    double elastic;  /**< stored in springs, those of the branches too */
+    double kinetic;
+    double dissipated; /**< in dampers, branches and resistances */
+    double residual;   /**< of the balance of these, relative to the largest of them on the way [1] */
+    double resonance;  /**< first resonance of the relaxed film at rest [Hz], NAN without mass */
+} dea_summary;
+
+/** One frequency of an AC study. */
+typedef struct dea_response {
+    double frequency;          /**< [Hz] */
+    double displacement;       /**< magnitude of displacement per volt of the source [m/V] */
+    double displacement_phase; /**< [deg], -180 < phase <= 180 */
+    double impedance;          /**< magnitude of the input impedance, series resistance included [Ohm] */
+    double impedance_phase;    /**< [deg] */
+    dea_state state;
+} dea_response;
+
+enum { DEA_LAYOUT_COLUMNS = 10 };
+
+struct dea_scene;
+
+/** How the result of one point of a study lies in memory: its rows, then its summary. */
+typedef struct dea_layout {
+    dea_column columns[DEA_LAYOUT_COLUMNS]; /**< numeric columns, in order; the state column follows them */
+    size_t column_count;
+    size_t row_size;     /**< [bytes] */
+    size_t state_offset; /**< of the dea_state in a row [bytes] */
+    size_t rows;         /**< of one point, >= 1 */
+    size_t point_size;   /**< rows and summary [bytes] */
+} dea_layout;
+
+/** Layout of the scene's study: which columns depends on what the scene has (electrical port, optics). */
+DEA_API dea_layout dea_layout_of(const struct dea_scene *scene);
+/** Time of sample @p index of a transient, frequency of row @p index of an AC study. */
+DEA_API double dea_layout_place(const struct dea_scene *scene, size_t index);
+/** State of a row. */
+DEA_API dea_state dea_layout_state(const dea_layout *layout, const void *row);
+/** Makes every row of a point `failed`. */
+DEA_API void dea_layout_fail(const struct dea_scene *scene, const dea_layout *layout, void *point);
+/** A summary without numbers. */
+DEA_API dea_summary dea_summary_failed(void);
+/** Summary of a transient's point. */
+DEA_API dea_summary *dea_layout_summary(const dea_layout *layout, void *point);
 
 #ifdef __cplusplus
 }

@@ -28,7 +28,7 @@ static size_t longest_axis(const dea_scene *scene, size_t count)
     return best;
 }
 
-static void place(dea_scene *scene, size_t point)
+void dea_axes_place(dea_scene *scene, size_t point)
 {
     for (size_t i = scene->axis_count; i-- > 0;) {
         const dea_axis *axis = &scene->axes[i];
@@ -58,7 +58,7 @@ dea_status dea_lines_visit(const dea_scene *scene, size_t first, size_t count, d
             const size_t to = past < axis->count ? past : axis->count;
             if (from < to) {
                 const size_t point = zero + from * stride;
-                place(&here, point);
+                dea_axes_place(&here, point);
                 status = visit(user, &here, &(dea_line){axis, from, to - from, point - first, stride}, error);
             }
         }

@@ -23,6 +23,9 @@ typedef dea_status dea_line_visit(void *user, const dea_scene *scene, const dea_
 dea_status dea_lines_visit(const dea_scene *scene, size_t first, size_t count, dea_line_visit *visit, void *user,
                            dea_error *error);
 
+/** Moves all axes of a scene to the point of that number. */
+void dea_axes_place(dea_scene *scene, size_t point);
+
 /** Sets one scalar of a scene: the swept one of @p axis. */
 static inline void dea_axis_set(const dea_axis *axis, dea_scene *scene, double value)
 {

@@ -1,5 +1,7 @@
 #include "engine/plan.h"
 
+#include "engine/line.h"
+
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -20,8 +22,10 @@ static size_t divide_up(size_t a, size_t b)
     return a / b + (a % b != 0);
 }
 
-static size_t block_size(const dea_engine *engine, size_t jobs, size_t points, size_t total)
+static size_t block_size(const dea_scene *scene, const dea_engine *engine, size_t jobs, size_t points, size_t total)
 {
+    if (scene->study != DEA_STUDY_SWEEP)
+        return 1; /* a point is a whole run */
     size_t best = engine->block > 0 ? engine->block : 1;
     size_t block = best;
     if (jobs > 1) {
@@ -45,9 +49,9 @@ dea_status dea_plan_make(const dea_scene *scene, const dea_engine *engine, const
         return dea_fail(error, DEA_ERROR_USAGE, "the study has no point");
     if (points > SIZE_MAX / sizeof(dea_row) / scene->model_count)
         return dea_fail(error, DEA_ERROR_USAGE, "the study has more points than this machine can count");
-    *plan = (dea_plan){.scene = scene, .engine = engine, .options = options, .points = points};
+    *plan = (dea_plan){.scene = scene, .engine = engine, .options = options, .layout = dea_layout_of(scene), .points = points};
     plan->total = points * scene->model_count;
-    plan->block = block_size(engine, options->jobs, points, plan->total);
+    plan->block = block_size(scene, engine, options->jobs, points, plan->total);
     plan->blocks_per_model = divide_up(points, plan->block);
     plan->blocks = plan->blocks_per_model * scene->model_count;
     return DEA_OK;
@@ -60,7 +64,7 @@ dea_span dea_plan_span(const dea_plan *plan, size_t block)
     size_t left = plan->points - first;
     return (dea_span){.model = plan->scene->models[model],
                       .first = first,
-                      .row = model * plan->points + first,
+                      .place = model * plan->points + first,
                       .count = left < plan->block ? left : plan->block};
 }
 
@@ -148,13 +152,53 @@ static void log_failure(const dea_plan *plan, const dea_span *span, const dea_at
     }
 }
 
-void dea_rows_fail(dea_row *rows, size_t count)
+static char *point_at(const dea_plan *plan, void *points, size_t index)
 {
-    for (size_t i = 0; i < count; i++)
-        rows[i] = dea_row_failed();
+    return (char *)points + index * plan->layout.point_size;
 }
 
-void dea_attempt_failed(dea_attempt *attempt, const dea_plan *plan, const dea_span *span, dea_row *rows, const char *why,
+void dea_plan_fail(const dea_plan *plan, void *points, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        dea_layout_fail(plan->scene, &plan->layout, point_at(plan, points, i));
+}
+
+/* One transient or frequency response. */
+static dea_status run_point(const dea_plan *plan, void *session, const dea_model *model, size_t point, void *result,
+                            dea_error *error)
+{
+    dea_scene here = *plan->scene; /* shares title, waveform and axes, changes only scalars */
+    dea_axes_place(&here, point);
+    dea_status status;
+    if (here.study == DEA_STUDY_TRANSIENT)
+        status = plan->engine->transient(session, &here, model, result, dea_layout_summary(&plan->layout, result), error);
+    else
+        status = plan->engine->ac(session, &here, model, result, error);
+    if (status == DEA_ERROR_USAGE && plan->total > 1) {
+        dea_layout_fail(plan->scene, &plan->layout, result);
+        return DEA_OK;
+    }
+    return status;
+}
+
+dea_status dea_plan_solve(const dea_plan *plan, void *session, const dea_model *model, size_t first, size_t count, void *points,
+                          dea_error *error)
+{
+    if (plan->scene->study == DEA_STUDY_SWEEP)
+        return plan->engine->sweep(session, plan->scene, model, first, count, points, error);
+    dea_status status = DEA_OK;
+    for (size_t i = 0; i < count && status == DEA_OK; i++)
+        status = run_point(plan, session, model, first + i, point_at(plan, points, i), error);
+    return status;
+}
+
+double dea_plan_patience(const dea_plan *plan, size_t count)
+{
+    const bool sweep = plan->scene->study == DEA_STUDY_SWEEP;
+    return (sweep ? plan->engine->patience : plan->engine->run_patience) * (double)count;
+}
+
+void dea_attempt_failed(dea_attempt *attempt, const dea_plan *plan, const dea_span *span, void *points, const char *why,
                         dea_damage *damage)
 {
     bool alone = attempt->end - attempt->next == 1;
@@ -168,18 +212,18 @@ void dea_attempt_failed(dea_attempt *attempt, const dea_plan *plan, const dea_sp
     if (alone)
         damage->alone++;
     log_failure(plan, span, attempt, why, damage);
-    dea_rows_fail(rows + attempt->next, attempt->end - attempt->next);
+    dea_plan_fail(plan, point_at(plan, points, attempt->next), attempt->end - attempt->next);
     attempt->next = attempt->end;
     attempt->suspect = 0;
     try_next_range(attempt);
 }
 
-dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const dea_row *rows, dea_error *error)
+dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const void *points, dea_error *error)
 {
     const dea_run_options *options = plan->options;
-    dea_status status = options->rows(options->user, span->row, rows, span->count, error);
+    dea_status status = options->points(options->user, span->place, points, span->count, error);
     if (status == DEA_OK && options->progress)
-        options->progress(options->user, span->row + span->count, plan->total);
+        options->progress(options->user, span->place + span->count, plan->total);
     return status;
 }
 

@@ -11,9 +11,10 @@ typedef struct dea_plan {
     const dea_scene *scene;
     const dea_engine *engine;
     const dea_run_options *options;
-    size_t points; /**< points of one model */
-    size_t total;  /**< rows of the study: models times points */
-    size_t block;  /**< most points in a block */
+    dea_layout layout; /**< of a point's result */
+    size_t points;     /**< points of one model */
+    size_t total;      /**< points of the study: of all models */
+    size_t block;      /**< most points in a block */
     size_t blocks_per_model;
     size_t blocks; /**< of the study */
 } dea_plan;
@@ -22,7 +23,7 @@ typedef struct dea_plan {
 typedef struct dea_span {
     const dea_model *model;
     size_t first; /**< first point, counted within its model */
-    size_t row;   /**< first row, counted over the study */
+    size_t place; /**< first point, counted over the study */
     size_t count; /**< points, >= 1 */
 } dea_span;
 
@@ -54,16 +55,22 @@ dea_attempt dea_attempt_start(size_t count);
 bool dea_attempt_over(const dea_attempt *attempt);
 /** The range next ... end - 1 was solved. */
 void dea_attempt_solved(dea_attempt *attempt, dea_damage *damage);
-/** The range next ... end - 1 failed for the reason @p why: halves it, or marks its rows (those of the block) as failed and tells
- * the log. */
-void dea_attempt_failed(dea_attempt *attempt, const dea_plan *plan, const dea_span *span, dea_row *rows, const char *why,
+/** The range next ... end - 1 failed for the reason @p why: halves it, or marks its rows (in the @p points of the block) as
+ * failed and tells the log. */
+void dea_attempt_failed(dea_attempt *attempt, const dea_plan *plan, const dea_span *span, void *points, const char *why,
                         dea_damage *damage);
 /** True when the engine is past hope: nothing more is tried, the remaining rows are failed. */
 bool dea_damage_hopeless(const dea_damage *damage);
-/** Marks rows as failed. */
-void dea_rows_fail(dea_row *rows, size_t count);
-/** Hands a block to the rows callback and tells progress. */
-dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const dea_row *rows, dea_error *error);
+/** Makes all rows of @p count points failed. */
+void dea_plan_fail(const dea_plan *plan, void *points, size_t count);
+/** Solves points first ... first + count - 1 of a model into memory laid out as the plan says. A point whose numbers are out of
+ * range, as a grid can hold, costs only its own rows where it is one of many. */
+dea_status dea_plan_solve(const dea_plan *plan, void *session, const dea_model *model, size_t first, size_t count, void *points,
+                          dea_error *error);
+/** Hands a block to the points callback and tells progress. */
+dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const void *points, dea_error *error);
+/** Time that a worker may take for so many points before it hangs, beyond what every worker gets [s]. */
+double dea_plan_patience(const dea_plan *plan, size_t count);
 /** True when the caller wants the run to end. */
 bool dea_plan_stopped(const dea_plan *plan);
 /** One line for the caller's log. */

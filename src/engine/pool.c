@@ -10,17 +10,17 @@
 
 #include "engine/worker.h"
 
-enum { SLOTS_PER_WORKER = 4, MOST_WORKERS = 1024, WAIT_MS = 50 };
+enum { SLOTS_PER_WORKER = 4, MOST_WORKERS = 1024, WAIT_MS = 50, MOST_MEMORY = 256 << 20 };
 
 static const double longest_tick = 1; /* [s] the pool's clock stands still while this process is stopped */
 static const double start_time = 30;  /* [s] an engine may take to begin a session */
 
-/* Block number n lives in slot n % slot_count from its first attempt until its rows are handed over. */
+/* Block number n lives in slot n % slot_count from its first attempt until its points are handed over. */
 typedef struct dea_slot {
     dea_span span;
     dea_attempt attempt;
-    dea_row *rows; /* shared memory */
-    bool busy;     /* a worker has its current range */
+    char *points; /* shared memory */
+    bool busy;    /* a worker has its current range */
 } dea_slot;
 
 typedef struct dea_pool {
@@ -36,7 +36,7 @@ typedef struct dea_pool {
     size_t delivered; /* blocks handed over */
     dea_damage damage;
     double clock, last; /* [s] */
-    void *memory;       /* shared: rows of the slots, then errors of the workers */
+    void *memory;       /* shared: points of the slots, then errors of the workers */
     size_t memory_size;
 } dea_pool;
 
@@ -60,19 +60,25 @@ static size_t smaller(size_t a, size_t b)
     return a < b ? a : b;
 }
 
+static size_t larger(size_t a, size_t b)
+{
+    return a > b ? a : b;
+}
+
 static dea_status pool_share_memory(dea_pool *pool, dea_error *error)
 {
-    size_t rows = pool->slot_count * pool->plan->block * sizeof(dea_row);
-    pool->memory_size = rows + pool->worker_count * sizeof(dea_error);
+    size_t block = pool->plan->block * pool->plan->layout.point_size;
+    size_t points = pool->slot_count * block;
+    pool->memory_size = points + pool->worker_count * sizeof(dea_error);
     pool->memory = mmap(NULL, pool->memory_size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (pool->memory == MAP_FAILED)
         return dea_fail(error, DEA_ERROR_MEMORY, "no %zu bytes of shared memory for the workers: %s", pool->memory_size,
                         strerror(errno));
-    dea_error *errors = (dea_error *)((char *)pool->memory + rows);
+    dea_error *errors = (dea_error *)(void *)((char *)pool->memory + points);
     for (size_t i = 0; i < pool->worker_count; i++)
         pool->workers[i].error = errors + i;
     for (size_t i = 0; i < pool->slot_count; i++)
-        pool->slots[i].rows = (dea_row *)pool->memory + i * pool->plan->block;
+        pool->slots[i].points = (char *)pool->memory + i * block;
     return DEA_OK;
 }
 
@@ -80,7 +86,8 @@ static dea_status pool_init(dea_pool *pool, const dea_plan *plan, double beyond,
 {
     size_t workers = smaller(smaller(plan->options->jobs, plan->blocks), MOST_WORKERS);
     *pool = (dea_pool){.plan = plan, .beyond = beyond, .worker_count = workers, .limit = workers, .memory = MAP_FAILED};
-    pool->slot_count = smaller(plan->blocks, workers * SLOTS_PER_WORKER);
+    const size_t affordable = MOST_MEMORY / (plan->block * plan->layout.point_size);
+    pool->slot_count = smaller(plan->blocks, larger(workers, smaller(workers * SLOTS_PER_WORKER, affordable)));
     pool->workers = calloc(workers, sizeof *pool->workers);
     pool->polls = calloc(workers, sizeof *pool->polls);
     pool->slots = calloc(pool->slot_count, sizeof *pool->slots);
@@ -132,7 +139,7 @@ static dea_slot *pool_waiting(dea_pool *pool)
 static void slot_failed(dea_pool *pool, dea_slot *slot, const char *why)
 {
     slot->busy = false;
-    dea_attempt_failed(&slot->attempt, pool->plan, &slot->span, slot->rows, why, &pool->damage);
+    dea_attempt_failed(&slot->attempt, pool->plan, &slot->span, slot->points, why, &pool->damage);
 }
 
 /* Fails what is left once the engine is past hope. */
@@ -142,7 +149,8 @@ static void pool_abandon(dea_pool *pool)
         dea_slot *slot = slot_of(pool, block);
         if (slot->busy)
             continue;
-        dea_rows_fail(slot->rows + slot->attempt.next, slot->attempt.count - slot->attempt.next);
+        dea_plan_fail(pool->plan, slot->points + slot->attempt.next * pool->plan->layout.point_size,
+                      slot->attempt.count - slot->attempt.next);
         slot->attempt.next = slot->attempt.count;
     }
 }
@@ -209,7 +217,7 @@ static void pool_dispatch(dea_pool *pool)
         dea_order order = {.model = slot->span.model,
                            .first = slot->span.first + attempt->next,
                            .count = attempt->end - attempt->next,
-                           .rows = slot->rows + attempt->next};
+                           .points = slot->points + attempt->next * pool->plan->layout.point_size};
         if (!dea_worker_send(worker, &order)) {
             pool->damage.losses++;
             dea_worker_end(worker, NULL, 0);
@@ -218,7 +226,7 @@ static void pool_dispatch(dea_pool *pool)
         slot->busy = true;
         worker->slot = (size_t)(slot - pool->slots);
         worker->state = DEA_WORKER_BUSY;
-        worker->deadline = pool->clock + pool->beyond + pool->plan->engine->patience * (double)order.count;
+        worker->deadline = pool->clock + pool->beyond + dea_plan_patience(pool->plan, order.count);
     }
 }
 
@@ -299,7 +307,7 @@ static dea_status pool_deliver(dea_pool *pool, dea_error *error)
         const dea_slot *slot = slot_of(pool, pool->delivered);
         if (slot->busy || !dea_attempt_over(&slot->attempt))
             return DEA_OK;
-        dea_status status = dea_plan_deliver(pool->plan, &slot->span, slot->rows, error);
+        dea_status status = dea_plan_deliver(pool->plan, &slot->span, slot->points, error);
         if (status != DEA_OK)
             return status;
         pool->delivered++;
@@ -307,7 +315,7 @@ static dea_status pool_deliver(dea_pool *pool, dea_error *error)
     return DEA_OK;
 }
 
-/* Workers get their next blocks before the caller gets the rows, so that they solve while it writes. */
+/* Workers get their next blocks before the caller gets the results, so that they solve while it writes. */
 static dea_status pool_round(dea_pool *pool, dea_error *error)
 {
     pool_open_blocks(pool);

@@ -8,10 +8,10 @@ static const double patience_beyond = 10; /* [s] a worker may take on top of its
 static dea_status check_request(const dea_scene *scene, const dea_engine *engine, const dea_run_options *options,
                                 dea_error *error)
 {
-    if (options->jobs == 0 || !options->rows)
-        return dea_fail(error, DEA_ERROR_USAGE, "a run needs at least one job and someone who takes the rows");
+    if (options->jobs == 0 || !options->points)
+        return dea_fail(error, DEA_ERROR_USAGE, "a run needs at least one job and someone who takes the points");
     for (size_t i = 0; i < scene->model_count; i++) {
-        const char *why = engine->refuses ? engine->refuses(scene, scene->models[i]) : NULL;
+        const char *why = dea_engine_refuses(engine, scene, scene->models[i]);
         if (why)
             return dea_fail(error, DEA_ERROR_UNSUPPORTED, "engine %s cannot do model %s: %s", engine->name,
                             scene->models[i]->name, why);
@@ -27,7 +27,7 @@ static dea_status session_renew(const dea_engine *engine, void **session, dea_er
 }
 
 /* Solves one block in this process; a session that failed is replaced. */
-static dea_status solve_block(const dea_plan *plan, const dea_span *span, void **session, dea_row *rows, dea_damage *damage,
+static dea_status solve_block(const dea_plan *plan, const dea_span *span, void **session, char *points, dea_damage *damage,
                               dea_error *error)
 {
     dea_attempt attempt = dea_attempt_start(span->count);
@@ -35,17 +35,17 @@ static dea_status solve_block(const dea_plan *plan, const dea_span *span, void *
         if (dea_plan_stopped(plan))
             return dea_fail(error, DEA_ERROR_INTERRUPTED, "interrupted");
         if (dea_damage_hopeless(damage)) {
-            dea_rows_fail(rows + attempt.next, attempt.count - attempt.next);
+            dea_plan_fail(plan, points + attempt.next * plan->layout.point_size, attempt.count - attempt.next);
             return DEA_OK;
         }
         dea_error reason = {0};
-        dea_status status = plan->engine->sweep(*session, plan->scene, span->model, span->first + attempt.next,
-                                                attempt.end - attempt.next, rows + attempt.next, &reason);
+        dea_status status = dea_plan_solve(plan, *session, span->model, span->first + attempt.next, attempt.end - attempt.next,
+                                           points + attempt.next * plan->layout.point_size, &reason);
         if (status == DEA_OK) {
             dea_attempt_solved(&attempt, damage);
             continue;
         }
-        dea_attempt_failed(&attempt, plan, span, rows, reason.message[0] ? reason.message : dea_status_text(status), damage);
+        dea_attempt_failed(&attempt, plan, span, points, reason.message[0] ? reason.message : dea_status_text(status), damage);
         status = session_renew(plan->engine, session, error);
         if (status != DEA_OK)
             return status;
@@ -55,20 +55,20 @@ static dea_status solve_block(const dea_plan *plan, const dea_span *span, void *
 
 static dea_status run_here(const dea_plan *plan, dea_error *error)
 {
-    dea_row *rows = malloc(plan->block * sizeof *rows);
-    if (!rows)
+    char *points = malloc(plan->block * plan->layout.point_size);
+    if (!points)
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for a block of %zu points", plan->block);
     void *session = NULL;
     dea_damage damage = {0};
     dea_status status = plan->engine->begin(&session, error);
     for (size_t i = 0; status == DEA_OK && i < plan->blocks; i++) {
         dea_span span = dea_plan_span(plan, i);
-        status = solve_block(plan, &span, &session, rows, &damage, error);
+        status = solve_block(plan, &span, &session, points, &damage, error);
         if (status == DEA_OK)
-            status = dea_plan_deliver(plan, &span, rows, error);
+            status = dea_plan_deliver(plan, &span, points, error);
     }
     plan->engine->end(session);
-    free(rows);
+    free(points);
     return status;
 }
 

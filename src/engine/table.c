@@ -14,6 +14,17 @@ const dea_engine *dea_engine_at(size_t index)
     return index < dea_engine_count() ? engines[index] : NULL;
 }
 
+const char *dea_engine_refuses(const dea_engine *engine, const dea_scene *scene, const dea_model *model)
+{
+    if (scene->study == DEA_STUDY_TRANSIENT && !engine->transient)
+        return "it has no time domain";
+    if (scene->study == DEA_STUDY_AC && !engine->ac)
+        return "it has no frequency domain";
+    if (scene->study != DEA_STUDY_SWEEP && !model->dynamic)
+        return "the model is static";
+    return engine->refuses ? engine->refuses(scene, model) : NULL;
+}
+
 const dea_engine *dea_engine_find(const char *name)
 {
     for (size_t i = 0; i < dea_engine_count(); i++) {

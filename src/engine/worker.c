@@ -61,7 +61,7 @@ static void work(const dea_plan *plan, int socket, dea_error *error)
     dea_order order;
     while (report(socket, status) && status == DEA_OK && receive(socket, &order, sizeof order) == (ssize_t)sizeof order) {
         error->message[0] = '\0';
-        status = plan->engine->sweep(session, plan->scene, order.model, order.first, order.count, order.rows, error);
+        status = dea_plan_solve(plan, session, order.model, order.first, order.count, order.points, error);
     }
     if (status == DEA_OK)
         plan->engine->end(session);

@@ -26,7 +26,7 @@ typedef struct dea_order {
     const dea_model *model; /**< same address in parent and worker */
     size_t first;           /**< point */
     size_t count;           /**< points */
-    dea_row *rows;          /**< shared memory */
+    void *points;           /**< shared memory for their results */
 } dea_order;
 
 /** Forks a worker that begins a session of the engine and reports. @p others are closed in it. */

@@ -64,3 +64,40 @@ bool dea_point_valid(const dea_point *point)
            film->prestretch >= 1.0 && film->permittivity > 0.0 && film->yeoh[0] > 0.0 && isfinite(film->modulus) &&
            isfinite(point->voltage);
 }
+
+/* int w^2 dA over the disc of radius a [m^2]: w = R/a. */
+static double moving_disc(double a)
+{
+    return 0.5 * DEA_PI * a * a;
+}
+
+/* int w^2 dA over the annulus from a to f = a/b [m^2], w = (f^2/R - R)/(f^2/a - a): 2 pi a^2 q/x^2 with x = 1 - b^2 and
+ * q = -ln b - x + (1 - b^4)/4 = sum of x^k/(2 k) from k = 3 on, which keeps the digits of a narrow annulus. */
+static double moving_annulus(double a, double b)
+{
+    const double x = (1.0 - b) * (1.0 + b);
+    double q = (-log(b) - x + 0.25 * (1.0 - b * b * b * b)) / (x * x);
+    if (x < 0.2) {
+        double power = x;
+        q = 0.0;
+        for (int k = 3; k < 30; k++) {
+            q += power / (2.0 * k);
+            power *= x;
+        }
+    }
+    return 2.0 * DEA_PI * a * a * q;
+}
+
+double dea_point_mass(const dea_scene *scene, const dea_point *point)
+{
+    if (isnan(scene->material.density)) {
+        return 0.0;
+    }
+    const double b = point->coverage;
+    const double radius = b * point->frame_radius;
+    const double reference = radius / point->film.prestretch; /* A = r_a/lambda_pre in the film of thickness H */
+    const double film = moving_disc(reference) + moving_annulus(reference, b);
+    const double electrode = point->kind == DEA_DOT ? moving_disc(radius) : moving_annulus(radius, b);
+    const double areal = isnan(scene->actuator.electrode_mass) ? 0.0 : scene->actuator.electrode_mass;
+    return scene->material.density * point->film_thickness * film + areal * electrode;
+}

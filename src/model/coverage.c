@@ -25,6 +25,30 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
                  taut);
 }
 
+/* Dot: C = C_0 lambda_a^4. Lens: C = C_0 + int 2 F/U^2 du, F/U^2 = -2 pi r_a eps lambda_pre^2 (1 - B x)^4/(H (1 - B)^4 x) over
+ * x = lambda_c, because the equi-biaxial annulus is not the true area. */
+static dea_expr capacitance(const dea_symbols *symbols, dea_expr strain)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_expr one = NUM(1.0);
+    const dea_expr x = ADD(one, strain);
+    const dea_expr rest = dea_symbols_capacitance(symbols);
+    if (symbols->kind == DEA_DOT) {
+        return MUL(rest, SQUARE(SQUARE(x)));
+    }
+    const dea_expr b = symbols->coverage;
+    const dea_expr e = strain;                                           /* x - 1 */
+    const dea_expr e2 = MUL(e, ADD(NUM(2.0), e));                        /* x^2 - 1 */
+    const dea_expr e3 = MUL(e, ADD(NUM(3.0), MUL(e, ADD(NUM(3.0), e)))); /* x^3 - 1 */
+    const dea_expr e4 = MUL(e2, ADD(NUM(2.0), e2));                      /* x^4 - 1 */
+    const dea_expr odd = MUL(b, ADD(SCALE(4.0, e), SCALE(4.0 / 3.0, MUL(SQUARE(b), e3))));
+    const dea_expr even = MUL(SQUARE(b), ADD(SCALE(3.0, e2), SCALE(0.25, MUL(SQUARE(b), e4))));
+    const dea_expr integral = SUB(ADD(LN(x), even), odd);
+    const dea_expr radius = MUL(b, symbols->frame_radius);
+    const dea_expr front = MUL(symbols->permittivity, DIV(SQUARE(MUL(radius, symbols->prestretch)), symbols->film_thickness));
+    return SUB(rest, MUL(SCALE(4.0 * DEA_PI, DIV(front, SQUARE(SQUARE(SUB(one, b))))), integral));
+}
+
 /* Edge equation of physics.md, section 5: A(lambda_a) times the stress differences to the pre-stretch, as two springs and a
  * source. */
 static void build(const dea_symbols *symbols, dea_network *network)
@@ -36,11 +60,12 @@ static void build(const dea_symbols *symbols, dea_network *network)
     const dea_expr annulus = dea_symbols_annulus_strain(symbols);
     const dea_expr active = dot ? disc : annulus;
     const dea_expr passive = dot ? annulus : disc;
-    const dea_expr area = dea_hyperelastic_area(symbols, disc);
-    dea_network_add(network, DEA_ROLE_HYPERELASTIC, "n_disc", "disc, A (sigma - sigma_pre), Eq. 18 [N]",
-                    MUL(area, dea_hyperelastic_change(symbols, disc)));
-    dea_network_add(network, DEA_ROLE_HYPERELASTIC, "n_annulus", "annulus, A (sigma_pre - sigma), Eqs. 17, 18 [N]",
-                    NEG(MUL(area, dea_hyperelastic_change(symbols, annulus))));
+    network->area = dea_hyperelastic_area(symbols, disc);
+    network->capacitance = capacitance(symbols, disc);
+    dea_network_add(network, DEA_ROLE_HYPERELASTIC, "n_disc", "disc, sigma - sigma_pre [Pa] on the area A, Eq. 18",
+                    dea_hyperelastic_change(symbols, disc));
+    dea_network_add(network, DEA_ROLE_HYPERELASTIC, "n_annulus", "annulus, sigma_pre - sigma [Pa] on the area A, Eqs. 17, 18",
+                    NEG(dea_hyperelastic_change(symbols, annulus)));
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force, A eps E^2, Eq. 18 [N]",
                     SCALE(network->sign, dea_hyperelastic_force(symbols, disc, active)));
     network->end = dot ? dea_symbols_annulus_width(symbols) : MUL(symbols->coverage, symbols->frame_radius);
@@ -55,4 +80,5 @@ const dea_model dea_model_coverage = {
     .lens = true,
     .solve = solve,
     .network = build,
+    .dynamic = true,
 };

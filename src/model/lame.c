@@ -101,15 +101,37 @@ static void build(const dea_symbols *symbols, dea_network *network)
                     "compliance of the annulus, 1/n = 2 pi H (W11 (1+B^2)/(1-B^2) - W12) [m/N]",
                     MUL(thickness, SUB(MUL(w11, q), w12)));
     const dea_expr share = dot ? NUM(3.0) : SUB(q, NUM(2.0));
-    dea_network_add(network, DEA_ROLE_SPRING, "n_el", "electrostatic softening, a negative compliance [m/N]",
+    dea_network_add(network, DEA_ROLE_SOFTENING, "n_el", "electrostatic softening, a negative compliance [m/N]",
                     NEG(MUL(thickness, MUL(soft, share))));
     const dea_expr radius = DIV(MUL(symbols->coverage, symbols->frame_radius), l); /* R_a */
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force 2 pi H M lambda_pre^3 R_a, Eq. 21 [N]",
                     SCALE(network->sign, MUL(thickness, MUL(maxwell, radius))));
+    /* C = C_0 + C_1 u + C_2 u^2/2 with C_1 = 2 F_DEA/U^2 and C_2 = -2/(n_el U^2) */
+    const dea_expr unit = MUL(thickness, MUL(DIV(symbols->permittivity, SQUARE(symbols->film_thickness)), t.square));
+    const dea_expr first = SCALE(2.0 * network->sign, MUL(unit, MUL(l, radius)));
+    const dea_expr second = SCALE(2.0, MUL(unit, share));
+    network->capacitance =
+        ADD(dea_symbols_capacitance(symbols), MUL(network->edge, ADD(first, SCALE(0.5, MUL(second, network->edge)))));
     const region passive = {w11, w12, rest};
     const region active = {SUB(w11, soft), SUB(w12, SCALE(2.0, soft)), SUB(rest, maxwell)};
     limit_tension(symbols, network, dot ? active : passive, dot ? passive : active);
     dea_network_limit_area(symbols, network);
+}
+
+static void linear(const dea_point *point, dea_linear *linear)
+{
+    const dea_film *film = &point->film;
+    const double b2 = point->coverage * point->coverage;
+    const double q = (1.0 + b2) / (1.0 - b2);
+    const double thickness = 2.0 * DEA_PI * point->film_thickness;
+    const double unit = thickness * film->permittivity / (point->film_thickness * point->film_thickness) * film->square;
+    const double share = point->kind == DEA_DOT ? 3.0 : q - 2.0; /* a + b of the disc, or a q - b of the annulus */
+    *linear = (dea_linear){.stiffness = thickness * (film->w11 + film->w12 + film->w11 * q - film->w12),
+                           .softening = -unit * share,
+                           .force = dea_point_sign(point) * unit * dea_point_divide(point)};
+    linear->capacitance[0] = dea_point_capacitance(point);
+    linear->capacitance[1] = 2.0 * linear->force;
+    linear->capacitance[2] = 2.0 * unit * share;
 }
 
 const dea_model dea_model_lame = {
@@ -119,4 +141,6 @@ const dea_model dea_model_lame = {
     .lens = true,
     .solve = solve,
     .network = build,
+    .linear = linear,
+    .dynamic = true,
 };

@@ -39,9 +39,22 @@ static void build(const dea_symbols *symbols, dea_network *network)
                     DIV(tensile, dea_symbols_annulus_width(symbols)));
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force, Eq. 21 [N]",
                     SCALE(network->sign, MUL(maxwell, section)));
+    /* C = C_0 + C_1 u with C_1 = 2 F_DEA/U^2 */
+    const dea_expr slope = SCALE(2.0 * network->sign, MUL(dea_symbols_stress_per_volt(symbols), section));
+    network->capacitance = ADD(dea_symbols_capacitance(symbols), MUL(slope, network->edge));
     const dea_expr passive = symbols->kind == DEA_DOT ? dea_symbols_annulus_strain(symbols) : network->strain;
     dea_network_taut(network, SUB(MUL(symbols->prestretch, ADD(one, passive)), one));
     dea_network_limit_area(symbols, network);
+}
+
+static void linear(const dea_point *point, dea_linear *linear)
+{
+    const double section = dea_point_cross_section(point);
+    const double width = (1.0 - point->coverage) * point->frame_radius;
+    *linear = (dea_linear){.stiffness = point->film.modulus * section * (1.0 / dea_point_divide(point) + 1.0 / width),
+                           .force = dea_point_sign(point) * dea_point_stress_per_volt(point) * section};
+    linear->capacitance[0] = dea_point_capacitance(point);
+    linear->capacitance[1] = 2.0 * linear->force;
 }
 
 const dea_model dea_model_lumped = {
@@ -51,4 +64,6 @@ const dea_model dea_model_lumped = {
     .lens = true,
     .solve = solve,
     .network = build,
+    .linear = linear,
+    .dynamic = true,
 };

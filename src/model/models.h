@@ -37,6 +37,20 @@ static inline double dea_point_cross_section(const dea_point *point)
     return 2.0 * DEA_PI * dea_point_divide(point) * point->film_thickness / point->film.square;
 }
 
+/* eps lambda_pre^4/H^2 [Pa/V^2], the electrostatic stress at the pre-stretch per U^2. */
+static inline double dea_point_stress_per_volt(const dea_point *point)
+{
+    return point->film.permittivity * point->film.square * point->film.square / (point->film_thickness * point->film_thickness);
+}
+
+/* Capacitance at rest [F]: eps lambda_pre^2/H times pi r_a^2 (dot) or pi (r^2 - r_a^2) (lens). */
+static inline double dea_point_capacitance(const dea_point *point)
+{
+    const double b2 = point->coverage * point->coverage;
+    const double area = DEA_PI * point->frame_radius * point->frame_radius * (point->kind == DEA_DOT ? b2 : 1.0 - b2);
+    return point->film.permittivity * point->film.square / point->film_thickness * area;
+}
+
 /* A row without numbers. */
 static inline void dea_row_refuse(dea_row *row, dea_state state)
 {

@@ -10,7 +10,7 @@ typedef struct dea_netlist_study {
     const dea_axis *axis; /* the swept scalar, symbol 0 of the network; NULL: one point */
     size_t from, count;   /* part of the axis */
     size_t ramp;          /* > 0: one point whose load grows from 0 to all of it in so many steps; axis is NULL then */
-    double tolerance;      /* relative, of every node [1] */
+    double tolerance;     /* relative, of every node [1] */
     double force_scale;   /* size of a force, for the current tolerance [N] */
     double length_scale;  /* size of a displacement, for the voltage tolerance [m] */
 } dea_netlist_study;

@@ -68,7 +68,11 @@ static bool is_number(const dea_pool *pool, dea_expr ref, double value)
 
 static double apply(dea_operation operation, double a, double b)
 {
-    return operation == DEA_ADD ? a + b : operation == DEA_SUB ? a - b : operation == DEA_MUL ? a * b : a / b;
+    return operation == DEA_ADD   ? a + b
+           : operation == DEA_SUB ? a - b
+           : operation == DEA_MUL ? a * b
+           : operation == DEA_DIV ? a / b
+                                  : log(a);
 }
 
 /* Neutral elements and products with 0 vanish; -1 where nothing does. */
@@ -232,6 +236,11 @@ dea_expr dea_expr_neg(dea_pool *pool, dea_expr a)
     return dea_expr_scale(pool, -1.0, a);
 }
 
+dea_expr dea_expr_ln(dea_pool *pool, dea_expr a)
+{
+    return combine(pool, DEA_LN, a, a);
+}
+
 /* Values of the terms from number @p first on. */
 static void evaluate(const dea_term *terms, int first, int count, double symbol, double node, double *values)
 {
@@ -359,6 +368,10 @@ void dea_tape_run(dea_tape *tape, double symbol, double node)
         case DEA_DIV:
             value[i] = value[a] / value[b];
             slope[i] = (slope[a] - value[i] * slope[b]) / value[b];
+            break;
+        case DEA_LN:
+            value[i] = log(value[a]);
+            slope[i] = slope[a] / value[a];
             break;
         }
     }

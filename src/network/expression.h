@@ -12,11 +12,11 @@
 
 typedef int dea_expr;
 
-typedef enum dea_operation { DEA_NUMBER, DEA_SYMBOL, DEA_NODE, DEA_ADD, DEA_SUB, DEA_MUL, DEA_DIV } dea_operation;
+typedef enum dea_operation { DEA_NUMBER, DEA_SYMBOL, DEA_NODE, DEA_ADD, DEA_SUB, DEA_MUL, DEA_DIV, DEA_LN } dea_operation;
 
 typedef struct dea_term {
     dea_operation operation;
-    dea_expr a, b; /* operands; of a symbol and a node: a is its index */
+    dea_expr a, b; /* operands, of a logarithm both the same; of a symbol and a node: a is its index */
     double number; /* of a number */
     bool varies;   /* holds a symbol or a node */
 } dea_term;
@@ -43,6 +43,8 @@ dea_expr dea_expr_square(dea_pool *pool, dea_expr a);
 /* factor times a. */
 dea_expr dea_expr_scale(dea_pool *pool, double factor, dea_expr a);
 dea_expr dea_expr_neg(dea_pool *pool, dea_expr a);
+/* Natural logarithm. */
+dea_expr dea_expr_ln(dea_pool *pool, dea_expr a);
 
 /* A number, or NAN where the expression varies. */
 double dea_expr_constant(const dea_pool *pool, dea_expr ref);

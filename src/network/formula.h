@@ -12,5 +12,6 @@
 #define NEG(a) dea_expr_neg(pool, a)
 #define SQUARE(a) dea_expr_square(pool, a)
 #define SCALE(factor, a) dea_expr_scale(pool, factor, a)
+#define LN(a) dea_expr_ln(pool, a)
 
 #endif

@@ -130,6 +130,21 @@ dea_expr dea_symbols_pressure(const dea_symbols *symbols)
     return MUL(symbols->permittivity, SQUARE(DIV(symbols->voltage, symbols->film_thickness)));
 }
 
+dea_expr dea_symbols_stress_per_volt(const dea_symbols *symbols)
+{
+    dea_pool *pool = symbols->pool;
+    return MUL(symbols->permittivity, SQUARE(DIV(SQUARE(symbols->prestretch), symbols->film_thickness)));
+}
+
+dea_expr dea_symbols_capacitance(const dea_symbols *symbols)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_expr b2 = SQUARE(symbols->coverage);
+    const dea_expr share = symbols->kind == DEA_DOT ? b2 : SUB(NUM(1.0), b2);
+    const dea_expr area = SCALE(DEA_PI, MUL(SQUARE(symbols->frame_radius), share));
+    return MUL(MUL(symbols->permittivity, DIV(SQUARE(symbols->prestretch), symbols->film_thickness)), area);
+}
+
 static dea_expr divide_radius(const dea_symbols *symbols)
 {
     return dea_expr_mul(symbols->pool, symbols->frame_radius, symbols->coverage);
@@ -196,17 +211,52 @@ dea_status dea_network_build(const dea_scene *scene, const dea_model *model, con
     return DEA_OK;
 }
 
+static dea_expr sum_of(dea_network *network, dea_role role)
+{
+    dea_pool *pool = &network->pool;
+    dea_expr sum = NUM(0.0);
+    for (int i = 0; i < network->element_count; i++) {
+        if (network->elements[i].role == role) {
+            sum = ADD(sum, network->elements[i].value);
+        }
+    }
+    return sum;
+}
+
+static bool is_hyperelastic(const dea_network *network)
+{
+    for (int i = 0; i < network->element_count; i++) {
+        if (network->elements[i].role == DEA_ROLE_HYPERELASTIC) {
+            return true;
+        }
+    }
+    return false;
+}
+
+dea_expr dea_network_area(dea_network *network)
+{
+    return is_hyperelastic(network) ? network->area : dea_expr_number(&network->pool, 1.0);
+}
+
+dea_expr dea_network_stress(dea_network *network)
+{
+    dea_pool *pool = &network->pool;
+    return ADD(MUL(sum_of(network, DEA_ROLE_SPRING), network->edge), sum_of(network, DEA_ROLE_HYPERELASTIC));
+}
+
+dea_expr dea_network_softening(dea_network *network)
+{
+    return sum_of(network, DEA_ROLE_SOFTENING);
+}
+
 dea_expr dea_network_elastic(dea_network *network)
 {
     dea_pool *pool = &network->pool;
-    dea_expr stiffness = NUM(0.0);
-    dea_expr force = stiffness;
+    const dea_expr stiffness = ADD(sum_of(network, DEA_ROLE_SPRING), sum_of(network, DEA_ROLE_SOFTENING));
+    dea_expr force = NUM(0.0);
     for (int i = 0; i < network->element_count; i++) {
-        const dea_element *element = &network->elements[i];
-        if (element->role == DEA_ROLE_SPRING) {
-            stiffness = ADD(stiffness, element->value);
-        } else if (element->role == DEA_ROLE_HYPERELASTIC) {
-            force = ADD(force, element->value);
+        if (network->elements[i].role == DEA_ROLE_HYPERELASTIC) {
+            force = ADD(force, MUL(network->area, network->elements[i].value));
         }
     }
     return ADD(MUL(stiffness, network->edge), force);
@@ -214,12 +264,5 @@ dea_expr dea_network_elastic(dea_network *network)
 
 dea_expr dea_network_load(dea_network *network)
 {
-    dea_pool *pool = &network->pool;
-    dea_expr load = NUM(0.0);
-    for (int i = 0; i < network->element_count; i++) {
-        if (network->elements[i].role == DEA_ROLE_SOURCE) {
-            load = ADD(load, network->elements[i].value);
-        }
-    }
-    return load;
+    return sum_of(network, DEA_ROLE_SOURCE);
 }

@@ -25,20 +25,23 @@ typedef struct dea_symbols {
     dea_expr voltage;              /* across the film [V] */
 } dea_symbols;
 
-typedef enum dea_role { DEA_ROLE_SPRING, DEA_ROLE_HYPERELASTIC, DEA_ROLE_SOURCE } dea_role;
+typedef enum dea_role { DEA_ROLE_SPRING, DEA_ROLE_SOFTENING, DEA_ROLE_HYPERELASTIC, DEA_ROLE_SOURCE } dea_role;
 
 /* One element between edge and frame. */
 typedef struct dea_element {
     dea_role role;
     const char *name;    /* netlist name, e.g. "n_a" */
     const char *meaning; /* what it is, with its unit and equation */
-    dea_expr value;      /* spring: stiffness 1/n [N/m]; hyperelastic spring: restoring force [N]; source: outward force [N] */
+    dea_expr value; /* spring, softening: stiffness 1/n [N/m]; hyperelastic spring: stress over the network's area [Pa]; source:
+                       outward force [N] */
 } dea_element;
 
 typedef struct dea_network {
     dea_pool pool;
     dea_element elements[DEA_NETWORK_ELEMENTS];
     int element_count;
+    dea_expr area;                          /* on which the stresses of hyperelastic springs act [m^2] */
+    dea_expr capacitance;                   /* of the film [F], where the model is dynamic */
     dea_expr edge;                          /* u [m] */
     dea_expr strain;                        /* s [1] */
     dea_expr field;                         /* true field, signed as U [V/m] */
@@ -64,6 +67,12 @@ void dea_network_taut(dea_network *network, dea_expr tension);
 /* Sets the true field from the area that disc (dot) or annulus (lens) has at u: U lambda_pre^2/H times the area ratio. */
 void dea_network_limit_area(const dea_symbols *symbols, dea_network *network);
 
+/* What the passive film holds against its voltage-free rest, over the area on which it acts [m^2] (1 where the springs are
+ * linear): their product is the restoring force without softening [N]. */
+dea_expr dea_network_stress(dea_network *network);
+dea_expr dea_network_area(dea_network *network);
+/* Stiffness that the voltage adds, negative where it softens [N/m]. */
+dea_expr dea_network_softening(dea_network *network);
 /* Sum of the elastic forces (restoring) and of the sources (outward) as expressions of u [N]. */
 dea_expr dea_network_elastic(dea_network *network);
 dea_expr dea_network_load(dea_network *network);
@@ -75,6 +84,10 @@ typedef struct dea_yeoh_terms {
 dea_yeoh_terms dea_symbols_yeoh(const dea_symbols *symbols);
 /* M = eps (U/H)^2 [Pa]. */
 dea_expr dea_symbols_pressure(const dea_symbols *symbols);
+/* eps lambda_pre^4/H^2 [Pa/V^2], the electrostatic stress at the pre-stretch per U^2. */
+dea_expr dea_symbols_stress_per_volt(const dea_symbols *symbols);
+/* Capacitance at rest [F]: eps lambda_pre^2/H times pi r_a^2 (dot) or pi (r^2 - r_a^2) (lens). */
+dea_expr dea_symbols_capacitance(const dea_symbols *symbols);
 /* A_cross = 2 pi r_a H/lambda_pre^2 [m^2]. */
 dea_expr dea_symbols_cross_section(const dea_symbols *symbols);
 /* Radial strain of the disc, u/r_a, and of the annulus, -u/(r - r_a) (Eq. 17) [1]. */

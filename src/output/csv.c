@@ -1,22 +1,24 @@
-/* CSV: one header row, full double precision, empty fields for numbers that are not there. */
-#include "support/number.h"
+/* CSV: one header row, full double precision, empty fields for numbers that are not there. Of a transient or a frequency response
+ * every sample is a row, behind the axes of its run. */
 #include "output/writer.h"
+#include "support/number.h"
 
 #include "deaspice/model.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { CSV_BUFFER = 1 << 16, CSV_TAIL = (DEA_ROW_COLUMNS + 2) * DEA_NUMBER_LENGTH + 16 };
+enum { CSV_BUFFER = 1 << 16, CSV_TAIL = (DEA_LAYOUT_COLUMNS + 2) * DEA_NUMBER_LENGTH + 16 };
 
 typedef struct csv {
     const dea_scene *scene;
+    dea_layout layout;
     dea_atomic *file;
-    size_t model;  /* of the row that comes next */
-    size_t *index; /* of the row that comes next along each axis */
-    char *prefix;  /* model and all axes but the last, as text; stays for a whole run of the last axis */
-    size_t prefix_length;
-    char *buffer; /* CSV_BUFFER and room for one row more */
+    size_t model;         /* of the point that comes next */
+    size_t *index;        /* of the point that comes next along each axis */
+    char *prefix;         /* model and all axes, as text */
+    size_t prefix_length; /* of the model and all axes but the last; stays for a whole run of the last axis */
+    char *buffer;         /* CSV_BUFFER and room for one row more */
     size_t used;
 } csv;
 
@@ -56,7 +58,7 @@ static void csv_prefix(csv *sheet)
     sheet->prefix_length = (size_t)(out - sheet->prefix);
 }
 
-/* Steps to the next row: last axis fastest, model slowest. */
+/* Steps to the next point: last axis fastest, model slowest. */
 static void csv_step(csv *sheet)
 {
     const dea_scene *scene = sheet->scene;
@@ -76,25 +78,33 @@ static void csv_step(csv *sheet)
     }
 }
 
-static void csv_row(csv *sheet, const dea_row *row)
+/* Completes the prefix by the last axis; returns its whole length. */
+static size_t csv_lead(csv *sheet)
 {
     const dea_scene *scene = sheet->scene;
-    csv_put(sheet, sheet->prefix, sheet->prefix_length);
-    char *const start = sheet->buffer + sheet->used;
-    char *out = start;
+    char *out = sheet->prefix + sheet->prefix_length;
     if (scene->axis_count > 0) {
         const dea_axis *last = &scene->axes[scene->axis_count - 1];
         out += dea_number_write(out, last->values[sheet->index[scene->axis_count - 1]]);
         *out++ = ',';
     }
-    for (size_t i = 0; i < DEA_ROW_COLUMNS; i++) {
+    return (size_t)(out - sheet->prefix);
+}
+
+static void csv_row(csv *sheet, size_t lead, const char *row)
+{
+    const dea_layout *layout = &sheet->layout;
+    csv_put(sheet, sheet->prefix, lead);
+    char *const start = sheet->buffer + sheet->used;
+    char *out = start;
+    for (size_t i = 0; i < layout->column_count; i++) {
         double value;
-        memcpy(&value, (const char *)row + dea_row_columns[i].offset, sizeof value);
+        memcpy(&value, row + layout->columns[i].offset, sizeof value);
         out += dea_number_write(out, value);
         *out++ = ',';
     }
     sheet->used += (size_t)(out - start);
-    const char *state = dea_state_name(row->state);
+    const char *state = dea_state_name(dea_layout_state(layout, row));
     csv_put(sheet, state, strlen(state));
     csv_put(sheet, "\n", 1);
 }
@@ -109,8 +119,8 @@ static void csv_header(csv *sheet)
         csv_put(sheet, scene->axes[i].column, strlen(scene->axes[i].column));
         csv_put(sheet, ",", 1);
     }
-    for (size_t i = 0; i < DEA_ROW_COLUMNS; i++) {
-        csv_put(sheet, dea_row_columns[i].name, strlen(dea_row_columns[i].name));
+    for (size_t i = 0; i < sheet->layout.column_count; i++) {
+        csv_put(sheet, sheet->layout.columns[i].name, strlen(sheet->layout.columns[i].name));
         csv_put(sheet, ",", 1);
     }
     csv_put(sheet, "state\n", 6);
@@ -136,6 +146,7 @@ static dea_status csv_open(const dea_scene *scene, const char *engine, dea_atomi
     csv *sheet = calloc(1, sizeof *sheet);
     if (sheet) {
         sheet->scene = scene;
+        sheet->layout = dea_layout_of(scene);
         sheet->file = file;
         sheet->index = calloc(scene->axis_count + 1, sizeof *sheet->index);
         sheet->prefix = malloc(prefix_room(scene));
@@ -151,13 +162,11 @@ static dea_status csv_open(const dea_scene *scene, const char *engine, dea_atomi
     return DEA_OK;
 }
 
-static dea_status csv_rows(void *state, size_t first, const dea_row *rows, size_t count, dea_error *error)
+static dea_status csv_point(csv *sheet, const char *point, dea_error *error)
 {
-    (void)first;
-    csv *sheet = state;
-    for (size_t i = 0; i < count; i++) {
-        csv_row(sheet, &rows[i]);
-        csv_step(sheet);
+    const size_t lead = csv_lead(sheet);
+    for (size_t i = 0; i < sheet->layout.rows; i++) {
+        csv_row(sheet, lead, point + i * sheet->layout.row_size);
         if (sheet->used >= CSV_BUFFER) {
             const dea_status status = csv_flush(sheet, error);
             if (status != DEA_OK) {
@@ -165,7 +174,21 @@ static dea_status csv_rows(void *state, size_t first, const dea_row *rows, size_
             }
         }
     }
-    return sheet->file->direct ? csv_flush(sheet, error) : DEA_OK; /* a reader at the other end sees rows as they come */
+    csv_step(sheet);
+    return DEA_OK;
 }
 
-const dea_format dea_format_csv = {.name = "csv", .straight = true, .open = csv_open, .rows = csv_rows, .close = csv_close};
+static dea_status csv_points(void *state, size_t first, const void *points, size_t count, dea_error *error)
+{
+    (void)first;
+    csv *sheet = state;
+    for (size_t i = 0; i < count; i++) {
+        const dea_status status = csv_point(sheet, (const char *)points + i * sheet->layout.point_size, error);
+        if (status != DEA_OK) {
+            return status;
+        }
+    }
+    return sheet->file->direct ? csv_flush(sheet, error) : DEA_OK; /* a reader at the other end sees points as they come */
+}
+
+const dea_format dea_format_csv = {.name = "csv", .straight = true, .open = csv_open, .points = csv_points, .close = csv_close};

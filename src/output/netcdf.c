@@ -1,9 +1,12 @@
-/* NetCDF classic (64-bit offset; CDF-5 where a variable is too large for it): swept axes as dimensions, CF attributes. The
- * classic layout keeps a variable in one piece, so blocks go straight to their place and every NetCDF reader opens it. No time
- * stamp: the same study gives the same bytes. libnetcdf is loaded when the first such file is opened; nobody else pays for it. */
+/* NetCDF classic (64-bit offset; CDF-5 where a variable is too large for it): swept axes as dimensions, behind them time or
+ * frequency, CF attributes. What a transient tells besides its samples stands in variables over the axes. The classic layout
+ * keeps a variable in one piece, so blocks go straight to their place and every NetCDF reader opens it. No time stamp: the same
+ * study gives the same bytes. libnetcdf is loaded when the first such file is opened; nobody else pays for it. */
 #include "output/writer.h"
 
+#include "deaspice/measures.h"
 #include "deaspice/model.h"
+#include "scene/keys.h"
 
 #include <dlfcn.h>
 #include <math.h>
@@ -17,25 +20,25 @@
 #define DEA_VERSION "unknown"
 #endif
 
-enum { SLAB_POINTS = 4096, TEXT_LENGTH = 512 };
+enum { SLAB_ROWS = 4096, TEXT_LENGTH = 512, SUMMARIES = 8, AVERAGES = 2 };
 
 /* Largest number of doubles in one variable of the 64-bit offset format: 2^32 - 4 bytes. */
-static const uint64_t offset_points = UINT64_C(4294967292) / sizeof(double);
+static const uint64_t offset_values = UINT64_C(4294967292) / sizeof(double);
 
-#define NETCDF_LIST(X) \
-    X(nc_create) \
-    X(nc_set_fill) \
-    X(nc_def_dim) \
-    X(nc_def_var) \
-    X(nc_put_att_text) \
-    X(nc_put_att_double) \
-    X(nc_put_att_schar) \
-    X(nc_enddef) \
-    X(nc_put_var_double) \
-    X(nc_put_vara_double) \
-    X(nc_put_vara_schar) \
-    X(nc_put_vara_text) \
-    X(nc_close) \
+#define NETCDF_LIST(X)                                                                                                           \
+    X(nc_create)                                                                                                                 \
+    X(nc_set_fill)                                                                                                               \
+    X(nc_def_dim)                                                                                                                \
+    X(nc_def_var)                                                                                                                \
+    X(nc_put_att_text)                                                                                                           \
+    X(nc_put_att_double)                                                                                                         \
+    X(nc_put_att_schar)                                                                                                          \
+    X(nc_enddef)                                                                                                                 \
+    X(nc_put_var_double)                                                                                                         \
+    X(nc_put_vara_double)                                                                                                        \
+    X(nc_put_vara_schar)                                                                                                         \
+    X(nc_put_vara_text)                                                                                                          \
+    X(nc_close)                                                                                                                  \
     X(nc_strerror)
 
 /* The functions of libnetcdf, with the types of its header. */
@@ -46,21 +49,53 @@ typedef struct netcdf_library {
 #undef X
 } netcdf_library;
 
+/* Name, meaning and unit of a variable over the axes. */
+typedef struct figure {
+    const char *name, *long_name, *unit;
+    size_t offset; /* of the double in dea_summary or dea_average */
+} figure;
+
+static const figure summaries[SUMMARIES] = {
+    {"estimated_error", "estimated error of the displacement, relative to its peak", "1", offsetof(dea_summary, error)},
+    {"work_J", "work of the source", "J", offsetof(dea_summary, work)},
+    {"electric_energy_J", "change of the energy in the film's capacitance", "J", offsetof(dea_summary, electric)},
+    {"elastic_energy_J", "change of the elastic energy", "J", offsetof(dea_summary, elastic)},
+    {"kinetic_energy_J", "change of the kinetic energy", "J", offsetof(dea_summary, kinetic)},
+    {"dissipated_energy_J", "energy dissipated in dampers, branches and resistances", "J", offsetof(dea_summary, dissipated)},
+    {"energy_residual", "residual of the energy balance, relative to the largest energy", "1", offsetof(dea_summary, residual)},
+    {"resonance_Hz", "first resonance of the relaxed film at rest", "Hz", offsetof(dea_summary, resonance)},
+};
+
+static const figure averages[AVERAGES] = {
+    {"average_strain", "mean radial strain of the disc edge over the window", "1", offsetof(dea_average, strain)},
+    {"average_displacement_m", "mean radial displacement of the disc edge over the window", "m",
+     offsetof(dea_average, displacement)},
+};
+
 typedef struct grid {
     netcdf_library nc;
     const dea_scene *scene;
-    const char *target;           /* for messages */
-    int file;                     /* -1: not open */
-    size_t rank;                  /* dimensions of a variable */
-    size_t *shape, *start, *edge; /* rank values each */
-    int *dimensions;              /* rank values, and one for the length of names */
-    int *axes;                    /* variable of each axis */
-    int columns[DEA_ROW_COLUMNS]; /* variables of the rows */
+    dea_layout layout;
+    const char *target;              /* for messages */
+    int file;                        /* -1: not open */
+    size_t point_rank;               /* dimensions of a variable over the axes: models, axes */
+    size_t rank;                     /* dimensions of a variable of the rows: those, then time or frequency */
+    size_t *shape, *start, *edge;    /* point_rank + 1 values each */
+    int *dimensions;                 /* point_rank + 1 values */
+    int *axes;                       /* variable of each axis */
+    int columns[DEA_LAYOUT_COLUMNS]; /* variables of the rows; that of the first may be a coordinate */
     int state, model;
+    int summaries[SUMMARIES], averages[AVERAGES], window[2];
     int failed; /* first status of the library that is not 0 */
-    double values[SLAB_POINTS];
-    signed char states[SLAB_POINTS];
+    double values[SLAB_ROWS];
+    signed char states[SLAB_ROWS];
 } grid;
+
+/* Rows of a transient and of a frequency response lie along a coordinate of their own: their first column. */
+static bool has_coordinate(const grid *file)
+{
+    return file->rank > file->point_rank;
+}
 
 /* Keeps the first failure, so that a row of calls needs one check at its end. */
 static void grid_keep(grid *file, int status)
@@ -87,10 +122,10 @@ static dea_status library_load(netcdf_library *nc, dea_error *error)
     if (!nc->handle) {
         return dea_fail(error, DEA_ERROR_MISSING, "NetCDF files need the library libnetcdf (Debian: package libnetcdf19)");
     }
-#define X(name)                                                                                            \
-    *(void **)&nc->name = dlsym(nc->handle, #name);                                                        \
-    if (!nc->name) {                                                                                       \
-        return dea_fail(error, DEA_ERROR_MISSING, "this libnetcdf has no " #name "; install a newer one"); \
+#define X(name)                                                                                                                  \
+    *(void **)&nc->name = dlsym(nc->handle, #name);                                                                              \
+    if (!nc->name) {                                                                                                             \
+        return dea_fail(error, DEA_ERROR_MISSING, "this libnetcdf has no " #name "; install a newer one");                       \
     }
     NETCDF_LIST(X)
 #undef X
@@ -117,40 +152,74 @@ static bool is_swept(const dea_scene *scene, size_t offset)
     return false;
 }
 
+static bool begins_with(const char *path, const char *with)
+{
+    return strncmp(path, with, strlen(with)) == 0;
+}
+
+/* Does the scene use this scalar? Windows and branches are lists, which have places of their own. */
+static bool is_used(const dea_scene *scene, const dea_key *key)
+{
+    const dea_wave_kind wave = scene->drive.waveform.kind;
+    const unsigned kind = scene->actuator.kind == DEA_DOT ? DEA_KEY_DOT : DEA_KEY_LENS;
+    const struct {
+        const char *path;
+        bool used;
+    } parts[] = {
+        {"drive.waveform.step.", wave == DEA_WAVE_STEP},
+        {"drive.waveform.sine.", wave == DEA_WAVE_SINE},
+        {"drive.waveform.", wave != DEA_WAVE_NONE},
+        {"study.transient.average.", false},
+        {"study.transient.", scene->study == DEA_STUDY_TRANSIENT},
+        {"study.ac.", scene->study == DEA_STUDY_AC},
+        {"material.prony.", false},
+        {"", true},
+    };
+    size_t part = 0;
+    while (!begins_with(key->path, parts[part].path)) {
+        part++;
+    }
+    return parts[part].used && key->offset != DEA_KEY_NOWHERE && (key->kinds & kind) != 0;
+}
+
+/* Two keys can name one scalar; the first of them stands for it. */
+static bool is_first_of_its_place(const dea_scene *scene, size_t index)
+{
+    const dea_key *key = dea_key_at(index);
+    for (size_t i = 0; i < index; i++) {
+        if (dea_key_at(i)->offset == key->offset && is_used(scene, dea_key_at(i))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* A scalar under its path without the section. */
+static void put_scalar(grid *file, const dea_key *key)
+{
+    char name[DEA_NAME_LENGTH];
+    double value;
+    dea_ref ref;
+    memcpy(&value, (const char *)file->scene + key->offset, sizeof value);
+    if (isnan(value) || !dea_key_find(key->path, &ref)) {
+        return;
+    }
+    size_t components = 0;
+    for (const char *dot = strchr(key->path, '.'); dot; dot = strchr(dot + 1, '.')) {
+        components++;
+    }
+    dea_ref_column(&ref, components > 0 ? components : 1, name);
+    put_number(file, NC_GLOBAL, name, value);
+}
+
 /* Every scalar of the scene that is given and not swept. */
 static void put_scalars(grid *file)
 {
-    static const struct {
-        const char *name;
-        size_t offset;
-    } scalars[] = {
-        {"frame_radius_m", offsetof(dea_scene, actuator.frame_radius)},
-        {"coverage", offsetof(dea_scene, actuator.coverage)},
-        {"divide_radius_m", offsetof(dea_scene, actuator.divide_radius)},
-        {"film_thickness_m", offsetof(dea_scene, actuator.film_thickness)},
-        {"prestretch", offsetof(dea_scene, actuator.prestretch)},
-        {"electrode_mass_kg_per_m2", offsetof(dea_scene, actuator.electrode_mass)},
-        {"focal_length_m", offsetof(dea_scene, actuator.focal_length)},
-        {"refractive_index", offsetof(dea_scene, actuator.refractive_index)},
-        {"yeoh_C1_Pa", offsetof(dea_scene, material.yeoh[0])},
-        {"yeoh_C2_Pa", offsetof(dea_scene, material.yeoh[1])},
-        {"yeoh_C3_Pa", offsetof(dea_scene, material.yeoh[2])},
-        {"permittivity", offsetof(dea_scene, material.permittivity)},
-        {"permittivity_per_stretch", offsetof(dea_scene, material.permittivity_per_stretch)},
-        {"density_kg_per_m3", offsetof(dea_scene, material.density)},
-        {"retardation_s", offsetof(dea_scene, material.retardation)},
-        {"modulus_Pa", offsetof(dea_scene, material.modulus)},
-        {"breakdown_V_per_m", offsetof(dea_scene, material.breakdown)},
-        {"voltage_V", offsetof(dea_scene, drive.voltage)},
-        {"series_resistance_ohm", offsetof(dea_scene, drive.series_resistance)},
-        {"leakage_resistance_ohm", offsetof(dea_scene, drive.leakage_resistance)},
-        {"accuracy", offsetof(dea_scene, accuracy)},
-    };
-    for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++) {
-        double value;
-        memcpy(&value, (const char *)file->scene + scalars[i].offset, sizeof value);
-        if (!isnan(value) && !is_swept(file->scene, scalars[i].offset)) {
-            put_number(file, NC_GLOBAL, scalars[i].name, value);
+    const dea_scene *scene = file->scene;
+    const dea_key *key;
+    for (size_t i = 0; (key = dea_key_at(i)) != NULL; i++) {
+        if (is_used(scene, key) && is_first_of_its_place(scene, i) && !is_swept(scene, key->offset)) {
+            put_scalar(file, key);
         }
     }
 }
@@ -174,14 +243,17 @@ static void put_prony(grid *file)
 static void put_provenance(grid *file, const char *engine)
 {
     const dea_scene *scene = file->scene;
+    static const char *const studies[][2] = {[DEA_STUDY_SWEEP] = {"static study", "points"},
+                                             [DEA_STUDY_TRANSIENT] = {"transient study", "runs"},
+                                             [DEA_STUDY_AC] = {"frequency response", "runs"}};
     char models[TEXT_LENGTH] = "", history[TEXT_LENGTH];
     for (size_t i = 0, used = 0; i < scene->model_count && used < sizeof models; i++) {
         const int more = snprintf(models + used, sizeof models - used, "%s%s (%s)", i > 0 ? ", " : "", scene->models[i]->name,
                                   scene->models[i]->equation);
         used += (size_t)more;
     }
-    snprintf(history, sizeof history, "deaspice %s: static study of %zu points by engine %s", DEA_VERSION,
-             dea_scene_point_count(scene) * scene->model_count, engine);
+    snprintf(history, sizeof history, "deaspice %s: %s of %zu %s by engine %s", DEA_VERSION, studies[scene->study][0],
+             dea_scene_point_count(scene) * scene->model_count, studies[scene->study][1], engine);
     put_text(file, NC_GLOBAL, "Conventions", "CF-1.10");
     put_text(file, NC_GLOBAL, "title", scene->title);
     put_text(file, NC_GLOBAL, "source", "deaspice " DEA_VERSION);
@@ -193,6 +265,12 @@ static void put_provenance(grid *file, const char *engine)
     put_text(file, NC_GLOBAL, "material_source", scene->material.source);
     put_scalars(file);
     put_prony(file);
+    if (scene->study == DEA_STUDY_TRANSIENT) {
+        static const char *const waves[] = {
+            [DEA_WAVE_NONE] = "none", [DEA_WAVE_STEP] = "step", [DEA_WAVE_POINTS] = "points", [DEA_WAVE_SINE] = "sine"};
+        put_text(file, NC_GLOBAL, "waveform", waves[scene->drive.waveform.kind]);
+        put_text(file, NC_GLOBAL, "start", scene->transient.from_bias ? "bias" : "rest");
+    }
 }
 
 static size_t model_name_length(const dea_scene *scene)
@@ -212,7 +290,7 @@ static void define_model(grid *file)
     grid_keep(file, file->nc.nc_def_dim(file->file, "model", file->scene->model_count, &pair[0]));
     grid_keep(file, file->nc.nc_def_dim(file->file, "model_name_length", model_name_length(file->scene), &pair[1]));
     grid_keep(file, file->nc.nc_def_var(file->file, "model", NC_CHAR, 2, pair, &file->model));
-    put_text(file, file->model, "long_name", "static model");
+    put_text(file, file->model, "long_name", "model");
     put_text(file, file->model, "_Encoding", "utf-8");
     file->dimensions[0] = pair[0];
     file->shape[0] = file->scene->model_count;
@@ -236,17 +314,37 @@ static void define_axis(grid *file, size_t number, size_t dimension)
     put_text(file, file->axes[number], "long_name", words);
 }
 
+/* Dimension of the rows of a point, and their first column as its coordinate variable: "time", not "time_s". */
+static void define_coordinate(grid *file)
+{
+    const dea_column *column = &file->layout.columns[0];
+    char name[DEA_NAME_LENGTH];
+    int *dimension = &file->dimensions[file->point_rank];
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(column->name, "_"), column->name);
+    file->shape[file->point_rank] = file->layout.rows;
+    grid_keep(file, file->nc.nc_def_dim(file->file, name, file->layout.rows, dimension));
+    grid_keep(file, file->nc.nc_def_var(file->file, name, NC_DOUBLE, 1, dimension, &file->columns[0]));
+    put_text(file, file->columns[0], "units", column->unit);
+    put_text(file, file->columns[0], "long_name", column->long_name);
+}
+
+static int define_numbers(grid *file, const char *name, const char *long_name, const char *unit, size_t rank)
+{
+    int variable = -1;
+    grid_keep(file, file->nc.nc_def_var(file->file, name, NC_DOUBLE, (int)rank, file->dimensions, &variable));
+    put_text(file, variable, "units", unit);
+    put_text(file, variable, "long_name", long_name);
+    put_number(file, variable, "_FillValue", (double)NAN);
+    return variable;
+}
+
 static void define_columns(grid *file)
 {
-    const int rank = (int)file->rank;
-    for (size_t i = 0; i < DEA_ROW_COLUMNS; i++) {
-        const dea_column *column = &dea_row_columns[i];
-        grid_keep(file, file->nc.nc_def_var(file->file, column->name, NC_DOUBLE, rank, file->dimensions, &file->columns[i]));
-        put_text(file, file->columns[i], "units", column->unit);
-        put_text(file, file->columns[i], "long_name", column->long_name);
-        put_number(file, file->columns[i], "_FillValue", NAN);
+    for (size_t i = has_coordinate(file) ? 1 : 0; i < file->layout.column_count; i++) {
+        const dea_column *column = &file->layout.columns[i];
+        file->columns[i] = define_numbers(file, column->name, column->long_name, column->unit, file->rank);
     }
-    grid_keep(file, file->nc.nc_def_var(file->file, "state", NC_BYTE, rank, file->dimensions, &file->state));
+    grid_keep(file, file->nc.nc_def_var(file->file, "state", NC_BYTE, (int)file->rank, file->dimensions, &file->state));
     signed char codes[DEA_STATE_COUNT];
     char names[TEXT_LENGTH] = "";
     size_t used = 0;
@@ -257,6 +355,52 @@ static void define_columns(grid *file)
     put_text(file, file->state, "long_name", "state of the point");
     put_text(file, file->state, "flag_meanings", names);
     grid_keep(file, file->nc.nc_put_att_schar(file->file, file->state, "flag_values", NC_BYTE, DEA_STATE_COUNT, codes));
+}
+
+/* Variables over the axes: what a transient tells besides its samples, and its averages over a dimension of windows. */
+static void define_summaries(grid *file)
+{
+    const int time = file->dimensions[file->point_rank];
+    for (size_t i = 0; i < SUMMARIES; i++) {
+        file->summaries[i] = define_numbers(file, summaries[i].name, summaries[i].long_name, summaries[i].unit, file->point_rank);
+    }
+    if (file->scene->transient.average_count == 0) {
+        return;
+    }
+    static const char *const ends[] = {"window_from_s", "window_to_s"}, *const words[] = {"begin of the window",
+                                                                                          "end of the window"};
+    int *window = &file->dimensions[file->point_rank];
+    grid_keep(file, file->nc.nc_def_dim(file->file, "window", file->scene->transient.average_count, window));
+    for (size_t i = 0; i < AVERAGES; i++) {
+        file->averages[i] = define_numbers(file, averages[i].name, averages[i].long_name, averages[i].unit, file->point_rank + 1);
+    }
+    for (size_t i = 0; i < 2; i++) {
+        grid_keep(file, file->nc.nc_def_var(file->file, ends[i], NC_DOUBLE, 1, window, &file->window[i]));
+        put_text(file, file->window[i], "units", "s");
+        put_text(file, file->window[i], "long_name", words[i]);
+    }
+    *window = time;
+}
+
+static void put_rows_coordinate(grid *file)
+{
+    for (size_t first = 0; first < file->layout.rows && !file->failed; first += SLAB_ROWS) {
+        const size_t left = file->layout.rows - first, count = left < SLAB_ROWS ? left : SLAB_ROWS;
+        for (size_t i = 0; i < count; i++) {
+            file->values[i] = dea_layout_place(file->scene, first + i);
+        }
+        grid_keep(file, file->nc.nc_put_vara_double(file->file, file->columns[0], &first, &count, file->values));
+    }
+}
+
+static void put_windows(grid *file)
+{
+    const dea_transient *transient = &file->scene->transient;
+    for (size_t i = 0; i < transient->average_count; i++) {
+        const size_t one = 1;
+        grid_keep(file, file->nc.nc_put_vara_double(file->file, file->window[0], &i, &one, &transient->averages[i].from));
+        grid_keep(file, file->nc.nc_put_vara_double(file->file, file->window[1], &i, &one, &transient->averages[i].to));
+    }
 }
 
 static void put_coordinates(grid *file)
@@ -271,12 +415,18 @@ static void put_coordinates(grid *file)
         const size_t start[2] = {i, 0}, edge[2] = {1, model_name_length(scene)};
         grid_keep(file, file->nc.nc_put_vara_text(file->file, file->model, start, edge, name));
     }
+    if (has_coordinate(file)) {
+        put_rows_coordinate(file);
+    }
+    if (scene->study == DEA_STUDY_TRANSIENT) {
+        put_windows(file);
+    }
 }
 
 static void grid_define(grid *file, const char *path, const char *engine)
 {
     const dea_scene *scene = file->scene;
-    const bool large = dea_scene_point_count(scene) * scene->model_count > offset_points;
+    const bool large = dea_scene_point_count(scene) * scene->model_count * file->layout.rows > offset_values;
     int old_fill;
     file->failed = file->nc.nc_create(path, NC_CLOBBER | (large ? NC_64BIT_DATA : NC_64BIT_OFFSET), &file->file);
     if (file->failed) {
@@ -293,7 +443,13 @@ static void grid_define(grid *file, const char *path, const char *engine)
     for (size_t i = 0; i < scene->axis_count; i++) {
         define_axis(file, i, dimension + i);
     }
+    if (has_coordinate(file)) {
+        define_coordinate(file);
+    }
     define_columns(file);
+    if (scene->study == DEA_STUDY_TRANSIENT) {
+        define_summaries(file);
+    }
     grid_keep(file, file->nc.nc_enddef(file->file));
     put_coordinates(file);
 }
@@ -325,16 +481,17 @@ static dea_status grid_close(void *state, bool keep, dea_error *error)
 
 static dea_status grid_allocate(grid *file)
 {
-    const size_t rank = file->scene->axis_count + (file->scene->model_count > 1 ? 1 : 0);
-    file->rank = rank;
-    file->shape = calloc(3 * rank + 1, sizeof *file->shape);
-    file->dimensions = calloc(2 * rank + 1, sizeof *file->dimensions);
+    file->point_rank = file->scene->axis_count + (file->scene->model_count > 1 ? 1 : 0);
+    file->rank = file->point_rank + (file->scene->study != DEA_STUDY_SWEEP ? 1 : 0);
+    const size_t most = file->point_rank + 1;
+    file->shape = calloc(3 * most, sizeof *file->shape);
+    file->dimensions = calloc(2 * most, sizeof *file->dimensions);
     if (!file->shape || !file->dimensions) {
         return DEA_ERROR_MEMORY;
     }
-    file->start = file->shape + rank;
-    file->edge = file->start + rank;
-    file->axes = file->dimensions + rank;
+    file->start = file->shape + most;
+    file->edge = file->start + most;
+    file->axes = file->dimensions + most;
     return DEA_OK;
 }
 
@@ -345,6 +502,7 @@ static dea_status grid_open(const dea_scene *scene, const char *engine, dea_atom
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
     opened->scene = scene;
+    opened->layout = dea_layout_of(scene);
     opened->target = file->target;
     opened->file = -1;
     dea_status status = grid_allocate(opened);
@@ -365,51 +523,99 @@ static dea_status grid_open(const dea_scene *scene, const char *engine, dea_atom
     return DEA_OK;
 }
 
-/* The largest slab of the grid that starts at flattened point @p first and is one run of at most @p count points; its points. */
-static size_t slab_next(grid *file, size_t first, size_t count)
+/* Start of the flattened place @p first in a variable of @p rank dimensions, one value long. */
+static void slab_begin(grid *file, size_t rank, size_t first)
 {
     size_t rest = first;
-    for (size_t i = file->rank; i-- > 0; rest /= file->shape[i]) {
+    for (size_t i = rank; i-- > 0; rest /= file->shape[i]) {
         file->start[i] = rest % file->shape[i];
         file->edge[i] = 1;
     }
-    size_t points = 1;
+}
+
+/* The largest slab of the grid that starts at flattened row @p first and is one run of at most @p count rows; its rows. */
+static size_t slab_next(grid *file, size_t first, size_t count)
+{
+    slab_begin(file, file->rank, first);
+    size_t rows = 1;
     for (size_t i = file->rank; i-- > 0;) {
         const size_t left = file->shape[i] - file->start[i];
-        const size_t fits = count / points;
+        const size_t fits = count / rows;
         file->edge[i] = left < fits ? left : fits;
-        points *= file->edge[i];
+        rows *= file->edge[i];
         if (file->edge[i] < file->shape[i]) {
             break;
         }
     }
-    return points;
+    return rows;
 }
 
-static void slab_put(grid *file, const dea_row *rows, size_t points)
+static void slab_put(grid *file, const char *row, size_t rows)
 {
-    for (size_t i = 0; i < DEA_ROW_COLUMNS; i++) {
-        for (size_t j = 0; j < points; j++) {
-            memcpy(&file->values[j], (const char *)&rows[j] + dea_row_columns[i].offset, sizeof file->values[j]);
+    const dea_layout *layout = &file->layout;
+    for (size_t i = has_coordinate(file) ? 1 : 0; i < layout->column_count; i++) {
+        for (size_t j = 0; j < rows; j++) {
+            memcpy(&file->values[j], row + j * layout->row_size + layout->columns[i].offset, sizeof file->values[j]);
         }
         grid_keep(file, file->nc.nc_put_vara_double(file->file, file->columns[i], file->start, file->edge, file->values));
     }
-    for (size_t j = 0; j < points; j++) {
-        file->states[j] = (signed char)rows[j].state;
+    for (size_t j = 0; j < rows; j++) {
+        file->states[j] = (signed char)dea_layout_state(layout, row + j * layout->row_size);
     }
     grid_keep(file, file->nc.nc_put_vara_schar(file->file, file->state, file->start, file->edge, file->states));
 }
 
-static dea_status grid_rows(void *state, size_t first, const dea_row *rows, size_t count, dea_error *error)
+static void put_rows(grid *file, size_t first, const char *rows, size_t count)
 {
-    grid *file = state;
     for (size_t done = 0; done < count && !file->failed;) {
         const size_t left = count - done;
-        const size_t points = slab_next(file, first + done, left < SLAB_POINTS ? left : SLAB_POINTS);
-        slab_put(file, rows + done, points);
-        done += points;
+        const size_t taken = slab_next(file, first + done, left < SLAB_ROWS ? left : SLAB_ROWS);
+        slab_put(file, rows + done * file->layout.row_size, taken);
+        done += taken;
+    }
+}
+
+static void put_figures(grid *file, const int *variables, const figure *figures, size_t count, const void *values)
+{
+    for (size_t i = 0; i < count; i++) {
+        double value;
+        memcpy(&value, (const char *)values + figures[i].offset, sizeof value);
+        grid_keep(file, file->nc.nc_put_vara_double(file->file, variables[i], file->start, file->edge, &value));
+    }
+}
+
+static void put_summaries(grid *file, size_t number, const char *point)
+{
+    const dea_layout *layout = &file->layout;
+    const dea_transient *transient = &file->scene->transient;
+    slab_begin(file, file->point_rank, number);
+    put_figures(file, file->summaries, summaries, SUMMARIES, point + layout->rows * layout->row_size);
+    file->edge[file->point_rank] = 1;
+    for (size_t i = 0; i < transient->average_count; i++) {
+        const dea_average average =
+            dea_measure_average((const dea_sample *)(const void *)point, layout->rows, transient->averages[i]);
+        file->start[file->point_rank] = i;
+        put_figures(file, file->averages, averages, AVERAGES, &average);
+    }
+}
+
+static dea_status grid_points(void *state, size_t first, const void *points, size_t count, dea_error *error)
+{
+    grid *file = state;
+    const dea_layout *layout = &file->layout;
+    if (!has_coordinate(file)) {
+        put_rows(file, first, points, count); /* points are rows: they go out many at a time */
+        return grid_status(file, error);
+    }
+    for (size_t i = 0; i < count && !file->failed; i++) {
+        const char *point = (const char *)points + i * layout->point_size;
+        put_rows(file, (first + i) * layout->rows, point, layout->rows);
+        if (file->scene->study == DEA_STUDY_TRANSIENT) {
+            put_summaries(file, first + i, point);
+        }
     }
     return grid_status(file, error);
 }
 
-const dea_format dea_format_netcdf = {.name = "nc", .straight = false, .open = grid_open, .rows = grid_rows, .close = grid_close};
+const dea_format dea_format_netcdf = {
+    .name = "nc", .straight = false, .open = grid_open, .points = grid_points, .close = grid_close};

@@ -4,8 +4,17 @@
 
 #include "deaspice/plot.h"
 #include "output/gnuplot.h"
+#include "output/runs.h"
 
-/* What a picture keeps of a row. */
+/* Room above the panels, with a title and without. */
+enum { DEA_TITLE = 54, DEA_NO_TITLE = 28 };
+
+/* Inside of a panel on the canvas, in units of 1/100 inch from the top left corner. */
+typedef struct dea_box {
+    double left, top, width, height;
+} dea_box;
+
+/* What a picture keeps of a static point. */
 typedef struct dea_dot {
     double strain, displacement;
     dea_state state;
@@ -19,8 +28,9 @@ typedef struct dea_thinning {
 struct dea_plot {
     const dea_scene *scene;
     dea_gnuplot picture;
-    bool map;    /* a map over two axes, else curves */
-    size_t x, y; /* numbers of the axis along x, and of the one along y of a map */
+    dea_runs runs; /* of a transient or frequency response; what follows is of a sweep */
+    bool map;      /* a map over two axes, else curves */
+    size_t x, y;   /* numbers of the axis along x, and of the one along y of a map */
     dea_thinning across, up;
     size_t curves; /* models times values of all other axes; for a map the kept values of y */
     dea_dot *dots; /* curves rows of across.kept dots */
@@ -38,9 +48,14 @@ void dea_plot_gradient(double share, char colour[8]);
 void dea_plot_dash(FILE *script, size_t number);
 /* Lines of a script that every picture begins with: tics, grid, border. */
 void dea_plot_style(FILE *script);
+/* Begins a multiplot with a title over it, none where it is empty. It is label 2, to be unset behind the first panel. */
+void dea_plot_title(FILE *script, const char *title, int height);
+/* Puts the next panel into a box of a canvas of that size. */
+void dea_plot_place(FILE *script, int width, int height, dea_box box);
 
 /* Write the script of a picture of that kind. */
 dea_status dea_plot_draw_curves(dea_plot *plot, dea_error *error);
 dea_status dea_plot_draw_map(dea_plot *plot, dea_error *error);
+dea_status dea_plot_draw_runs(dea_plot *plot, dea_error *error);
 
 #endif

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CURVE_POINTS = 2000, CURVES_MAX = 24, MAP_VALUES = 240, MAP_FROM = 13, COLOURS = 8 };
+enum { CURVE_POINTS = 2000, MAP_VALUES = 240, MAP_FROM = 13, COLOURS = 8 };
 
 static dea_thinning thinning_choose(size_t count, size_t most)
 {
@@ -87,8 +87,8 @@ void dea_plot_colour(size_t number, size_t count, char colour[8])
 
 void dea_plot_dash(FILE *script, size_t number)
 {
-    static const char *const dashes[] = {"solid", "(9, 4)", "(2, 3)", "(9, 3, 2, 3)", "(16, 5)",
-                                         "(9, 3, 2, 3, 2, 3)", "(4, 3)", "(16, 3, 4, 3)"};
+    static const char *const dashes[] = {"solid",  "(9, 4)",       "(2, 3)", "(9, 3, 2, 3)", "(16, 5)", "(9, 3, 2, 3, 2, 3)",
+                                         "(4, 3)", "(16, 3, 4, 3)"};
     fprintf(script, "dashtype %s", dashes[(number - 1) % (sizeof dashes / sizeof *dashes)]);
 }
 
@@ -100,6 +100,36 @@ void dea_plot_style(FILE *script)
           "set grid linetype 1 linewidth 0.5 linecolor '#e2e2e2'\n"
           "set xlabel textcolor '#202020'\nset ylabel textcolor '#202020'\n",
           script);
+}
+
+void dea_plot_place(FILE *script, int width, int height, dea_box box)
+{
+    const struct {
+        const char *name;
+        double share;
+    } margins[] = {
+        {"lmargin", box.left / width},
+        {"rmargin", (box.left + box.width) / width},
+        {"tmargin", 1.0 - box.top / height},
+        {"bmargin", 1.0 - (box.top + box.height) / height},
+    };
+    for (size_t i = 0; i < sizeof margins / sizeof *margins; i++) {
+        fprintf(script, "set %s at screen ", margins[i].name);
+        dea_gnuplot_number(script, margins[i].share);
+        fputc('\n', script);
+    }
+}
+
+void dea_plot_title(FILE *script, const char *title, int height)
+{
+    fputs("set datafile missing 'NaN'\nset datafile separator whitespace\nunset key\nset multiplot\n", script);
+    if (*title) {
+        fputs("set label 2 ", script);
+        dea_gnuplot_text(script, title);
+        fputs(" at screen 0.5, screen ", script);
+        dea_gnuplot_number(script, 1.0 - 17.0 / height);
+        fputs(" center\n", script);
+    }
 }
 
 /* Chooses what is drawn over what. */
@@ -131,17 +161,17 @@ static dea_status plot_choose(dea_plot *plot, dea_error *error)
         return DEA_OK;
     }
     plot->curves = dea_scene_point_count(scene) / scene->axes[longest].count * scene->model_count;
-    if (plot->curves > CURVES_MAX) {
+    if (plot->curves > DEA_CURVES_MAX) {
         return dea_fail(
             error, DEA_ERROR_USAGE,
             "%zu curves over %s are too many for one picture (at most %d): give the other axes fewer values; two axes and "
             "one model make a map",
-            plot->curves, scene->axes[longest].column, CURVES_MAX);
+            plot->curves, scene->axes[longest].column, DEA_CURVES_MAX);
     }
     return DEA_OK;
 }
 
-static dea_status plot_start(dea_plot *plot, const char *path, dea_error *error)
+static dea_status dots_open(dea_plot *plot, dea_error *error)
 {
     const dea_status status = plot_choose(plot, error);
     if (status != DEA_OK) {
@@ -155,7 +185,12 @@ static dea_status plot_start(dea_plot *plot, const char *path, dea_error *error)
     for (size_t i = 0; i < count; i++) {
         plot->dots[i] = (dea_dot){NAN, NAN, DEA_STATE_FAILED};
     }
-    return dea_gnuplot_begin(&plot->picture, path, error);
+    return DEA_OK;
+}
+
+static bool is_sweep(const dea_plot *plot)
+{
+    return plot->scene->study == DEA_STUDY_SWEEP;
 }
 
 dea_status dea_plot_begin(const dea_scene *scene, const char *path, dea_plot **plot, dea_error *error)
@@ -166,7 +201,10 @@ dea_status dea_plot_begin(const dea_scene *scene, const char *path, dea_plot **p
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
     begun->scene = scene;
-    const dea_status status = plot_start(begun, path, error);
+    dea_status status = is_sweep(begun) ? dots_open(begun, error) : dea_runs_open(scene, &begun->runs, error);
+    if (status == DEA_OK) {
+        status = dea_gnuplot_begin(&begun->picture, path, error);
+    }
     if (status != DEA_OK) {
         dea_plot_finish(begun, false, NULL);
         return status;
@@ -175,7 +213,7 @@ dea_status dea_plot_begin(const dea_scene *scene, const char *path, dea_plot **p
     return DEA_OK;
 }
 
-/* The dot that row number @p row of the study belongs to, NULL where it is thinned out. */
+/* The dot that point number @p row of a sweep belongs to, NULL where it is thinned out. */
 static dea_dot *plot_dot(dea_plot *plot, size_t row)
 {
     const dea_scene *scene = plot->scene;
@@ -197,7 +235,7 @@ static dea_dot *plot_dot(dea_plot *plot, size_t row)
     return place != SIZE_MAX && curve < plot->curves ? &plot->dots[curve * plot->across.kept + place] : NULL;
 }
 
-void dea_plot_rows(dea_plot *plot, size_t first, const dea_row *rows, size_t count)
+static void dots_take(dea_plot *plot, size_t first, const dea_row *rows, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         dea_dot *dot = plot_dot(plot, first + i);
@@ -207,8 +245,22 @@ void dea_plot_rows(dea_plot *plot, size_t first, const dea_row *rows, size_t cou
     }
 }
 
+void dea_plot_points(dea_plot *plot, size_t first, const void *points, size_t count)
+{
+    if (is_sweep(plot)) {
+        dots_take(plot, first, points, count);
+        return;
+    }
+    for (size_t i = 0; i < count; i++) {
+        dea_runs_take(&plot->runs, first + i, (const char *)points + i * plot->runs.layout.point_size);
+    }
+}
+
 static dea_status plot_draw(dea_plot *plot, dea_error *error)
 {
+    if (!is_sweep(plot)) {
+        return dea_plot_draw_runs(plot, error);
+    }
     for (size_t i = 0; i < plot->curves * plot->across.kept; i++) {
         if (isfinite(plot->dots[i].displacement)) {
             return plot->map ? dea_plot_draw_map(plot, error) : dea_plot_draw_curves(plot, error);
@@ -224,6 +276,7 @@ dea_status dea_plot_finish(dea_plot *plot, bool keep, dea_error *error)
     }
     const dea_status status = keep ? plot_draw(plot, error) : DEA_OK;
     const dea_status finished = dea_gnuplot_finish(&plot->picture, keep && status == DEA_OK, error);
+    dea_runs_close(&plot->runs);
     free(plot->dots);
     free(plot);
     return status != DEA_OK ? status : finished;

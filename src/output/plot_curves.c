@@ -1,9 +1,7 @@
 /* Strain and displacement side by side: one colour for each value of the other axes, one dash for each model. */
 #include "output/label.h"
-#include "output/legend.h"
 #include "output/picture.h"
-
-#include "deaspice/model.h"
+#include "output/series.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,25 +11,9 @@ enum {
     WIDTH = 960,
     PANEL = 300,
     PANEL_WIDTH = 358,
-    TITLE = 54,
-    NO_TITLE = 28,
     LABELS = 58, /* below a panel */
-    MARGIN = 20,
     MARKS_PER_CURVE = 20,
-    FEW_POINTS = 25,
-    MARKS = 3,
-    KINDS = 3 /* of legend entries: groups, models, marks */
-};
-
-/* Marks on curves: limits that a point is past. */
-static const struct {
-    dea_state state;
-    int symbol, inside; /* point types of gnuplot: the outline, and its inside in white below it */
-    const char *legend;
-} marks[MARKS] = {
-    {DEA_STATE_SLACK, 6, 7, "slack"},
-    {DEA_STATE_BREAKDOWN, 8, 9, "breakdown"},
-    {DEA_STATE_PULL_IN, 5, 5, "pull-in"},
+    FEW_POINTS = 25
 };
 
 /* What the whole picture needs to know. */
@@ -40,8 +22,8 @@ typedef struct sheet {
     const dea_axis *axis;
     const size_t *order; /* kept values by size */
     dea_scale across, displacement;
-    size_t groups; /* curves of one model */
-    bool seen[MARKS];
+    dea_series series;
+    bool seen[DEA_MARKS];
     double low[2], high[2]; /* of strain and displacement as drawn, 0 included */
     int height;
 } sheet;
@@ -56,11 +38,11 @@ static bool is_marked(const sheet *page, size_t curve, size_t place, size_t mark
 {
     const size_t kept = page->plot->across.kept;
     const dea_dot *dot = sheet_dot(page, curve, place);
-    if (marks[mark].state != DEA_STATE_PULL_IN) {
+    if (dea_marks[mark].state != DEA_STATE_PULL_IN) {
         const size_t step = kept / MARKS_PER_CURVE + 1, back = step / 2 < place ? step / 2 : place;
         const bool begins = place == 0 || sheet_dot(page, curve, place - 1)->state != dot->state;
         const bool within = place % step == 0 && sheet_dot(page, curve, place - back)->state == dot->state;
-        return dot->state == marks[mark].state && (begins || within);
+        return dot->state == dea_marks[mark].state && (begins || within);
     }
     const bool before = place > 0 && sheet_dot(page, curve, place - 1)->state == DEA_STATE_PULL_IN;
     const bool after = place + 1 < kept && sheet_dot(page, curve, place + 1)->state == DEA_STATE_PULL_IN;
@@ -85,48 +67,11 @@ static void sheet_scan(sheet *page)
                 page->low[i] = fmin(page->low[i], drawn[i]);
                 page->high[i] = fmax(page->high[i], drawn[i]);
             }
-            for (size_t mark = 0; mark < MARKS; mark++) {
+            for (size_t mark = 0; mark < DEA_MARKS; mark++) {
                 page->seen[mark] = page->seen[mark] || is_marked(page, curve, place, mark);
             }
         }
     }
-}
-
-/* Name of a group of curves: the values of all axes but the one along x. */
-static void group_label(const sheet *page, size_t group, char *label, size_t size)
-{
-    const dea_scene *scene = page->plot->scene;
-    size_t step = page->groups;
-    size_t used = 0;
-    *label = '\0';
-    for (size_t i = 0; i < scene->axis_count; i++) {
-        const dea_axis *axis = &scene->axes[i];
-        if (i == page->plot->x || axis->count == 1) {
-            continue;
-        }
-        step /= axis->count;
-        const dea_scale scale = dea_scale_axis(axis);
-        char part[DEA_LABEL_LENGTH];
-        dea_label_value(axis, &scale, group / step % axis->count, part);
-        if (used < size) {
-            used += (size_t)snprintf(label + used, size - used, "%s%s", used > 0 ? ", " : "", part);
-        }
-    }
-}
-
-static void model_label(const dea_scene *scene, size_t model, char label[DEA_LABEL_LENGTH])
-{
-    snprintf(label, DEA_LABEL_LENGTH, "%s", scene->models[model]->name);
-    for (char *letter = label; *letter; letter++) {
-        *letter = *letter == '_' ? ' ' : *letter;
-    }
-}
-
-/* Colour follows the group; with one group it follows the model, as the dash does. */
-static void curve_colour(const sheet *page, size_t model, size_t group, char colour[8])
-{
-    const bool single = page->groups == 1;
-    dea_plot_colour(single ? model : group, single ? page->plot->scene->model_count : page->groups, colour);
 }
 
 static void write_data(const sheet *page, FILE *script)
@@ -143,7 +88,7 @@ static void write_data(const sheet *page, FILE *script)
                 fputc(' ', script);
                 dea_gnuplot_number(script, drawn[i]);
             }
-            for (size_t mark = 0; mark < MARKS; mark++) {
+            for (size_t mark = 0; mark < DEA_MARKS; mark++) {
                 for (int i = 0; i < 2; i++) {
                     fputc(' ', script);
                     dea_gnuplot_number(script, is_marked(page, curve, place, mark) ? drawn[i] : NAN);
@@ -158,15 +103,15 @@ static void write_data(const sheet *page, FILE *script)
 static void write_marks(const sheet *page, FILE *script, size_t curve, int column)
 {
     char colour[8];
-    curve_colour(page, curve / page->groups, curve % page->groups, colour);
-    for (size_t mark = 0; mark < MARKS; mark++) {
+    dea_series_colour(&page->series, curve / page->series.groups, curve % page->series.groups, colour);
+    for (size_t mark = 0; mark < DEA_MARKS; mark++) {
         if (page->seen[mark]) {
             const int from = column + 2 * ((int)mark + 1);
             fprintf(script, ", \\\n $curve%zu using 1:%d with points pointtype %d pointsize 0.8 linecolor '#ffffff' notitle",
-                    curve, from, marks[mark].inside);
+                    curve, from, dea_marks[mark].inside);
             fprintf(script,
                     ", \\\n $curve%zu using 1:%d with points pointtype %d pointsize 0.7 linewidth 1.3 linecolor '%s' notitle",
-                    curve, from, marks[mark].symbol, colour);
+                    curve, from, dea_marks[mark].symbol, colour);
         }
     }
 }
@@ -179,10 +124,10 @@ static void write_curves(const sheet *page, FILE *script, int column)
     fputs("plot ", script);
     for (size_t curve = 0; curve < plot->curves; curve++) {
         char colour[8];
-        curve_colour(page, curve / page->groups, curve % page->groups, colour);
+        dea_series_colour(&page->series, curve / page->series.groups, curve % page->series.groups, colour);
         fprintf(script, "%s$curve%zu using 1:%d with %s ", curve > 0 ? ", \\\n " : "", curve, column,
                 few ? "linespoints" : "lines");
-        dea_plot_dash(script, curve / page->groups + 1);
+        dea_plot_dash(script, curve / page->series.groups + 1);
         fprintf(script, " linewidth 1.8 linecolor '%s' pointtype 7 pointsize 0.4 notitle", colour);
     }
     for (size_t curve = 0; curve < plot->curves; curve++) {
@@ -195,106 +140,17 @@ static void write_curves(const sheet *page, FILE *script, int column)
 static void write_panel(const sheet *page, FILE *script, int number)
 {
     const double left = number == 0 ? 82.0 : 578.0;
-    const double top = page->plot->scene->title[0] ? TITLE : NO_TITLE;
+    const double top = page->plot->scene->title[0] ? DEA_TITLE : DEA_NO_TITLE;
     char label[DEA_LABEL_LENGTH + 24];
-    fputs("set lmargin at screen ", script);
-    dea_gnuplot_number(script, left / WIDTH);
-    fputs("\nset rmargin at screen ", script);
-    dea_gnuplot_number(script, (left + PANEL_WIDTH) / WIDTH);
-    fputs("\nset tmargin at screen ", script);
-    dea_gnuplot_number(script, 1.0 - top / page->height);
-    fputs("\nset bmargin at screen ", script);
-    dea_gnuplot_number(script, 1.0 - (top + PANEL) / page->height);
+    dea_plot_place(script, WIDTH, page->height, (dea_box){left, top, PANEL_WIDTH, PANEL});
     snprintf(label, sizeof label, number == 0 ? "Strain s [%%]" : "Displacement u [%s]", page->displacement.unit);
-    fputs("\nset ylabel ", script);
+    fputs("set ylabel ", script);
     dea_gnuplot_text(script, label);
     fprintf(script, "\nset label 1 '(%c)' at graph 0, graph 1.045 left\n", 'a' + number);
     const bool flat = !(page->high[number] > page->low[number]);
     fprintf(script, "set yrange [%s:%s]\n", page->low[number] < 0.0 || flat ? "*" : "0",
             page->high[number] > 0.0 || flat ? "*" : "0");
     write_curves(page, script, number + 2);
-}
-
-/* Entries in the order groups, models, marks; kinds[i] is the first of kind i. */
-static void legend_list(const sheet *page, dea_legend *legend, size_t kinds[KINDS + 1])
-{
-    const dea_scene *scene = page->plot->scene;
-    const size_t groups = page->groups > 1 ? page->groups : 0, models = scene->model_count > 1 ? scene->model_count : 0;
-    kinds[0] = 0;
-    for (size_t i = 0; i < groups; i++) {
-        dea_legend_entry *entry = dea_legend_add(legend);
-        entry->dash = 1;
-        group_label(page, i, entry->label, sizeof entry->label);
-        curve_colour(page, 0, i, entry->colour);
-    }
-    kinds[1] = legend->count;
-    for (size_t i = 0; i < models; i++) {
-        dea_legend_entry *entry = dea_legend_add(legend);
-        entry->dash = i + 1;
-        model_label(scene, i, entry->label);
-        if (groups == 0) {
-            curve_colour(page, i, 0, entry->colour);
-        } else {
-            snprintf(entry->colour, sizeof entry->colour, "#404040");
-        }
-    }
-    kinds[2] = legend->count;
-    for (size_t i = 0; i < MARKS; i++) {
-        if (page->seen[i]) {
-            dea_legend_entry *entry = dea_legend_add(legend);
-            entry->symbol = marks[i].symbol;
-            snprintf(entry->colour, sizeof entry->colour, "#404040");
-            snprintf(entry->label, sizeof entry->label, "%s", marks[i].legend);
-        }
-    }
-    kinds[3] = legend->count;
-}
-
-static double legend_room(const dea_legend *legend, size_t from, size_t to)
-{
-    double room = 0.0;
-    for (size_t i = from; i < to; i++) {
-        room += dea_legend_room(&legend->entries[i]);
-    }
-    return room;
-}
-
-/* End of the row that begins with entry @p from: all that is left where it fits, else as much of one kind as fits. */
-static size_t legend_row_end(const dea_legend *legend, const size_t kinds[KINDS + 1], size_t from)
-{
-    const size_t count = kinds[KINDS];
-    if (legend_room(legend, from, count) <= WIDTH - MARGIN) {
-        return count;
-    }
-    size_t end = count;
-    for (int kind = KINDS; kind > 0 && kinds[kind] > from; kind--) {
-        end = kinds[kind];
-    }
-    while (end > from + 1 && legend_room(legend, from, end) > WIDTH - MARGIN) {
-        end--;
-    }
-    return end;
-}
-
-/* Places the entries in centred rows below the panels; this settles the height of the canvas. */
-static void sheet_layout(sheet *page, dea_legend *legend)
-{
-    size_t kinds[KINDS + 1];
-    legend_list(page, legend, kinds);
-    double y = 0.0;
-    for (size_t from = 0; from < legend->count; y -= DEA_LEGEND_ROW) {
-        const size_t end = legend_row_end(legend, kinds, from);
-        double x = 0.5 * (WIDTH + MARGIN - legend_room(legend, from, end));
-        for (; from < end; from++) {
-            legend->entries[from].x = x;
-            legend->entries[from].y = y;
-            x += dea_legend_room(&legend->entries[from]);
-        }
-    }
-    page->height = (page->plot->scene->title[0] ? TITLE : NO_TITLE) + PANEL + LABELS + (int)-y + (y < 0.0 ? 8 : 0);
-    for (size_t i = 0; i < legend->count; i++) {
-        legend->entries[i].y += 8.0 - y - DEA_LEGEND_ROW / 2.0;
-    }
 }
 
 /* Positive values with a constant ratio over two decades or more ask for a logarithmic axis. */
@@ -319,14 +175,7 @@ static void write_frame(const sheet *page, FILE *script)
     const size_t last = page->plot->across.kept - 1;
     char label[DEA_LABEL_LENGTH];
     dea_plot_style(script);
-    fputs("set datafile missing 'NaN'\nset datafile separator whitespace\nunset key\nset multiplot\n", script);
-    if (page->plot->scene->title[0]) {
-        fputs("set label 2 ", script);
-        dea_gnuplot_text(script, page->plot->scene->title);
-        fputs(" at screen 0.5, screen ", script);
-        dea_gnuplot_number(script, 1.0 - 17.0 / page->height);
-        fputs(" center\n", script);
-    }
+    dea_plot_title(script, page->plot->scene->title, page->height);
     dea_label_axis(page->axis, &page->across, label);
     fputs("set xlabel ", script);
     dea_gnuplot_text(script, label);
@@ -347,10 +196,11 @@ dea_status dea_plot_draw_curves(dea_plot *plot, dea_error *error)
     }
     page.order = order;
     page.across = dea_scale_axis(page.axis);
-    page.groups = plot->curves / plot->scene->model_count;
+    page.series = (dea_series){plot->scene, plot->x, plot->curves / plot->scene->model_count};
     sheet_scan(&page);
     dea_legend legend = {.count = 0};
-    sheet_layout(&page, &legend);
+    page.height = (plot->scene->title[0] ? DEA_TITLE : DEA_NO_TITLE) + PANEL + LABELS +
+                  dea_series_legend(&page.series, page.seen, WIDTH, &legend);
     FILE *script = plot->picture.script;
     dea_gnuplot_size(&plot->picture, WIDTH, page.height);
     write_data(&page, script);

@@ -10,8 +10,8 @@ struct dea_writer {
     const dea_format *format;
     dea_atomic file;
     void *state;
-    size_t next;  /* row that comes next */
-    size_t total; /* rows of the study */
+    size_t next;  /* point that comes next */
+    size_t total; /* points of the study, over all models */
 };
 
 static const dea_format *format_find(const char *name)
@@ -80,14 +80,14 @@ dea_status dea_writer_open(const dea_scene *scene, const char *engine, const cha
     return DEA_OK;
 }
 
-dea_status dea_writer_rows(dea_writer *writer, size_t first, const dea_row *rows, size_t count, dea_error *error)
+dea_status dea_writer_points(dea_writer *writer, size_t first, const void *points, size_t count, dea_error *error)
 {
     if (first != writer->next || count > writer->total - first) {
-        return dea_fail(error, DEA_ERROR_USAGE, "rows %zu to %zu came where row %zu of %zu was due", first, first + count,
+        return dea_fail(error, DEA_ERROR_USAGE, "points %zu to %zu came where point %zu of %zu was due", first, first + count,
                         writer->next, writer->total);
     }
     writer->next += count;
-    return writer->format->rows(writer->state, first, rows, count, error);
+    return writer->format->points(writer->state, first, points, count, error);
 }
 
 dea_status dea_writer_finish(dea_writer *writer, bool keep, dea_error *error)
@@ -98,7 +98,7 @@ dea_status dea_writer_finish(dea_writer *writer, bool keep, dea_error *error)
     dea_status status = DEA_OK;
     bool whole = keep;
     if (keep && writer->next != writer->total) {
-        status = dea_fail(error, DEA_ERROR_USAGE, "%s: only %zu of %zu rows were written", writer->file.target, writer->next,
+        status = dea_fail(error, DEA_ERROR_USAGE, "%s: only %zu of %zu points were written", writer->file.target, writer->next,
                           writer->total);
         whole = false;
     }

@@ -5,25 +5,28 @@
 #include "deaspice/output.h"
 #include "deaspice/plot.h"
 #include "output/progress.h"
+#include "program/findings.h"
 #include "program/program.h"
 
-/* Everyone who listens to the rows of a run. */
+/* Everyone who listens to the points of a run. */
 typedef struct dea_audience {
     dea_writer *writer; /* NULL: none */
     dea_plot *plot;     /* NULL: none */
     dea_progress *progress;
-    size_t states[DEA_STATE_COUNT];
-    bool quiet;
+    dea_findings findings;
 } dea_audience;
 
-static dea_status take_rows(void *user, size_t first, const dea_row *rows, size_t count, dea_error *error)
+static dea_status take_points(void *user, size_t first, const void *points, size_t count, dea_error *error)
 {
     dea_audience *audience = user;
-    for (size_t i = 0; i < count; i++)
-        audience->states[rows[i].state]++;
-    dea_status status = audience->writer ? dea_writer_rows(audience->writer, first, rows, count, error) : DEA_OK;
-    if (status == DEA_OK && audience->plot)
-        dea_plot_rows(audience->plot, first, rows, count);
+    if (audience->findings.averages) {
+        dea_progress_clear(audience->progress); /* they may go to the same terminal */
+    }
+    dea_findings_take(&audience->findings, first, points, count);
+    const dea_status status = audience->writer ? dea_writer_points(audience->writer, first, points, count, error) : DEA_OK;
+    if (status == DEA_OK && audience->plot) {
+        dea_plot_points(audience->plot, first, points, count);
+    }
     return status;
 }
 
@@ -40,15 +43,33 @@ static void take_progress(void *user, size_t done, size_t total)
     dea_progress_show(audience->progress, done, total);
 }
 
+/* Does the result itself go to standard output? */
+static bool is_straight(const dea_arguments *arguments)
+{
+    const char *output = arguments->output;
+    return output ? strcmp(output, "-") == 0 || strcmp(output, "/dev/stdout") == 0 : !arguments->plot;
+}
+
+/* Averages go to standard output, or beside it where that holds the result. */
+static FILE *averages_stream(const dea_arguments *arguments)
+{
+    return !is_straight(arguments) ? stdout : arguments->quiet ? NULL : stderr;
+}
+
 static dea_status open_audience(const dea_arguments *arguments, const dea_scene *scene, const dea_engine *engine,
                                 dea_audience *audience, dea_error *error)
 {
     const char *output = arguments->output ? arguments->output : arguments->plot ? NULL : "-";
     dea_status status = DEA_OK;
-    if (output)
+    if (output) {
         status = dea_writer_open(scene, engine->name, output, arguments->format, &audience->writer, error);
-    if (status == DEA_OK && arguments->plot)
+    }
+    if (status == DEA_OK && arguments->plot) {
         status = dea_plot_begin(scene, arguments->plot, &audience->plot, error);
+    }
+    if (status == DEA_OK) {
+        audience->findings = dea_findings_begin(scene, averages_stream(arguments));
+    }
     return status;
 }
 
@@ -56,65 +77,62 @@ static dea_status open_audience(const dea_arguments *arguments, const dea_scene 
 static dea_status close_audience(dea_audience *audience, dea_status status, dea_error *error)
 {
     dea_progress_end(audience->progress);
-    dea_status written = dea_writer_finish(audience->writer, status == DEA_OK, status == DEA_OK ? error : NULL);
-    if (status == DEA_OK)
+    const dea_status written = dea_writer_finish(audience->writer, status == DEA_OK, status == DEA_OK ? error : NULL);
+    if (status == DEA_OK) {
         status = written;
-    dea_status plotted = dea_plot_finish(audience->plot, status == DEA_OK, status == DEA_OK ? error : NULL);
-    return status != DEA_OK ? status : plotted;
-}
-
-static void print_summary(const dea_engine *engine, const dea_audience *audience, double seconds)
-{
-    size_t total = 0;
-    for (size_t i = 0; i < DEA_STATE_COUNT; i++)
-        total += audience->states[i];
-    fprintf(stderr, "%zu point%s in %.3g s (%s)", total, total == 1 ? "" : "s", seconds, engine->name);
-    const char *before = ": ";
-    for (size_t i = 0; i < DEA_STATE_COUNT; i++) {
-        if (audience->states[i] == 0)
-            continue;
-        fprintf(stderr, "%s%zu %s", before, audience->states[i], dea_state_name((dea_state)i));
-        before = ", ";
     }
-    fputc('\n', stderr);
+    const dea_status plotted = dea_plot_finish(audience->plot, status == DEA_OK, status == DEA_OK ? error : NULL);
+    return status != DEA_OK ? status : plotted;
 }
 
 static void tell_interrupted(const dea_audience *audience, const dea_arguments *arguments)
 {
-    int signal = dea_signals_caught();
-    bool straight = audience->writer && (!arguments->output || strcmp(arguments->output, "-") == 0);
-    if (signal != 0 && !dea_signals_broken_pipe())
+    const bool straight = audience->writer && is_straight(arguments);
+    if (dea_signals_caught() != 0 && !dea_signals_broken_pipe()) {
         dea_complain("%s", straight ? "interrupted" : "interrupted, nothing written");
+    }
+}
+
+static dea_exit tell_findings(const dea_arguments *arguments, const dea_scene *scene, const dea_engine *engine,
+                              const dea_findings *findings, double seconds)
+{
+    const size_t failed = findings->states[DEA_STATE_FAILED];
+    if (!arguments->quiet && (arguments->output || arguments->plot || isatty(STDERR_FILENO))) {
+        dea_findings_print(findings, engine, seconds);
+    }
+    if (failed > 0) {
+        dea_complain("%zu %s were not solved", failed, scene->study == DEA_STUDY_SWEEP ? "points" : "rows");
+    }
+    return failed > 0 ? DEA_EXIT_FAILED : DEA_EXIT_DONE;
 }
 
 static dea_exit run_scene(const dea_arguments *arguments, const dea_scene *scene, const dea_engine *engine)
 {
     dea_error error = {0};
-    dea_audience audience = {.quiet = arguments->quiet};
+    dea_audience audience = {0};
     dea_signals_catch();
     dea_status status = open_audience(arguments, scene, engine, &audience, &error);
     audience.progress = arguments->quiet ? NULL : dea_progress_begin();
-    dea_run_options options = {.jobs = arguments->jobs ? arguments->jobs : dea_core_count(),
-                               .rows = take_rows,
-                               .progress = take_progress,
-                               .log = take_log,
-                               .stop = dea_signals_stop,
-                               .user = &audience};
-    double start = dea_seconds();
-    if (status == DEA_OK)
+    const dea_run_options options = {.jobs = arguments->jobs ? arguments->jobs : dea_core_count(),
+                                     .points = take_points,
+                                     .progress = take_progress,
+                                     .log = take_log,
+                                     .stop = dea_signals_stop,
+                                     .user = &audience};
+    const double start = dea_seconds();
+    if (status == DEA_OK) {
         status = dea_study_run(scene, engine, &options, &error);
-    double seconds = dea_seconds() - start;
-    if (status != DEA_OK && dea_signals_caught())
+    }
+    const double seconds = dea_seconds() - start;
+    if (status != DEA_OK && dea_signals_caught()) {
         tell_interrupted(&audience, arguments);
+    }
     status = close_audience(&audience, status, &error);
-    if (status != DEA_OK)
-        return dea_complain_error(&error);
-    if (!arguments->quiet && (arguments->output || arguments->plot || isatty(STDERR_FILENO)))
-        print_summary(engine, &audience, seconds);
-    if (audience.states[DEA_STATE_FAILED] == 0)
-        return DEA_EXIT_DONE;
-    dea_complain("%zu points were not solved", audience.states[DEA_STATE_FAILED]);
-    return DEA_EXIT_FAILED;
+    if (status == DEA_OK) {
+        return tell_findings(arguments, scene, engine, &audience.findings, seconds);
+    }
+    const dea_exit outcome = dea_complain_error(&error);
+    return audience.findings.states[DEA_STATE_FAILED] > 0 ? DEA_EXIT_FAILED : outcome; /* why there is nothing to draw */
 }
 
 static dea_exit run(const dea_arguments *arguments)
@@ -126,10 +144,12 @@ static dea_exit run(const dea_arguments *arguments)
         dea_complain("%s is the target of both the result and the plot", arguments->plot);
         return DEA_EXIT_USAGE;
     }
-    if (!engine || !dea_scene_open(arguments, arguments->operands[0].path, &scene, &outcome))
+    if (!engine || !dea_scene_open(arguments, arguments->operands[0].path, &scene, &outcome)) {
         return outcome;
-    if (!dea_engine_refuses(engine, &scene))
+    }
+    if (!dea_engine_unfit(engine, &scene)) {
         outcome = run_scene(arguments, &scene, engine);
+    }
     dea_scene_free(&scene);
     return outcome;
 }
@@ -155,6 +175,8 @@ const dea_command dea_command_run = {
             "  -V, --version         the version\n"
             "\n"
             "Points past a limit (slack, pull_in, breakdown) are told in the state column.\n"
+            "Averages of a transient go to standard output, or to standard error where the\n"
+            "result goes there.\n"
             "Exit status: 0 done, 1 points not solved or a file not written, 2 usage or a bad\n"
             "scene.\n"
             "\n"

@@ -7,7 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "deaspice/fit.h"
 #include "program/program.h"
+#include "scene/quantity.h"
 #include "support/text.h"
 
 enum { MOST_JOBS = 1024 };
@@ -130,6 +132,36 @@ static bool set_relative(dea_arguments *arguments, const char *value)
     return true;
 }
 
+static bool set_relaxation(dea_arguments *arguments, const char *value)
+{
+    return set_text(&arguments->relaxation, "relaxation", value);
+}
+
+static bool set_ramp(dea_arguments *arguments, const char *value)
+{
+    char reason[DEA_REASON_LENGTH] = "out of memory";
+    dea_units *units = dea_units_open();
+    const bool read = units && dea_quantity_read(units, value, "s", &arguments->ramp, reason);
+    dea_units_close(units);
+    if (!read || !(arguments->ramp >= 0.0)) {
+        dea_complain("--ramp %s: %s; needs a time, for example \"2 s\", or \"0 s\" for an ideal step", value,
+                     read ? "is negative" : reason);
+        return false;
+    }
+    return true;
+}
+
+static bool set_branches(dea_arguments *arguments, const char *value)
+{
+    const long branches = whole_number(value, DEA_RELAXATION_MOST);
+    if (branches < 1) {
+        dea_complain("--branches %s: needs a whole number from 1 to %d", value, DEA_RELAXATION_MOST);
+        return false;
+    }
+    arguments->branches = (size_t)branches;
+    return true;
+}
+
 static bool add_operand(dea_arguments *arguments, const char *path, dea_given_mode mode)
 {
     arguments->operands[arguments->operand_count++] = (dea_operand){path, mode};
@@ -159,6 +191,9 @@ static const option_entry entries[] = {
     {"uniaxial", 0, true, DEA_TAKES_FIT, add_uniaxial},
     {"equibiaxial", 0, true, DEA_TAKES_FIT, add_equibiaxial},
     {"terms", 0, true, DEA_TAKES_FIT, set_terms},
+    {"relaxation", 0, true, DEA_TAKES_FIT, set_relaxation},
+    {"ramp", 0, true, DEA_TAKES_FIT, set_ramp},
+    {"branches", 0, true, DEA_TAKES_FIT, set_branches},
     {"relative", 0, false, DEA_TAKES_FIT, set_relative},
     {"help", 'h', false, 0, NULL},
     {"version", 'V', false, 0, NULL},
@@ -256,7 +291,7 @@ dea_parsed dea_arguments_parse(const dea_command *command, int argc, char **argv
 {
     struct option longs[ENTRIES + 1];
     char letters[2 * ENTRIES + 2];
-    *arguments = (dea_arguments){.tolerance = NAN};
+    *arguments = (dea_arguments){.tolerance = NAN, .ramp = NAN};
     arguments->settings = calloc((size_t)argc + 1, sizeof *arguments->settings);
     arguments->operands = calloc((size_t)argc + 1, sizeof *arguments->operands);
     if (!arguments->settings || !arguments->operands) {

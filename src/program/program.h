@@ -25,7 +25,7 @@ typedef enum dea_takes {
     DEA_TAKES_JOBS = 1 << 5,
     DEA_TAKES_QUIET = 1 << 6,
     DEA_TAKES_TOLERANCE = 1 << 7,
-    DEA_TAKES_FIT = 1 << 8 /**< --uniaxial, --equibiaxial, --terms, --relative */
+    DEA_TAKES_FIT = 1 << 8 /**< --uniaxial, --equibiaxial, --terms, --relaxation, --ramp, --branches, --relative */
 } dea_takes;
 
 /** Mode of a data file as the command line gives it. */
@@ -51,6 +51,9 @@ typedef struct dea_arguments {
     double tolerance; /**< NAN: not given */
     unsigned terms;   /**< 0: not given */
     bool relative;
+    const char *relaxation; /**< NULL: not given */
+    double ramp;            /**< [s], NAN: not given */
+    size_t branches;        /**< 0: not given */
     dea_operand *operands;
     size_t operand_count;
 } dea_arguments;
@@ -91,7 +94,7 @@ const dea_engine *dea_engine_choose(const char *name);
 /** Reads a scene with the settings of the command line; on failure says so and sets @p outcome. */
 bool dea_scene_open(const dea_arguments *arguments, const char *path, dea_scene *scene, dea_exit *outcome);
 /** Complains about an engine that refuses a model and names those that can do it; true where it does. */
-bool dea_engine_refuses(const dea_engine *engine, const dea_scene *scene);
+bool dea_engine_unfit(const dea_engine *engine, const dea_scene *scene);
 /** Seconds since some moment. */
 double dea_seconds(void);
 

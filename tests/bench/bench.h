@@ -28,6 +28,9 @@ double bench_sweep(const dea_engine *engine, const dea_scene *scene, dea_row *ro
 /* Largest relative difference of any column of ok rows; infinite where states differ. */
 double bench_difference(const dea_row *rows, const dea_row *reference, size_t count);
 
+/* Starts the program, waits, and returns seconds; *megabytes is the resident memory of its largest process. */
+double bench_program_seconds(char *const *arguments, double *megabytes);
+
 /* Strain by the equations of the model in extended precision; NAN where the model has none here. */
 long double bench_strain(const char *model, const dea_point *point);
 
@@ -36,6 +39,7 @@ void bench_agreement(void);
 void bench_engines(const char *peers);
 void bench_workers(void);
 void bench_program(const char *program);
+void bench_transients(const char *program, const char *peers);
 void bench_peers(const char *peers);
 
 #endif

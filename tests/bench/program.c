@@ -22,8 +22,9 @@ typedef struct heard {
     double worst;
 } heard;
 
-static dea_status hear(void *user, size_t first, const dea_row *rows, size_t count, dea_error *error)
+static dea_status hear(void *user, size_t first, const void *points, size_t count, dea_error *error)
 {
+    const dea_row *rows = points;
     heard *listener = user;
     (void)error;
     listener->worst = fmax(listener->worst, bench_difference(rows, listener->reference + first, count));
@@ -33,7 +34,7 @@ static dea_status hear(void *user, size_t first, const dea_row *rows, size_t cou
 static double seconds_with(const dea_scene *scene, size_t jobs, heard *listener)
 {
     dea_error error = {0};
-    const dea_run_options options = {.jobs = jobs, .rows = hear, .user = listener};
+    const dea_run_options options = {.jobs = jobs, .points = hear, .user = listener};
     const double from = bench_now();
     if (dea_study_run(scene, dea_engine_find("ngspice"), &options, &error) != DEA_OK) {
         bench_give_up("%s", error.message);
@@ -66,8 +67,7 @@ void bench_workers(void)
     dea_scene_free(&scene);
 }
 
-/* Starts the program, waits, and returns seconds; *megabytes is the resident memory of its largest process. */
-static double run_program(char *const *arguments, double *megabytes)
+double bench_program_seconds(char *const *arguments, double *megabytes)
 {
     posix_spawn_file_actions_t actions;
     struct rusage usage;
@@ -108,7 +108,7 @@ static void memory_row(char *program)
                 "{coverage: {from: 0.05, to: 0.95, points: 10000}, voltage: {from: 0 V, to: 4500 V, points: 1000}}");
     snprintf(output, sizeof output, "%s/long.nc", folder);
     char *arguments[] = {program, "run", scene, "--engine", "direct", "--quiet", "-o", output, NULL};
-    const double seconds = run_program(arguments, &megabytes);
+    const double seconds = bench_program_seconds(arguments, &megabytes);
     snprintf(measured, sizeof measured, "%.0f MB (%.1f s)", megabytes, seconds);
     bench_row("memory of a direct sweep of 10,000,000 points to .nc", "150 MB", megabytes < 150.0, measured, "");
     unlink(output);
@@ -119,7 +119,7 @@ static double median_start(char *const *arguments)
 {
     double seconds[STARTS], megabytes;
     for (int i = 0; i < STARTS; i++) {
-        seconds[i] = run_program(arguments, &megabytes);
+        seconds[i] = bench_program_seconds(arguments, &megabytes);
     }
     return 1e3 * bench_median(seconds, STARTS);
 }

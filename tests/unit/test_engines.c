@@ -14,8 +14,9 @@ typedef struct row_list {
     size_t count;
 } row_list;
 
-static dea_status take_rows(void *user, size_t first, const dea_row *rows, size_t count, dea_error *error)
+static dea_status take_rows(void *user, size_t first, const void *points, size_t count, dea_error *error)
 {
+    const dea_row *rows = points;
     row_list *list = user;
     (void)error;
     assert_int_equal(first, list->count);
@@ -29,7 +30,7 @@ static row_list run(const dea_scene *scene, const char *engine)
 {
     row_list list = {.count = 0};
     dea_error error = {0};
-    const dea_run_options options = {.jobs = 1, .rows = take_rows, .user = &list};
+    const dea_run_options options = {.jobs = 1, .points = take_rows, .user = &list};
     if (dea_study_run(scene, dea_engine_find(engine), &options, &error) != DEA_OK) {
         fail_msg("%s: %s", engine, error.message);
     }
@@ -42,8 +43,9 @@ typedef struct long_list {
     size_t count;
 } long_list;
 
-static dea_status take_long(void *user, size_t first, const dea_row *rows, size_t count, dea_error *error)
+static dea_status take_long(void *user, size_t first, const void *points, size_t count, dea_error *error)
 {
+    const dea_row *rows = points;
     long_list *list = user;
     (void)error;
     assert_int_equal(first, list->count);
@@ -433,7 +435,7 @@ static void long_sweep_does_not_drift(void **state)
         add_axis(&scene, &axis, &scene.drive.voltage, values, LONG);
         axis.uniform = true;
         long_list got = {.count = 0};
-        const dea_run_options options = {.jobs = 2, .rows = take_long, .user = &got};
+        const dea_run_options options = {.jobs = 2, .points = take_long, .user = &got};
         assert_int_equal(dea_study_run(&scene, dea_engine_find("ngspice"), &options, NULL), DEA_OK);
         assert_int_equal(direct->sweep(NULL, &scene, scene.models[0], 0, LONG, rows, NULL), DEA_OK);
         assert_int_equal(got.count, LONG);

@@ -23,8 +23,9 @@ typedef struct example {
 
 static example here;
 
-static dea_status take(void *user, size_t first, const dea_row *rows, size_t count, dea_error *error)
+static dea_status take(void *user, size_t first, const void *points, size_t count, dea_error *error)
 {
+    const dea_row *rows = points;
     (void)user, (void)error;
     assert_true(first == here.count && first + count <= MOST_ROWS);
     memcpy(here.rows + first, rows, count * sizeof *rows);
@@ -107,7 +108,7 @@ static void compare_csv(void)
 static void run_example(const char *name)
 {
     dea_error error = {0};
-    const dea_run_options options = {.jobs = 1, .rows = take};
+    const dea_run_options options = {.jobs = 1, .points = take};
     char words[2 * PATH_LENGTH];
     dea_scene_free(&here.scene);
     here.count = 0;
@@ -363,9 +364,10 @@ static void sample_data_gives_back_the_constants_it_was_made_from(void **state)
     run_program(words);
     check_picture("fit.svg");
     char path[PATH_LENGTH];
-    static const char text[] = "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
-                               "material: {base: ./film.yaml, permittivity: 2.8}\n"
-                               "drive: {voltage: 1 V}\nmodel: lumped\nstudy: {sweep: {}}\n";
+    static const char text[] =
+        "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+        "material: {base: ./film.yaml, permittivity: 2.8}\n"
+        "drive: {voltage: 1 V}\nmodel: lumped\nstudy: {sweep: {}}\n";
     if (dea_scene_parse(text, strlen(text), "fit", folder, NULL, 0, NULL, &scene, &error) != DEA_OK) {
         fail_msg("%s", error.message);
     }

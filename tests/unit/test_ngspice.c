@@ -544,8 +544,9 @@ static void folder_that_cannot_be_written_is_named(void **state)
     pass_in_child(start_without_a_place);
 }
 
-static dea_status count_rows(void *user, size_t first, const dea_row *rows, size_t count, dea_error *error)
+static dea_status count_rows(void *user, size_t first, const void *points, size_t count, dea_error *error)
 {
+    const dea_row *rows = points;
     size_t *good = user;
     (void)first, (void)error;
     for (size_t i = 0; i < count; i++) {
@@ -559,7 +560,7 @@ static void study_without_a_place(verdict *found, const char *folder)
     dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.4, 3000.0);
     dea_error error = {0};
     size_t good = 0;
-    const dea_run_options options = {.jobs = 2, .rows = count_rows, .user = &good};
+    const dea_run_options options = {.jobs = 2, .points = count_rows, .user = &good};
     char before[256];
     (void)folder;
     scene.models[0] = dea_model_find("coverage");

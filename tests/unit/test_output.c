@@ -11,9 +11,9 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <locale.h>
-#include <poll.h>
 #include <math.h>
 #include <netcdf.h>
+#include <poll.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,8 +25,9 @@
 #include "deaspice/model.h"
 #include "deaspice/output.h"
 #include "deaspice/plot.h"
-#include "support/number.h"
 #include "output/progress.h"
+#include "output/runs.h"
+#include "support/number.h"
 
 static char folder[64];
 
@@ -95,7 +96,7 @@ static dea_scene scene_make(size_t axis_count, const size_t *counts, size_t mode
     dea_scene scene = {.title = title, .accuracy = 1e-6, .models = {&lumped, &coverage}, .model_count = models, .axes = axes};
     scene.axis_count = axis_count;
     scene.actuator = (dea_actuator){DEA_DOT, 0.03, 0.5, NAN, 1e-4, 1.2, NAN, NAN, NAN};
-    scene.drive = (dea_drive){4500.0, NAN, NAN};
+    scene.drive = (dea_drive){.voltage = 4500.0, .series_resistance = NAN, .leakage_resistance = NAN};
     scene.material =
         (dea_material){.name = "test film", .source = "nowhere", .yeoh = {178426.0, -6023.0, 4234.0}, .permittivity = 2.8};
     scene.material.density = scene.material.retardation = scene.material.modulus = scene.material.breakdown = NAN;
@@ -118,9 +119,76 @@ static dea_status rows_write(dea_writer *writer, size_t total, size_t block, dea
         for (size_t i = 0; i < count; i++) {
             rows[i] = row_make(first + i);
         }
-        status = dea_writer_rows(writer, first, rows, count, error);
+        status = dea_writer_points(writer, first, rows, count, error);
     }
     return status;
+}
+
+/* The scene as a transient of @p samples samples, 0.5 s apart, with a port; its points hold numbers that tell their place. */
+static dea_scene transient_make(size_t axis_count, const size_t *counts, size_t models, size_t samples)
+{
+    dea_scene scene = scene_make(axis_count, counts, models);
+    scene.study = DEA_STUDY_TRANSIENT;
+    strcpy(axes[0].column, "step_voltage_V"); /* the voltage is a column of its own */
+    axes[0].offset = offsetof(dea_scene, drive.waveform.step.voltage);
+    scene.transient = (dea_transient){.until = 0.5 * (double)(samples - 1), .every = 0.5};
+    scene.drive = (dea_drive){.voltage = NAN, .series_resistance = 1e6, .leakage_resistance = NAN};
+    scene.drive.waveform = (dea_waveform){.kind = DEA_WAVE_STEP, .step = {1.0, NAN, 4500.0, 0.0}, .period = NAN};
+    return scene;
+}
+
+/* The scene as a frequency response of @p decades decades from 1 Hz, ten rows each. */
+static dea_scene response_make(size_t axis_count, const size_t *counts, size_t models, int decades)
+{
+    dea_scene scene = scene_make(axis_count, counts, models);
+    scene.study = DEA_STUDY_AC;
+    scene.ac = (dea_ac){.from = 1.0, .to = pow(10.0, decades), .points_per_decade = 10, .bias = 4500.0};
+    return scene;
+}
+
+static double sample_displacement(size_t number, double time)
+{
+    return 1e-4 * (double)(number + 1) * (1.0 - exp(-time));
+}
+
+static void point_make(const dea_scene *scene, const dea_layout *layout, size_t number, void *point)
+{
+    for (size_t i = 0; i < layout->rows; i++) {
+        const double at = dea_layout_place(scene, i);
+        void *row = (char *)point + i * layout->row_size;
+        if (scene->study == DEA_STUDY_TRANSIENT) {
+            const double u = sample_displacement(number, at);
+            *(dea_sample *)row = (dea_sample){at, 4500.0, u, u / 0.015, 0.25, 0.5, 1e-6, 2e-6, NAN, DEA_STATE_OK};
+        } else {
+            const double x = at / (100.0 * (double)(number + 1));
+            *(dea_response *)row =
+                (dea_response){at, 1e-9 / fabs(1.0 - x * x + 1e-3), x > 1.0 ? 180.0 : 0.0, 1e9 / at, -90.0, DEA_STATE_OK};
+        }
+    }
+    if (scene->study == DEA_STUDY_TRANSIENT) {
+        const double x = (double)number;
+        *dea_layout_summary(layout, point) = (dea_summary){1e-9, 1.0 + x, 2.0 + x, 3.0 + x, 4.0 + x, 5.0 + x, 1e-8, 700.0 + x};
+    }
+}
+
+/* Writes all points of a transient or a frequency response, @p block at a time. */
+static dea_status points_write(const dea_scene *scene, const char *path, size_t block, dea_error *error)
+{
+    const dea_layout layout = dea_layout_of(scene);
+    const size_t total = dea_scene_point_count(scene) * scene->model_count;
+    char *points = calloc(block, layout.point_size);
+    dea_writer *writer;
+    dea_status status = dea_writer_open(scene, "direct", path, NULL, &writer, error);
+    for (size_t first = 0; first < total && status == DEA_OK; first += block) {
+        const size_t count = total - first < block ? total - first : block;
+        for (size_t i = 0; i < count; i++) {
+            point_make(scene, &layout, first + i, points + i * layout.point_size);
+        }
+        status = dea_writer_points(writer, first, points, count, error);
+    }
+    free(points);
+    const dea_status finished = dea_writer_finish(writer, status == DEA_OK, error);
+    return status != DEA_OK ? status : finished;
 }
 
 static char *file_text(const char *path)
@@ -202,7 +270,7 @@ static void csv_holds_axes_then_numbers_then_the_state(void **state)
     assert_int_equal(dea_writer_open(&scene, "direct", in_folder("a.csv"), NULL, &writer, &error), DEA_OK);
     dea_row rows[4] = {row_make(0), row_make(1), row_make(2), {NAN, NAN, NAN, NAN, DEA_STATE_PULL_IN}};
     rows[2].state = DEA_STATE_SLACK;
-    assert_int_equal(dea_writer_rows(writer, 0, rows, 4, &error), DEA_OK);
+    assert_int_equal(dea_writer_points(writer, 0, rows, 4, &error), DEA_OK);
     assert_int_equal(dea_writer_finish(writer, true, &error), DEA_OK);
     assert_string_equal(file_text(in_folder("a.csv")),
                         "voltage_V,coverage,strain,displacement_m,force_N,field_V_per_m,state\n"
@@ -226,6 +294,49 @@ static void csv_names_the_model_where_there_are_several(void **state)
                                                        "coverage,0.001,1.0000000000000001e-05,1.25,500000,ok\n");
 }
 
+static void csv_of_a_transient_holds_the_run_before_every_sample(void **state)
+{
+    (void)state;
+    const size_t counts[] = {2};
+    dea_scene scene = transient_make(1, counts, 2, 3);
+    dea_error error = {0};
+    dea_writer *writer;
+    assert_int_equal(dea_writer_open(&scene, "direct", in_folder("a.csv"), NULL, &writer, &error), DEA_OK);
+    const dea_layout layout = dea_layout_of(&scene);
+    char *point = calloc(1, layout.point_size);
+    for (size_t number = 0; number < 4; number++) {
+        dea_sample *samples = (dea_sample *)(void *)point;
+        for (size_t i = 0; i < 3; i++) {
+            samples[i] = (dea_sample){0.5 * (double)i, 4500.0, 0.125, 0.25, 2.0, 0.5, 3.0, 4.0, 5.0, DEA_STATE_OK};
+        }
+        if (number == 3) {
+            samples[2] = (dea_sample){1.0, 4500.0, NAN, NAN, NAN, NAN, NAN, NAN, NAN, DEA_STATE_PULL_IN};
+        }
+        assert_int_equal(dea_writer_points(writer, number, point, 1, &error), DEA_OK);
+    }
+    free(point);
+    assert_int_equal(dea_writer_finish(writer, true, &error), DEA_OK);
+    const char *text = file_text(in_folder("a.csv"));
+    static const char begin[] =
+        "model,step_voltage_V,time_s,voltage_V,displacement_m,strain,velocity_m_per_s,force_N,current_A,charge_C,state\n"
+        "lumped,0,0,4500,0.125,0.25,2,0.5,3,4,ok\n"
+        "lumped,0,0.5,4500,0.125,0.25,2,0.5,3,4,ok\n";
+    assert_int_equal(strncmp(text, begin, strlen(begin)), 0);
+    assert_non_null(strstr(text, "\ncoverage,4500,0.5,4500,0.125,0.25,2,0.5,3,4,ok\ncoverage,4500,1,4500,,,,,,,pull_in\n"));
+}
+
+static void csv_of_a_frequency_response_holds_magnitudes_and_phases(void **state)
+{
+    (void)state;
+    const dea_scene scene = response_make(0, NULL, 1, 1);
+    dea_error error = {0};
+    assert_int_equal(points_write(&scene, in_folder("a.csv"), 1, &error), DEA_OK);
+    const char *text = file_text(in_folder("a.csv"));
+    assert_non_null(
+        strstr(text, "frequency_Hz,displacement_m_per_V,displacement_phase_deg,impedance_Ohm,impedance_phase_deg,state\n1,"));
+    assert_non_null(strstr(text, "\n10,"));
+}
+
 static void blocks_of_any_size_give_the_same_bytes(void **state)
 {
     (void)state;
@@ -245,6 +356,28 @@ static void blocks_of_any_size_give_the_same_bytes(void **state)
                 memcpy(first, text, sizeof first);
             }
             assert_memory_equal(first, text, 60000);
+        }
+    }
+}
+
+static void runs_in_blocks_of_any_size_give_the_same_bytes(void **state)
+{
+    (void)state;
+    const size_t counts[] = {3, 4};
+    static const char *const names[] = {"a.csv", "a.nc"};
+    for (size_t i = 0; i < 4; i++) {
+        static char first[1 << 20];
+        dea_scene scene = i < 2 ? transient_make(2, counts, 2, 57) : response_make(2, counts, 2, 4);
+        scene.transient.averages[0] = (dea_window){1.0, 2.0};
+        scene.transient.average_count = 1;
+        for (size_t block = 1; block < 30; block = block * 3 + 1) {
+            dea_error error = {0};
+            assert_int_equal(points_write(&scene, in_folder(names[i % 2]), block, &error), DEA_OK);
+            const char *text = file_text(in_folder(names[i % 2]));
+            if (block == 1) {
+                memcpy(first, text, sizeof first);
+            }
+            assert_memory_equal(first, text, 40000);
         }
     }
 }
@@ -294,8 +427,8 @@ static void missing_rows_make_no_file(void **state)
     assert_int_equal(dea_writer_open(&scene, "direct", in_folder("a.csv"), NULL, &writer, &error), DEA_OK);
     assert_int_equal(rows_write(writer, 2, 2, &error), DEA_OK);
     const dea_row row = row_make(2);
-    assert_int_equal(dea_writer_rows(writer, 1, &row, 1, &error), DEA_ERROR_USAGE);
-    assert_int_equal(dea_writer_rows(writer, 2, &row, 2, &error), DEA_ERROR_USAGE);
+    assert_int_equal(dea_writer_points(writer, 1, &row, 1, &error), DEA_ERROR_USAGE);
+    assert_int_equal(dea_writer_points(writer, 2, &row, 2, &error), DEA_ERROR_USAGE);
     assert_int_equal(dea_writer_finish(writer, true, &error), DEA_ERROR_USAGE);
     assert_int_equal(folder_count(), 0);
 }
@@ -402,6 +535,113 @@ static void netcdf_holds_what_the_rows_held(void **state)
     dlclose(library);
 }
 
+static void *netcdf_library(void)
+{
+    void *library = dlopen("libnetcdf.so.19", RTLD_NOW);
+    library = library ? library : dlopen("libnetcdf.so", RTLD_NOW);
+    assert_non_null(library);
+    return library;
+}
+
+static void netcdf_of_a_transient_holds_time_samples_and_summaries(void **state)
+{
+    (void)state;
+    const size_t counts[] = {3, 4};
+    dea_scene scene = transient_make(2, counts, 2, 57);
+    dea_error error = {0};
+    scene.transient.averages[0] = (dea_window){1.0, 2.0};
+    scene.transient.averages[1] = (dea_window){0.0, 28.0};
+    scene.transient.average_count = 2;
+    assert_int_equal(points_write(&scene, in_folder("a.nc"), 5, &error), DEA_OK);
+    void *library = netcdf_library();
+    const char *path = in_folder("a.nc");
+    for (size_t number = 0; number < 24; number += 7) {
+        const size_t place[] = {number / 12, number / 4 % 3, number % 4, 56};
+        const size_t window[] = {number / 12, number / 4 % 3, number % 4, 1};
+        assert_true(netcdf_value(library, path, "displacement_m", place) == sample_displacement(number, 28.0));
+        assert_true(netcdf_value(library, path, "work_J", place) == 1.0 + (double)number);
+        assert_true(netcdf_value(library, path, "resonance_Hz", place) == 700.0 + (double)number);
+        assert_true(netcdf_value(library, path, "state", place) == (double)DEA_STATE_OK);
+        const double mean = netcdf_value(library, path, "average_displacement_m", window);
+        assert_true(fabs(mean / (1e-4 * (double)(number + 1) * (1.0 - 1.0 / 28.0)) - 1.0) < 1e-2);
+    }
+    assert_true(netcdf_value(library, path, "time", (const size_t[]){7}) == 3.5);
+    assert_true(netcdf_value(library, path, "window_to_s", (const size_t[]){1}) == 28.0);
+    dlclose(library);
+}
+
+static void netcdf_of_a_frequency_response_lies_along_frequency(void **state)
+{
+    (void)state;
+    const size_t counts[] = {3};
+    const dea_scene scene = response_make(1, counts, 1, 4);
+    dea_error error = {0};
+    assert_int_equal(points_write(&scene, in_folder("a.nc"), 2, &error), DEA_OK);
+    void *library = netcdf_library();
+    for (size_t i = 0; i < 41; i++) {
+        const size_t place[] = {2, i};
+        const double frequency = netcdf_value(library, in_folder("a.nc"), "frequency", &i);
+        assert_true(frequency == dea_layout_place(&scene, i));
+        assert_true(netcdf_value(library, in_folder("a.nc"), "impedance_Ohm", place) == 1e9 / frequency);
+    }
+    dlclose(library);
+}
+
+/* A number among the attributes of the file, NAN where there is none. */
+static double netcdf_attribute(void *library, const char *path, const char *name)
+{
+    __typeof__(&nc_open) open_file;
+    __typeof__(&nc_get_att_double) get;
+    __typeof__(&nc_close) close_file;
+    *(void **)&open_file = dlsym(library, "nc_open");
+    *(void **)&get = dlsym(library, "nc_get_att_double");
+    *(void **)&close_file = dlsym(library, "nc_close");
+    int file;
+    double value = NAN;
+    assert_int_equal(open_file(path, NC_NOWRITE, &file), 0);
+    const int status = get(file, NC_GLOBAL, name, &value);
+    close_file(file);
+    return status == 0 ? value : NAN;
+}
+
+static void netcdf_keeps_the_scalars_that_the_study_used(void **state)
+{
+    (void)state;
+    const size_t counts[] = {2};
+    dea_scene scene = transient_make(1, counts, 1, 3);
+    dea_error error = {0};
+    axes[0].offset = offsetof(dea_scene, actuator.prestretch);
+    strcpy(axes[0].column, "prestretch");
+    assert_int_equal(points_write(&scene, in_folder("a.nc"), 1, &error), DEA_OK);
+    void *library = netcdf_library();
+    static const struct {
+        const char *name;
+        double value;
+    } cases[] = {
+        {"frame_radius_m", 0.03},
+        {"coverage", 0.5},
+        {"yeoh_C1_Pa", 178426.0},
+        {"permittivity", 2.8},
+        {"accuracy", 1e-6},
+        {"series_resistance_Ohm", 1e6},
+        {"transient_until_s", 1.0},
+        {"waveform_step_on_s", 1.0},
+        {"waveform_step_voltage_V", 4500.0},
+        {"prestretch", NAN},
+        {"density_kg_per_m3", NAN},
+        {"waveform_step_off_s", NAN},
+        {"waveform_sine_phase", NAN},
+        {"ac_from_Hz", NAN},
+        {"waveform_sine_frequency_Hz", NAN},
+        {"permittivity_constant", NAN},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const double value = netcdf_attribute(library, in_folder("a.nc"), cases[i].name);
+        assert_true(isnan(cases[i].value) ? isnan(value) : value == cases[i].value);
+    }
+    dlclose(library);
+}
+
 /* Draws a study of the scene; strains are those of numbers that a picture can show. */
 static dea_status study_draw(const dea_scene *scene, const char *path, dea_error *error)
 {
@@ -414,7 +654,7 @@ static dea_status study_draw(const dea_scene *scene, const char *path, dea_error
     for (size_t i = 0; i < total; i++) {
         const double x = (double)i / (double)total;
         const dea_row row = {0.1 * x, 1e-3 * x * (1.0 - x), 1.0, 1.0, DEA_STATE_OK};
-        dea_plot_rows(plot, i, &row, 1);
+        dea_plot_points(plot, i, &row, 1);
     }
     return dea_plot_finish(plot, true, error);
 }
@@ -475,6 +715,167 @@ static void pictures_without_content_are_refused(void **state)
     dea_plot *plot;
     assert_int_equal(dea_plot_begin(&scene, in_folder("a.svg"), &plot, &error), DEA_OK);
     assert_int_equal(dea_plot_finish(plot, true, &error), DEA_ERROR_USAGE);
+    assert_int_equal(folder_count(), 0);
+}
+
+/* Draws all points of a transient or a frequency response. */
+static dea_status points_draw(const dea_scene *scene, const char *path, dea_error *error)
+{
+    const dea_layout layout = dea_layout_of(scene);
+    dea_plot *plot;
+    const dea_status status = dea_plot_begin(scene, path, &plot, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    char *point = calloc(1, layout.point_size);
+    const size_t total = dea_scene_point_count(scene) * scene->model_count;
+    for (size_t i = 0; i < total; i++) {
+        point_make(scene, &layout, i, point);
+        dea_plot_points(plot, i, point, 1);
+    }
+    free(point);
+    return dea_plot_finish(plot, true, error);
+}
+
+static void pictures_of_runs_appear_whole(void **state)
+{
+    (void)state;
+    const size_t counts[] = {3};
+    const dea_scene scenes[] = {transient_make(1, counts, 2, 500), response_make(1, counts, 2, 4)};
+    static const char *const shown[][4] = {{"Strain s [%]", "U [kV]", "i [µA]", "Time [s]"},
+                                           {"Displacement per volt [m/V]", "Impedance [Ω]", "Phase [°]", "Frequency [Hz]"}};
+    for (size_t i = 0; i < 2; i++) {
+        dea_error error = {0};
+        assert_int_equal(points_draw(&scenes[i], in_folder("a.svg"), &error), DEA_OK);
+        const char *text = file_text(in_folder("a.svg"));
+        for (size_t k = 0; k < 4; k++) {
+            assert_non_null(strstr(text, shown[i][k]));
+        }
+        assert_non_null(strstr(text, "coverage"));
+        assert_int_equal(points_draw(&scenes[i], in_folder("a.png"), &error), DEA_OK);
+        assert_memory_equal(file_text(in_folder("a.png")), "\x89PNG", 4);
+    }
+    assert_int_equal(folder_count(), 2);
+}
+
+static void long_runs_make_small_pictures(void **state)
+{
+    (void)state;
+    const dea_scene scene = transient_make(0, NULL, 1, 300000);
+    dea_error error = {0};
+    struct stat about;
+    assert_int_equal(points_draw(&scene, in_folder("a.svg"), &error), DEA_OK);
+    assert_int_equal(stat(in_folder("a.svg"), &about), 0);
+    assert_in_range(about.st_size, 10000, 200000);
+}
+
+/* The curve of quantity @p quantity that a picture keeps of @p count samples. */
+static dea_trace *trace_make(const dea_scene *scene, dea_runs *runs, size_t quantity, const void *point)
+{
+    dea_error error = {0};
+    assert_int_equal(dea_runs_open(scene, runs, &error), DEA_OK);
+    dea_runs_take(runs, 0, point);
+    return &runs->runs[0].traces[quantity];
+}
+
+static void thinned_curve_keeps_every_peak(void **state)
+{
+    (void)state;
+    enum { COUNT = 1000001 };
+    const dea_scene scene = transient_make(0, NULL, 1, COUNT);
+    const dea_layout layout = dea_layout_of(&scene);
+    char *point = calloc(1, layout.point_size);
+    dea_sample *samples = (dea_sample *)(void *)point;
+    for (size_t i = 0; i < COUNT; i++) {
+        samples[i] = (dea_sample){.time = 0.5 * (double)i, .strain = 0.01, .state = DEA_STATE_OK};
+    }
+    static const size_t peaks[] = {0, 1, 12345, 499999, 777777, COUNT - 1};
+    for (size_t i = 0; i < 6; i++) {
+        samples[peaks[i]].strain = i % 2 ? -0.5 : 0.5;
+    }
+    dea_runs runs;
+    const dea_trace *trace = trace_make(&scene, &runs, 0, point);
+    assert_in_range(trace->count, 1000, 2000);
+    for (size_t i = 0; i < 6; i++) {
+        size_t found = 0;
+        for (size_t k = 0; k < trace->count; k++) {
+            found += trace->x[k] == 0.5 * (double)peaks[i] && trace->y[k] == (i % 2 ? -0.5 : 0.5);
+            assert_true(k == 0 || trace->x[k] > trace->x[k - 1]);
+        }
+        assert_int_equal(found, 1);
+    }
+    dea_runs_close(&runs);
+    free(point);
+}
+
+static void curve_ends_where_the_film_pulls_in(void **state)
+{
+    (void)state;
+    enum { COUNT = 10000, END = 7000 };
+    const dea_scene scene = transient_make(0, NULL, 1, COUNT);
+    const dea_layout layout = dea_layout_of(&scene);
+    char *point = calloc(1, layout.point_size);
+    dea_sample *samples = (dea_sample *)(void *)point;
+    for (size_t i = 0; i < COUNT; i++) {
+        const bool held = i < END;
+        samples[i] = (dea_sample){.time = 0.5 * (double)i, .strain = held ? 1e-5 * (double)i : NAN};
+        samples[i].state = held ? DEA_STATE_OK : DEA_STATE_PULL_IN;
+    }
+    dea_runs runs;
+    const dea_trace *trace = trace_make(&scene, &runs, 0, point);
+    double last = 0.0;
+    for (size_t i = 0; i < trace->count; i++) {
+        last = isfinite(trace->y[i]) ? trace->x[i] : last;
+    }
+    assert_true(last == 0.5 * (END - 1));
+    assert_true(isnan(trace->y[trace->count - 1]));
+    assert_int_equal(runs.runs[0].spot_count, 1);
+    assert_int_equal(dea_marks[runs.runs[0].spots[0].mark].state, DEA_STATE_PULL_IN);
+    assert_true(runs.runs[0].spots[0].x == last);
+    dea_runs_close(&runs);
+    free(point);
+}
+
+static void phase_is_drawn_without_jumps(void **state)
+{
+    (void)state;
+    const dea_scene scene = response_make(0, NULL, 1, 3);
+    const dea_layout layout = dea_layout_of(&scene);
+    char *point = calloc(1, layout.point_size);
+    point_make(&scene, &layout, 0, point);
+    for (size_t i = 0; i < layout.rows; i++) {
+        ((dea_response *)(void *)point)[i].displacement_phase = remainder(-20.0 * (double)i, 360.0);
+    }
+    dea_runs runs;
+    const dea_trace *trace = trace_make(&scene, &runs, 1, point);
+    assert_int_equal(trace->count, 31);
+    for (size_t i = 0; i < trace->count; i++) {
+        assert_true(fabs(trace->y[i] + 20.0 * (double)i) < 1e-9);
+    }
+    dea_runs_close(&runs);
+    free(point);
+}
+
+static void runs_that_no_picture_can_show_are_refused(void **state)
+{
+    (void)state;
+    const size_t many[] = {5, 5};
+    dea_error error = {0};
+    dea_scene scene = transient_make(2, many, 1, 3);
+    assert_int_equal(points_draw(&scene, in_folder("a.svg"), &error), DEA_ERROR_USAGE);
+    assert_non_null(strstr(error.message, "25 runs"));
+    scene = response_make(0, NULL, 1, 0);
+    assert_int_equal(points_draw(&scene, in_folder("a.svg"), &error), DEA_ERROR_USAGE);
+    assert_non_null(strstr(error.message, "nothing to draw"));
+    scene = transient_make(0, NULL, 1, 30);
+    const dea_layout layout = dea_layout_of(&scene);
+    char *point = calloc(1, layout.point_size);
+    dea_plot *plot;
+    assert_int_equal(dea_plot_begin(&scene, in_folder("a.svg"), &plot, &error), DEA_OK);
+    dea_layout_fail(&scene, &layout, point);
+    dea_plot_points(plot, 0, point, 1);
+    assert_int_equal(dea_plot_finish(plot, true, &error), DEA_ERROR_USAGE);
+    free(point);
     assert_int_equal(folder_count(), 0);
 }
 
@@ -567,7 +968,10 @@ int main(void)
         cmocka_unit_test(numbers_keep_their_point_whatever_the_locale),
         IN_FOLDER(csv_holds_axes_then_numbers_then_the_state),
         IN_FOLDER(csv_names_the_model_where_there_are_several),
+        IN_FOLDER(csv_of_a_transient_holds_the_run_before_every_sample),
+        IN_FOLDER(csv_of_a_frequency_response_holds_magnitudes_and_phases),
         IN_FOLDER(blocks_of_any_size_give_the_same_bytes),
+        IN_FOLDER(runs_in_blocks_of_any_size_give_the_same_bytes),
         IN_FOLDER(file_appears_when_it_is_finished_and_not_before),
         IN_FOLDER(discarded_file_leaves_the_old_one),
         IN_FOLDER(missing_rows_make_no_file),
@@ -575,10 +979,19 @@ int main(void)
         IN_FOLDER(targets_that_cannot_be_written_are_refused_at_once),
         IN_FOLDER(full_disk_is_an_error),
         IN_FOLDER(netcdf_holds_what_the_rows_held),
+        IN_FOLDER(netcdf_of_a_transient_holds_time_samples_and_summaries),
+        IN_FOLDER(netcdf_of_a_frequency_response_lies_along_frequency),
+        IN_FOLDER(netcdf_keeps_the_scalars_that_the_study_used),
         IN_FOLDER(picture_shows_hostile_titles_as_text),
         IN_FOLDER(long_curves_make_small_pictures),
         IN_FOLDER(two_long_axes_make_a_map),
         IN_FOLDER(pictures_without_content_are_refused),
+        IN_FOLDER(pictures_of_runs_appear_whole),
+        IN_FOLDER(long_runs_make_small_pictures),
+        cmocka_unit_test(thinned_curve_keeps_every_peak),
+        cmocka_unit_test(curve_ends_where_the_film_pulls_in),
+        cmocka_unit_test(phase_is_drawn_without_jumps),
+        IN_FOLDER(runs_that_no_picture_can_show_are_refused),
         IN_FOLDER(gnuplot_failures_are_told_in_its_words),
         cmocka_unit_test(progress_shows_on_a_terminal_and_erases_itself),
         cmocka_unit_test(progress_is_silent_without_a_terminal),

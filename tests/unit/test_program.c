@@ -36,6 +36,21 @@ static const char scene[] = "title: test\n"
                             "model: lumped\n"
                             "study: {sweep: {coverage: {from: 0.1, to: 0.9, points: 9}}}\n";
 
+static const char step_scene[] =
+    "title: switched on and off\n"
+    "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+    "material: {base: elastosil-2030, retardation: 1 ms}\n"
+    "drive: {waveform: {step: {on: 10 ms, off: 60 ms, voltage: 4500 V, rise: 0 s}}}\n"
+    "model: lumped\n"
+    "study: {transient: {until: 100 ms, every: 0.5 ms, average: [{from: 40 ms, to: 60 ms}, {from: 80 ms, to: 100 ms}]}}\n";
+
+static const char response_scene[] =
+    "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+    "material: {base: elastosil-2030, retardation: 0.1 ms}\n"
+    "drive: {voltage: 4500 V}\n"
+    "model: lumped\n"
+    "study: {ac: {from: 1 Hz, to: 10 kHz}}\n";
+
 /* Large enough that a run takes a while on any machine. */
 static const char long_scene[] =
     "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
@@ -105,6 +120,11 @@ static size_t lines_of(const char *text)
     for (; *text; text++)
         count += *text == '\n';
     return count;
+}
+
+static bool begins(const char *text, const char *with)
+{
+    return strncmp(text, with, strlen(with)) == 0;
 }
 
 static bool exists(const char *name)
@@ -196,6 +216,123 @@ static void run_writes_a_file_and_sums_up(void **state)
     assert_int_equal(lines_of(last.out), 19);
     RUN("run", "dot.yaml", "--engine", "direct", "-q", "-o", "dot.csv");
     assert_string_equal(last.err, "");
+}
+
+static void transient_writes_its_samples_and_prints_its_averages(void **state)
+{
+    (void)state;
+    RUN("run", "step.yaml", "--engine", "direct", "-o", "step.csv");
+    assert_int_equal(last.status, 0);
+    assert_true(begins(last.out, "from_s,to_s,strain,displacement_m\n0.040000000000000001,0.059999999999999998,0.037"));
+    assert_int_equal(lines_of(last.out), 3);
+    assert_non_null(strstr(last.err, "201 samples in "));
+    assert_non_null(strstr(last.err, "201 ok\n"));
+    assert_non_null(strstr(last.err, "estimated error "));
+    assert_non_null(strstr(last.err, "energy balance off by "));
+    assert_non_null(strstr(last.err, "switched on at 10 ms: 10-90 % in "));
+    assert_non_null(strstr(last.err, "switched off at 60 ms: 10-90 % in "));
+    read_file("step.csv", last.out);
+    assert_int_equal(lines_of(last.out), 202);
+    assert_true(begins(last.out, "time_s,voltage_V,displacement_m,strain,velocity_m_per_s,force_N,state\n0,0,0,0,"));
+}
+
+static void averages_stand_beside_a_result_on_standard_output(void **state)
+{
+    (void)state;
+    RUN("run", "step.yaml", "--engine", "direct", "--set", "transient.every=10 ms");
+    assert_int_equal(last.status, 0);
+    assert_true(begins(last.out, "time_s,"));
+    assert_null(strstr(last.out, "from_s"));
+    assert_int_equal(lines_of(last.out), 12);
+    assert_true(begins(last.err, "from_s,to_s,strain,displacement_m\n"));
+    RUN("run", "step.yaml", "--engine", "direct", "-q", "--set", "transient.every=10 ms");
+    assert_string_equal(last.err, "");
+    RUN("run", "step.yaml", "--engine", "direct", "-q", "-o", "step.csv");
+    assert_int_equal(lines_of(last.out), 3);
+    assert_string_equal(last.err, "");
+}
+
+static void runs_over_an_axis_carry_it_in_front(void **state)
+{
+    (void)state;
+    RUN("run", "step.yaml", "--engine", "direct", "--model", "lumped,lame", "--set", "study.over={prestretch: [1.1, 1.2]}", "-o",
+        "step.csv");
+    assert_int_equal(last.status, 0);
+    assert_int_equal(lines_of(last.out), 9);
+    assert_true(begins(last.out, "model,prestretch,from_s,to_s,strain,displacement_m\nlumped,1.1"));
+    assert_non_null(strstr(last.out, "\nlame,1.2"));
+    assert_non_null(strstr(last.err, "4 runs of 201 samples in "));
+    assert_non_null(strstr(last.err, "worst estimated error "));
+    assert_null(strstr(last.err, "switched on"));
+    read_file("step.csv", last.out);
+    assert_true(begins(last.out, "model,prestretch,time_s,voltage_V,"));
+}
+
+static void coarse_samples_tell_no_rise_time(void **state)
+{
+    (void)state;
+    RUN("run", "step.yaml", "--engine", "direct", "-o", "step.csv", "--set", "transient.every=1 ms", "--set", "retardation=1 us");
+    assert_int_equal(last.status, 0);
+    assert_non_null(strstr(last.err, "no rise and settling times: samples every 1 ms do not show the first resonance"));
+    assert_null(strstr(last.err, "10-90"));
+}
+
+static void pull_in_of_a_transient_is_physics_and_named(void **state)
+{
+    (void)state;
+    write_file("soft.yaml", "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.4, film_thickness: 100 um, prestretch: 1.4}\n"
+                            "material: {yeoh: {C1: 25 kPa}, permittivity: 2.8}\n"
+                            "drive: {waveform: {points: [[0 s, 0 V], [1 s, 8 kV]]}}\n"
+                            "model: lame\n"
+                            "study: {transient: {until: 1 s, every: 10 ms}}\n");
+    RUN("run", "soft.yaml", "--engine", "ida", "-o", "soft.csv", "--plot", "soft.svg");
+    assert_int_equal(last.status, 0);
+    assert_non_null(strstr(last.err, "pull_in from t = 390 ms on\n"));
+    assert_true(exists("soft.svg"));
+    read_file("soft.csv", last.out);
+    assert_non_null(strstr(last.out, "\n0.39000000000000001,3120,,,,,pull_in\n"));
+    assert_non_null(strstr(last.out, "\n1,8000,,,,,pull_in\n"));
+    assert_null(strstr(last.out, "failed"));
+}
+
+static void response_tells_resonance_and_bandwidth(void **state)
+{
+    (void)state;
+    RUN("run", "response.yaml", "--engine", "direct", "-o", "response.csv");
+    assert_int_equal(last.status, 0);
+    assert_string_equal(last.out, "");
+    assert_non_null(strstr(last.err, "201 frequencies in "));
+    assert_non_null(strstr(last.err, "\nresonance "));
+    assert_non_null(strstr(last.err, "\nbandwidth (-3 dB) "));
+    read_file("response.csv", last.out);
+    assert_int_equal(lines_of(last.out), 202);
+}
+
+static void runs_are_drawn(void **state)
+{
+    (void)state;
+    static const char *const scenes[] = {"step.yaml", "response.yaml"};
+    for (size_t i = 0; i < 2; i++) {
+        RUN("run", scenes[i], "--engine", "direct", "--plot", "runs.svg");
+        assert_int_equal(last.status, 0);
+        assert_int_equal(lines_of(last.out), i == 0 ? 3 : 0);
+        read_file("runs.svg", last.out);
+        assert_true(begins(last.out, "<?xml"));
+        assert_int_equal(remove("runs.svg"), 0);
+    }
+}
+
+static void engines_agree_about_a_transient(void **state)
+{
+    (void)state;
+    RUN("check", "step.yaml", "--engine", "ida");
+    assert_int_equal(last.status, 0);
+    assert_non_null(strstr(last.out, "1 run of 201 samples"));
+    assert_non_null(strstr(last.out, " balance "));
+    assert_non_null(strstr(last.out, "agrees"));
+    RUN("check", "step.yaml", "--engine", "ida", "--tolerance", "1e-300");
+    assert_int_equal(last.status, 3);
+    assert_non_null(strstr(last.out, "DISAGREES"));
 }
 
 static void jobs_do_not_change_the_result(void **state)
@@ -291,6 +428,58 @@ static void fit_recovers_the_material_of_a_curve(void **state)
     assert_true(exists("film.yaml"));
 }
 
+static void relaxation_gives_the_branches_of_a_material(void **state)
+{
+    (void)state;
+    write_file("pull.csv", "stretch,stress_kPa\n1.1,56.9\n1.2,108.2\n1.3,157\n1.5,255\n1.8,417\n2.0,553\n");
+    write_file("hold.csv", "time_s,stress_kPa\n0,66.5\n1,50.2\n3,41.4\n10,33\n30,26.7\n100,21.3\n200,18.9\n380,17\n");
+    RUN("fit", "--relaxation", "hold.csv", "--ramp", "2 s");
+    assert_int_equal(last.status, 0);
+    assert_non_null(strstr(last.out, "\nprony:\n  - {g: 0.577"));
+    assert_null(strstr(last.out, "\nyeoh"));
+    RUN("fit", "--relaxation", "hold.csv", "--uniaxial", "pull.csv", "--branches", "3", "-o", "both.yaml", "--plot", "both.svg");
+    assert_int_equal(last.status, 0);
+    assert_non_null(strstr(last.err, "3 branches from 8 points"));
+    assert_true(exists("both.svg"));
+    read_file("both.yaml", last.out);
+    assert_non_null(strstr(last.out, "\nyeoh: {C1"));
+    assert_non_null(strstr(last.out, "\nmoduli: long-term"));
+    assert_non_null(strstr(last.out, "\nprony:\n"));
+    RUN("fit", "--relaxation", "hold.csv", "--plot", "hold.png");
+    assert_int_equal(last.status, 0);
+    assert_true(exists("hold.png"));
+}
+
+static void bad_relaxation_is_named_and_ends_with_2(void **state)
+{
+    static const struct {
+        const char *text, *says;
+    } files[] = {
+        {"time_s,stress_Pa\n0,3\n1,-2\n2,1\n", "bad.csv:3:3: "}, {"time_s,stress_Pa\n0,3\n0,2\n2,1\n", "bad.csv:3:1: "},
+        {"time_s,stress_Pa\n0,3\n1,2\n", "bad.csv:3:1: "},       {"time_s,stress_Pa\n0,3\n1,nan\n2,1\n", "bad.csv:3:3: "},
+        {"time_s,stress_Pa\n0,3\n1,soft\n", "bad.csv:3:3: "},    {"time_s,stress_Pa\n0,1\n1,2\n2,3\n", "the stress grows"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        write_file("bad.csv", files[i].text);
+        RUN("fit", "--relaxation", "bad.csv");
+        assert_int_equal(last.status, 2);
+        assert_non_null(strstr(last.err, files[i].says));
+    }
+    write_file("hold.csv", "time_s,stress_Pa\n0,4\n1,3\n2,2.5\n3,2.25\n");
+    static const char *const options[][2] = {{"--ramp", "2"},     {"--ramp", "-1 s"},  {"--ramp", "1 m"},
+                                             {"--branches", "0"}, {"--branches", "2"}, {"--terms", "2"}};
+    for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
+        RUN("fit", "--relaxation", "hold.csv", options[i][0], options[i][1]);
+        assert_int_equal(last.status, 2);
+    }
+    RUN("fit", "hold.csv", "--ramp", "2 s");
+    assert_int_equal(last.status, 2);
+    assert_non_null(strstr(last.err, "--ramp goes with --relaxation"));
+    RUN("fit");
+    assert_int_equal(last.status, 2);
+}
+
 static void sleep_ms(long ms)
 {
     struct timespec nap = {.tv_sec = ms / 1000, .tv_nsec = ms % 1000 * 1000000};
@@ -347,6 +536,8 @@ static int enter_folder(void **state)
     if (!mkdtemp(folder) || chdir(folder) != 0)
         return -1;
     write_file("dot.yaml", scene);
+    write_file("step.yaml", step_scene);
+    write_file("response.yaml", response_scene);
     write_file("long.yaml", long_scene);
     return 0;
 }
@@ -367,6 +558,14 @@ int main(void)
         cmocka_unit_test(wrong_usage_is_told_with_a_guess),
         cmocka_unit_test(run_prints_csv),
         cmocka_unit_test(run_writes_a_file_and_sums_up),
+        cmocka_unit_test(transient_writes_its_samples_and_prints_its_averages),
+        cmocka_unit_test(averages_stand_beside_a_result_on_standard_output),
+        cmocka_unit_test(runs_over_an_axis_carry_it_in_front),
+        cmocka_unit_test(coarse_samples_tell_no_rise_time),
+        cmocka_unit_test(pull_in_of_a_transient_is_physics_and_named),
+        cmocka_unit_test(response_tells_resonance_and_bandwidth),
+        cmocka_unit_test(runs_are_drawn),
+        cmocka_unit_test(engines_agree_about_a_transient),
         cmocka_unit_test(jobs_do_not_change_the_result),
         cmocka_unit_test(unwritable_target_fails_before_the_run),
         cmocka_unit_test(full_device_is_told),
@@ -375,6 +574,8 @@ int main(void)
         cmocka_unit_test(disagreement_exits_with_three),
         cmocka_unit_test(materials_are_listed_and_shown),
         cmocka_unit_test(fit_recovers_the_material_of_a_curve),
+        cmocka_unit_test(relaxation_gives_the_branches_of_a_material),
+        cmocka_unit_test(bad_relaxation_is_named_and_ends_with_2),
         cmocka_unit_test(signal_ends_the_run_and_leaves_nothing),
         cmocka_unit_test(reader_that_leaves_ends_the_run_quietly),
     };

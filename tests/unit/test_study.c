@@ -162,8 +162,9 @@ static dea_engine engine_of(dea_status (*sweep)(void *, const dea_scene *, const
                         .end = end_fine};
 }
 
-static dea_status take_rows(void *user, size_t first, const dea_row *rows, size_t count, dea_error *error)
+static dea_status take_rows(void *user, size_t first, const void *points, size_t count, dea_error *error)
 {
+    const dea_row *rows = points;
     listener *heard = user;
     heard->wrong += first != heard->next;
     for (size_t i = 0; i < count; i++) {
@@ -213,7 +214,7 @@ static void check_no_child_left(void)
 static dea_status run(const dea_scene *scene, const dea_engine *engine, size_t jobs, listener *heard, dea_error *error)
 {
     dea_run_options options = {
-        .jobs = jobs, .rows = take_rows, .progress = take_progress, .log = take_line, .stop = wants_stop, .user = heard};
+        .jobs = jobs, .points = take_rows, .progress = take_progress, .log = take_line, .stop = wants_stop, .user = heard};
     dea_status status = dea_study_run(scene, engine, &options, error);
     free(scene->axes[0].values);
     check_no_child_left();
@@ -224,7 +225,7 @@ static dea_status run(const dea_scene *scene, const dea_engine *engine, size_t j
 static dea_status run_impatiently(const dea_scene *scene, const dea_engine *engine, size_t jobs, listener *heard,
                                   dea_error *error)
 {
-    dea_run_options options = {.jobs = jobs, .rows = take_rows, .log = take_line, .stop = wants_stop, .user = heard};
+    dea_run_options options = {.jobs = jobs, .points = take_rows, .log = take_line, .stop = wants_stop, .user = heard};
     dea_plan plan;
     assert_int_equal(dea_plan_make(scene, engine, &options, &plan, error), DEA_OK);
     dea_status status = dea_pool_run(&plan, 0.2, error);
@@ -329,7 +330,7 @@ static void hanging_engine_ends_in_bounded_time(void **state)
     dea_scene scene = scene_of(20000, 1);
     dea_engine engine = engine_of(sweep_for_ever, true);
     listener heard = {0};
-    dea_run_options options = {.jobs = 4, .rows = take_rows, .user = &heard};
+    dea_run_options options = {.jobs = 4, .points = take_rows, .user = &heard};
     dea_plan plan;
     *shared = (fake){0};
     assert_int_equal(dea_plan_make(&scene, &engine, &options, &plan, NULL), DEA_OK);
@@ -437,7 +438,7 @@ static void memory_does_not_grow_with_the_study(void **state)
     dea_scene scene = {.axes = &axis, .axis_count = 1, .model_count = 1, .models = {&first_model}};
     dea_engine engine = engine_of(solve, true);
     engine.block = 256;
-    dea_run_options options = {.jobs = 2, .rows = take_rows, .user = &(listener){0}};
+    dea_run_options options = {.jobs = 2, .points = take_rows, .user = &(listener){0}};
     getrusage(RUSAGE_SELF, &before);
     assert_int_equal(dea_study_run(&scene, &engine, &options, NULL), DEA_OK);
     getrusage(RUSAGE_SELF, &after);
@@ -468,7 +469,7 @@ static void worker_dies_with_a_killed_parent(void **state)
         dea_scene scene = scene_of(POINTS, 1);
         dea_engine engine = engine_of(sweep_for_ever, true);
         engine.begin = begin_and_tell;
-        dea_run_options options = {.jobs = 1, .rows = take_rows, .user = &(listener){0}};
+        dea_run_options options = {.jobs = 1, .points = take_rows, .user = &(listener){0}};
         dea_study_run(&scene, &engine, &options, NULL);
         _exit(0);
     }
@@ -491,7 +492,7 @@ static void halving_finds_every_bad_point(void **state)
     dea_run_options options = {0};
     dea_engine engine = engine_of(solve, false);
     dea_scene scene = scene_of(64, 1);
-    dea_plan plan = {.scene = &scene, .engine = &engine, .options = &options};
+    dea_plan plan = {.scene = &scene, .engine = &engine, .options = &options, .layout = dea_layout_of(&scene)};
     for (size_t a = 0; a < 64; a++) {
         size_t b = (a * 37 + 5) % 64;
         dea_row rows[64] = {{0}};

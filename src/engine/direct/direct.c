@@ -1,4 +1,6 @@
-/* Engine `direct`: the models' own equations, point after point, no network. */
+/* Engine `direct`: the models' own equations, point after point; the closed forms of the linear network over time and frequency.
+ */
+#include "engine/direct/direct.h"
 #include "engine/engines.h"
 #include "engine/line.h"
 
@@ -11,6 +13,10 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
 {
     if (!model->solve) {
         return "it has no equation of its own";
+    }
+    const char *why = scene->study == DEA_STUDY_TRANSIENT ? dea_direct_refuses_transient(scene, model) : NULL;
+    if (why) {
+        return why;
     }
     return scene->accuracy < 1e-12 ? "double precision ends at 1e-12, the scene wants more" : NULL;
 }
@@ -69,9 +75,12 @@ const dea_engine dea_engine_direct = {
     .summary = "the models' own equations: closed forms and safeguarded roots",
     .isolated = false,
     .patience = 1.0,
+    .run_patience = 60.0,
     .block = 16384,
     .refuses = refuses,
     .begin = begin,
     .sweep = sweep,
+    .transient = dea_direct_transient,
+    .ac = dea_direct_ac,
     .end = end,
 };

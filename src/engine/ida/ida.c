@@ -116,14 +116,23 @@ static dea_status sweep(void *session, const dea_scene *scene, const dea_model *
     return dea_lines_visit(scene, first, count, solve_line, &state, error);
 }
 
+static dea_status transient(void *session, const dea_scene *scene, const dea_model *model, dea_sample *samples,
+                            dea_summary *summary, dea_error *error)
+{
+    const session_state *state = session;
+    return dea_transient_solve(state->context, scene, model, samples, summary, error);
+}
+
 const dea_engine dea_engine_ida = {
     .name = "ida",
     .summary = "the network, or the exact membrane, by SUNDIALS IDA",
     .isolated = false,
     .patience = 0.5,
+    .run_patience = 300.0,
     .block = 64,
     .refuses = refuses,
     .begin = begin,
     .sweep = sweep,
+    .transient = transient,
     .end = end,
 };

@@ -54,4 +54,8 @@ void dea_shooting_close(dea_shooting *shooting);
 /* Exact membrane: IDA along ln R, KINSOL for the condition at the frame. */
 void dea_shooting_solve(dea_shooting *shooting, const dea_point *point, double accuracy, dea_row *row);
 
+/* One transient: fills samples and summary, `failed` or `pull_in` from where the run cannot go on. */
+dea_status dea_transient_solve(SUNContext context, const dea_scene *scene, const dea_model *model, dea_sample *samples,
+                               dea_summary *summary, dea_error *error);
+
 #endif

@@ -3,6 +3,7 @@
 #include <locale.h>
 #include <math.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -185,39 +186,85 @@ static bool has_vector(char *plot, const char *vector)
     return false;
 }
 
-/* Copies the vector of the plot that the run made. The old plot, or the plot of constants, must never be taken for it. */
-static dea_status copy(const char *plot_before, const char *vector, dea_ngspice_result *result, dea_error *error)
+/* Vector @p name of the plot, NULL where it has none with numbers. */
+static pvector_info find(char *plot, const char *name)
 {
-    char *plot = ngSpice_CurPlot();
-    char name[128];
-    if (!plot || strcmp(plot, plot_before) == 0 || !has_vector(plot, vector)) {
-        return DEA_OK; /* nothing was solved */
+    char whole[128];
+    if (!has_vector(plot, name)) {
+        return NULL;
     }
-    snprintf(name, sizeof name, "%s.%s", plot, vector);
-    const pvector_info info = ngGet_Vec_Info(name);
-    if (!info || !info->v_realdata || info->v_length <= 0) {
-        return DEA_OK;
-    }
-    const size_t size = (size_t)info->v_length * sizeof *result->values;
-    result->values = malloc(size);
-    if (!result->values) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for the answer of ngspice");
-    }
-    memcpy(result->values, info->v_realdata, size);
-    result->count = (size_t)info->v_length;
-    for (size_t i = 0; i < result->count; i++) {
-        if (!isfinite(result->values[i])) {
-            result->count = i; /* what follows a NaN is no answer */
+    snprintf(whole, sizeof whole, "%s.%s", plot, name);
+    const pvector_info info = ngGet_Vec_Info(whole);
+    return info && (info->v_realdata || info->v_compdata) && info->v_length > 0 ? info : NULL;
+}
+
+/* Points up to the first that is not finite: what follows a NaN is no answer. */
+static size_t sound_points(const double *values, size_t count, size_t width)
+{
+    for (size_t i = 0; i < count * width; i++) {
+        if (!isfinite(values[i])) {
+            return i / width;
         }
     }
+    return count;
+}
+
+/* Numbers that a vector has per point: 2 where it is complex. */
+static size_t width_of(const vector_info *info)
+{
+    return info->v_realdata ? 1 : 2;
+}
+
+static dea_status copy_vector(const vector_info *info, double **values, size_t *count, dea_error *error)
+{
+    const size_t width = width_of(info);
+    const size_t size = (size_t)info->v_length * width * sizeof(double);
+    *values = malloc(size);
+    if (!*values) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for the answer of ngspice");
+    }
+    memcpy(*values, info->v_realdata ? (const void *)info->v_realdata : (const void *)info->v_compdata, size);
+    const size_t sound = sound_points(*values, (size_t)info->v_length, width);
+    *count = sound < *count ? sound : *count;
     return DEA_OK;
 }
 
-dea_status dea_ngspice_run(dea_ngspice *library, const char *netlist, const char *vector, dea_ngspice_result *result,
-                           dea_error *error)
+/* Copies the vectors of the plot that the run made. The old plot, or the plot of constants, must never be taken for it. */
+static dea_status copy(const char *plot_before, const char *const *names, size_t name_count, dea_ngspice_table *table,
+                       dea_error *error)
+{
+    char *plot = ngSpice_CurPlot();
+    if (!plot || strcmp(plot, plot_before) == 0) {
+        return DEA_OK; /* nothing was solved */
+    }
+    size_t count = SIZE_MAX;
+    for (size_t i = 0; i < name_count; i++) {
+        const pvector_info info = find(plot, names[i]);
+        if (!info) {
+            return DEA_OK;
+        }
+        const dea_status status = copy_vector(info, &table->columns[i], &count, error);
+        if (status != DEA_OK) {
+            return status;
+        }
+    }
+    table->count = count;
+    return DEA_OK;
+}
+
+void dea_ngspice_table_free(dea_ngspice_table *table)
+{
+    for (size_t i = 0; i < DEA_NGSPICE_COLUMNS; i++) {
+        free(table->columns[i]);
+    }
+    *table = (dea_ngspice_table){0};
+}
+
+dea_status dea_ngspice_run_all(dea_ngspice *library, const char *netlist, const char *const *names, size_t name_count,
+                               dea_ngspice_table *table, dea_error *error)
 {
     char before[64];
-    *result = (dea_ngspice_result){0};
+    *table = (dea_ngspice_table){0};
     clear_log(library);
     if (library->loaded) {
         command("remcirc"); /* else a refused circuit would leave the old one to run again */
@@ -232,8 +279,20 @@ dea_status dea_ngspice_run(dea_ngspice *library, const char *netlist, const char
     snprintf(before, sizeof before, "%s", plot ? plot : "");
     command("run");
     const dea_status copied = library->lost ? dea_fail(error, DEA_ERROR_ENGINE, "ngspice gave up: %s", library->log)
-                                            : copy(before, vector, result, error);
+                                            : copy(before, names, name_count, table, error);
     command("destroy all");
     ngSpice_Command(NULL); /* frees its command history */
+    if (copied != DEA_OK) {
+        dea_ngspice_table_free(table);
+    }
     return copied;
+}
+
+dea_status dea_ngspice_run(dea_ngspice *library, const char *netlist, const char *vector, dea_ngspice_result *result,
+                           dea_error *error)
+{
+    dea_ngspice_table table;
+    const dea_status status = dea_ngspice_run_all(library, netlist, &vector, 1, &table, error);
+    *result = (dea_ngspice_result){table.columns[0], table.count};
+    return status;
 }

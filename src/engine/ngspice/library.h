@@ -1,4 +1,4 @@
-/* One libngspice in this process: start it, run a circuit, read a vector. Runs only in a worker process, which it changes
+/* One libngspice in this process: start it, run a circuit, read its vectors. Runs only in a worker process, which it changes
  * (working directory, locale, environment) and which must end after a failure that leaves the library unusable. */
 #ifndef DEA_NGSPICE_LIBRARY_H
 #define DEA_NGSPICE_LIBRARY_H
@@ -7,7 +7,16 @@
 
 typedef struct dea_ngspice dea_ngspice;
 
-/* What came of a circuit. */
+enum { DEA_NGSPICE_COLUMNS = 72 };
+
+/* What came of a circuit: vectors of its plot, each with a value per point, or with real and imaginary part where it is complex.
+ */
+typedef struct dea_ngspice_table {
+    double *columns[DEA_NGSPICE_COLUMNS]; /* owned by the caller: dea_ngspice_table_free() */
+    size_t count;                         /* points that were solved, may be fewer than wanted */
+} dea_ngspice_table;
+
+/* One real vector of it. */
 typedef struct dea_ngspice_result {
     double *values; /* owned by the caller: free() */
     size_t count;   /* points that were solved, may be fewer than wanted */
@@ -17,10 +26,14 @@ typedef struct dea_ngspice_result {
 dea_status dea_ngspice_open(dea_ngspice **library, dea_error *error);
 void dea_ngspice_close(dea_ngspice *library);
 
-/* Loads a netlist (one card a line), runs its analysis and copies vector @p vector of the new plot. A run that ends early is no
- * failure of this call: it gives the points before its end. DEA_ERROR_ENGINE with the library's log: the netlist was refused, or
- * the library is lost. */
+/* Loads a netlist (one card a line), runs its analysis and copies the vectors @p names of the new plot, DEA_NGSPICE_COLUMNS at
+ * most. A run that ends early is no failure of this call: it gives the points before its end. DEA_ERROR_ENGINE with the library's
+ * log: the netlist was refused, or the library is lost. */
+dea_status dea_ngspice_run_all(dea_ngspice *library, const char *netlist, const char *const *names, size_t name_count,
+                               dea_ngspice_table *table, dea_error *error);
+/* The same for one real vector. */
 dea_status dea_ngspice_run(dea_ngspice *library, const char *netlist, const char *vector, dea_ngspice_result *result,
                            dea_error *error);
+void dea_ngspice_table_free(dea_ngspice_table *table);
 
 #endif

@@ -7,6 +7,7 @@
 #include "engine/engines.h"
 #include "engine/line.h"
 #include "engine/ngspice/library.h"
+#include "engine/ngspice/moving.h"
 #include "netlist/netlist.h"
 #include "network/balance.h"
 
@@ -31,6 +32,12 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
 {
     if (!model->network) {
         return "it has no network form that ngspice could solve";
+    }
+    if (scene->study != DEA_STUDY_SWEEP && !model->dynamic) {
+        return "it is a model of statics alone";
+    }
+    if (scene->study == DEA_STUDY_TRANSIENT && scene->accuracy < 1e-6) {
+        return "its trapezoidal rule is good to 1e-6 in a transient, the scene wants more";
     }
     return scene->accuracy < 1e-9 ? "its answers are good to 1e-9, the scene wants more" : NULL;
 }
@@ -199,14 +206,28 @@ static dea_status sweep(void *session, const dea_scene *scene, const dea_model *
     return dea_lines_visit(scene, first, count, solve_line, &state, error);
 }
 
+static dea_status transient(void *session, const dea_scene *scene, const dea_model *model, dea_sample *samples,
+                            dea_summary *summary, dea_error *error)
+{
+    return dea_ngspice_transient(session, scene, model, samples, summary, error);
+}
+
+static dea_status ac(void *session, const dea_scene *scene, const dea_model *model, dea_response *rows, dea_error *error)
+{
+    return dea_ngspice_ac(session, scene, model, rows, error);
+}
+
 const dea_engine dea_engine_ngspice = {
     .name = "ngspice",
     .summary = "the network in libngspice, in worker processes",
     .isolated = true,
     .patience = 0.004,
+    .run_patience = 60.0,
     .block = 5000,
     .refuses = refuses,
     .begin = begin,
     .sweep = sweep,
+    .transient = transient,
+    .ac = ac,
     .end = end,
 };

@@ -1,0 +1,145 @@
+/* A ring by ARKODE: explicit Runge-Kutta of order 8 from sample to sample. In an audited run the energies are unknowns too. */
+#include <arkode/arkode_erkstep.h>
+#include <math.h>
+
+#include "engine/ida/flight.h"
+
+#if SUNDIALS_VERSION_MAJOR > 7 || (SUNDIALS_VERSION_MAJOR == 7 && SUNDIALS_VERSION_MINOR >= 1)
+#define DEA_ERK(name) ARKode##name
+#else
+#define DEA_ERK(name) ERKStep##name
+#endif
+
+/* Error test failures of one step after which a run is given up: a step that outgrew its stability is far too long. */
+enum { MOST_FAILS = 30 };
+
+enum { WORK, DISSIPATED, BRANCH, ENERGIES };
+
+typedef struct explicit_run {
+    dea_flight *flight; /* borrowed */
+    double energy;      /* size of energies [J] */
+    N_Vector w;         /* owned, as all below: unknowns, then energies */
+    N_Vector tolerance;
+    void *ark;
+} explicit_run;
+
+/* Powers at y in units of the run. */
+static void powers(const explicit_run *run, double time, const double *y, double *out)
+{
+    const dea_flight *flight = run->flight;
+    double z[DEA_PRONY_MAX];
+    dea_audit rate = {0};
+    const dea_moment moment = dea_motion_moment(&flight->motion, time, y);
+    dea_motion_branches(&flight->motion, y, z);
+    dea_audit_add(&rate, flight->motion.dynamics, &moment, z, 1.0);
+    out[WORK] = rate.work / run->energy;
+    out[DISSIPATED] = rate.dissipated / run->energy;
+    out[BRANCH] = rate.branch / run->energy;
+}
+
+static int rates(sunrealtype time, N_Vector w, N_Vector wp, void *user)
+{
+    const explicit_run *run = user;
+    const dea_flight *flight = run->flight;
+    const sunrealtype *unknowns = N_VGetArrayPointer(w);
+    sunrealtype *out = N_VGetArrayPointer(wp);
+    const dea_turn turn = dea_ring_turn(flight->ring, time, 0.0);
+    double y[DEA_MOTION_MOST], f[DEA_MOTION_MOST];
+    dea_ring_state(flight->ring, turn, unknowns, y);
+    if (!dea_motion_rates(&flight->motion, time, y, f)) {
+        return 1;
+    }
+    dea_ring_rates(flight->ring, turn, unknowns, f, out);
+    if (flight->audit) {
+        powers(run, time, y, out + flight->motion.count);
+    }
+    return 0;
+}
+
+static bool begin(explicit_run *run)
+{
+    dea_flight *flight = run->flight;
+    const int n = flight->motion.count;
+    const SUNContext context = flight->integrator.context;
+    run->w = N_VNew_Serial(n + (flight->audit ? ENERGIES : 0), context);
+    run->tolerance = run->w ? N_VClone(run->w) : NULL;
+    if (!run->tolerance) {
+        return false;
+    }
+    N_VConst(0.0, run->w);
+    N_VConst(flight->tolerance, run->tolerance);
+    dea_ring_unknowns(flight->ring, dea_ring_turn(flight->ring, 0.0, 0.0), flight->y, N_VGetArrayPointer(run->w));
+    for (int i = 0; flight->audit && i < ENERGIES; i++) {
+        N_VGetArrayPointer(run->tolerance)[n + i] = 1e-3 * flight->scene->accuracy;
+    }
+    run->ark = ERKStepCreate(rates, 0.0, run->w, context);
+    if (!run->ark) {
+        return false;
+    }
+#if SUNDIALS_VERSION_MAJOR < 7
+    ERKStepSetErrHandlerFn(run->ark, dea_sundials_ignore, NULL);
+#endif
+    return DEA_ERK(SetUserData)(run->ark, run) == ARK_SUCCESS &&
+           DEA_ERK(SetMaxErrTestFails)(run->ark, MOST_FAILS) == ARK_SUCCESS &&
+           ERKStepSetTableNum(run->ark, ARKODE_FEHLBERG_13_7_8) == ARK_SUCCESS &&
+           DEA_ERK(SVtolerances)(run->ark, flight->tolerance, run->tolerance) == ARK_SUCCESS;
+}
+
+/* Steps to the next sample, or to the end if that is nearer. */
+static dea_state advance(explicit_run *run, double to, double *time)
+{
+    dea_flight *flight = run->flight;
+    const dea_segment *segment = flight->motion.segment;
+    const double next = dea_flight_next_sample(flight);
+    const bool sampled = next <= segment->to && next - segment->from <= to;
+    const double stop = sampled ? fmax(*time, next - segment->from) : to;
+    for (int code = ARK_SUCCESS; *time < stop && code != ARK_TSTOP_RETURN;) {
+        code = DEA_ERK(SetStopTime)(run->ark, stop);
+        code = code == ARK_SUCCESS ? DEA_ERK(Evolve)(run->ark, stop, run->w, time, ARK_ONE_STEP) : code;
+        if (code < 0) {
+            const bool gone = code == ARK_REPTD_RHSFUNC_ERR || code == ARK_FIRST_RHSFUNC_ERR || code == ARK_UNREC_RHSFUNC_ERR;
+            return gone ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
+        }
+        if (!dea_flight_step(flight, *time, N_VGetArrayPointer(run->w))) {
+            return DEA_STATE_FAILED;
+        }
+    }
+    return !sampled || dea_flight_record(flight, stop, flight->y) ? DEA_STATE_OK : DEA_STATE_PULL_IN;
+}
+
+static void close_energies(const explicit_run *run, double time)
+{
+    dea_flight *flight = run->flight;
+    const double *energy = N_VGetArrayPointer(run->w) + flight->motion.count;
+    double z[DEA_PRONY_MAX];
+    const dea_moment moment = dea_motion_moment(&flight->motion, time, flight->y);
+    dea_motion_branches(&flight->motion, flight->y, z);
+    flight->audit->work += energy[WORK] * run->energy;
+    flight->audit->dissipated += energy[DISSIPATED] * run->energy;
+    flight->audit->branch += energy[BRANCH] * run->energy;
+    dea_audit_add(flight->audit, flight->motion.dynamics, &moment, z, 0.0);
+}
+
+dea_state dea_flight_explicit(dea_flight *flight, double to)
+{
+    const dea_motion *motion = &flight->motion;
+    explicit_run run = {.flight = flight, .energy = motion->stiffness * motion->size[0] * motion->size[0]};
+    dea_state state = begin(&run) ? DEA_STATE_OK : DEA_STATE_FAILED;
+    double time = 0.0;
+    while (state == DEA_STATE_OK && time < to) {
+        state = advance(&run, to, &time);
+    }
+    if (state == DEA_STATE_OK && flight->audit) {
+        close_energies(&run, time);
+    }
+    if (run.ark) {
+        DEA_ERK(Free)(&run.ark);
+    }
+    if (run.tolerance) {
+        N_VDestroy(run.tolerance);
+    }
+    if (run.w) {
+        N_VDestroy(run.w);
+    }
+    return state;
+}

@@ -1,0 +1,134 @@
+#include "engine/ida/flight.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Steps of one run after which it is given up. */
+enum { MOST_STEPS = 2000000 };
+
+dea_status dea_flight_open(SUNContext context, const dea_scene *scene, dea_dynamics *dynamics, const dea_signal *signal,
+                           dea_flight *flight, dea_error *error)
+{
+    *flight = (dea_flight){.scene = scene, .signal = signal, .rows = dea_layout_of(scene).rows};
+    dea_motion_open(dynamics, signal, &flight->motion);
+    flight->ring = calloc(1, sizeof *flight->ring);
+    if (!flight->ring) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while IDA starts");
+    }
+    return dea_flight_integrator(context, flight, error);
+}
+
+void dea_flight_close(dea_flight *flight)
+{
+    if (flight->between) {
+        N_VDestroy(flight->between);
+    }
+    dea_integrator_close(&flight->integrator);
+    free(flight->ring);
+    *flight = (dea_flight){0};
+}
+
+double dea_flight_next_sample(const dea_flight *flight)
+{
+    const size_t next = flight->trace->count;
+    return next < flight->rows ? dea_layout_place(flight->scene, next) : (double)INFINITY;
+}
+
+bool dea_flight_record(dea_flight *flight, double time, const double *y)
+{
+    const dea_moment moment = dea_motion_moment(&flight->motion, time, y);
+    if (!dea_motion_inside(&flight->motion, moment.u)) {
+        return false;
+    }
+    flight->trace->moments[flight->trace->count++] = moment;
+    return true;
+}
+
+bool dea_flight_step(dea_flight *flight, double time, const double *w)
+{
+    dea_trace *trace = flight->trace;
+    dea_ring_state(flight->ring, dea_ring_turn(flight->ring, time, 0.0), w, flight->y);
+    const dea_moment at = dea_motion_moment(&flight->motion, time, flight->y);
+    if (dea_motion_inside(&flight->motion, at.u)) {
+        trace->largest_u = fmax(trace->largest_u, fabs(at.u));
+        trace->largest_v = fmax(trace->largest_v, fabs(at.v));
+    }
+    return ++flight->steps <= MOST_STEPS;
+}
+
+/* An algebraic u at the begin of a segment. */
+static bool jump(dea_flight *flight)
+{
+    double z[DEA_PRONY_MAX];
+    const double before = flight->y[0] * flight->motion.size[0];
+    if (!dea_motion_jump(&flight->motion, flight->y)) {
+        return false;
+    }
+    const double after = flight->y[0] * flight->motion.size[0];
+    if (flight->audit && after != before) {
+        dea_motion_branches(&flight->motion, flight->y, z);
+        dea_audit_jump(flight->audit, flight->motion.dynamics, before, after, z);
+    }
+    return true;
+}
+
+/* How long a ring is worth an explicit method in the segment [s]: until it is smaller than what the tolerance sees, if its
+ * periods are no more than a run can take and nothing else is much faster. */
+static double explicit_time(const dea_flight *flight)
+{
+    const dea_ring *ring = flight->ring;
+    const dea_segment *segment = flight->motion.segment;
+    const double width = segment->to - segment->from;
+    const bool linear = flight->motion.dynamics->linear && flight->motion.q < 0;
+    if (!ring->light || (linear && ring->turns) || ring->fastest > 5.0 * ring->omega) {
+        return 0.0;
+    }
+    const double life = fmin(width, log(10.0 / flight->tolerance) / ring->decay);
+    return ring->turns || ring->omega * life < 1e6 ? life : 0.0;
+}
+
+static dea_state fly_segment(dea_flight *flight)
+{
+    const dea_segment *segment = flight->motion.segment;
+    if (!jump(flight) || (flight->trace->count == 0 && !dea_flight_record(flight, 0.0, flight->y))) {
+        return DEA_STATE_PULL_IN;
+    }
+    dea_ring_find(&flight->motion, flight->ring);
+    const double turning = explicit_time(flight);
+    if (turning > 0.0) {
+        const dea_state state = dea_flight_explicit(flight, turning);
+        if (state != DEA_STATE_OK || turning >= segment->to - segment->from) {
+            return state;
+        }
+        dea_ring_stop(flight->ring);
+    }
+    return dea_flight_implicit(flight, turning);
+}
+
+void dea_flight_run(dea_flight *flight, double tolerance, dea_trace *trace, dea_summary *summary)
+{
+    dea_audit audit = {0};
+    double first_z[DEA_PRONY_MAX], z[DEA_PRONY_MAX];
+    *trace = (dea_trace){.moments = trace->moments};
+    flight->trace = trace;
+    flight->audit = summary ? &audit : NULL;
+    flight->tolerance = tolerance;
+    flight->steps = 0;
+    flight->motion.segment = flight->signal->segments;
+    if (!dea_motion_start(&flight->motion, flight->scene->transient.from_bias, flight->y)) {
+        trace->end = DEA_STATE_PULL_IN;
+        return;
+    }
+    const dea_moment first = dea_motion_moment(&flight->motion, 0.0, flight->y);
+    dea_motion_branches(&flight->motion, flight->y, first_z);
+    for (size_t i = 0; trace->end == DEA_STATE_OK && i < flight->signal->count; i++) {
+        flight->motion.segment = &flight->signal->segments[i];
+        trace->end = fly_segment(flight);
+    }
+    if (summary && trace->end == DEA_STATE_OK) {
+        const dea_segment *segment = flight->motion.segment;
+        const dea_moment last = dea_motion_moment(&flight->motion, segment->to - segment->from, flight->y);
+        dea_motion_branches(&flight->motion, flight->y, z);
+        dea_audit_close(&audit, flight->motion.dynamics, &first, first_z, &last, z, summary);
+    }
+}

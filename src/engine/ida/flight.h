@@ -1,0 +1,59 @@
+/* One run of a transient at one tolerance. Every segment of the voltage is a problem of its own, solved
+ *
+ *   - by IDA (variable order BDF) in general, in the turning frame of a ring where the network is linear;
+ *   - by an explicit Runge-Kutta method of order 8 (ARKODE) while a light ring lives in a film that is not linear, or under a
+ *     voltage that varies: BDF would crawl through its periods. */
+#ifndef DEA_IDA_FLIGHT_H
+#define DEA_IDA_FLIGHT_H
+
+#include "engine/ida/ring.h"
+#include "engine/ida/sundials.h"
+
+/* What a run leaves: the moments of its samples up to where it ended. */
+typedef struct dea_trace {
+    dea_moment *moments;         /* owned by the user: room for all rows */
+    size_t count;                /* samples in use */
+    dea_state end;               /* ok, or what all samples from count on are */
+    double largest_u, largest_v; /* on the way [m], [m/s] */
+} dea_trace;
+
+typedef struct dea_flight {
+    const dea_scene *scene; /* borrowed, as signal */
+    const dea_signal *signal;
+    dea_motion motion;
+    dea_ring *ring;            /* owned */
+    dea_integrator integrator; /* owned */
+    N_Vector between;          /* owned: w between two steps */
+    size_t rows;
+    /* of one run */
+    double tolerance;
+    dea_trace *trace;
+    dea_audit *audit; /* NULL: not wanted */
+    double y[DEA_MOTION_MOST];
+    long steps;
+} dea_flight;
+
+/* Prepares runs of a scene; the caller ends them with dea_flight_close(), also after a failure. */
+dea_status dea_flight_open(SUNContext context, const dea_scene *scene, dea_dynamics *dynamics, const dea_signal *signal,
+                           dea_flight *flight, dea_error *error);
+void dea_flight_close(dea_flight *flight);
+
+/* Its integrator; part of opening. */
+dea_status dea_flight_integrator(SUNContext context, dea_flight *flight, dea_error *error);
+
+/* Runs; with a summary, fills its energies. */
+void dea_flight_run(dea_flight *flight, double tolerance, dea_trace *trace, dea_summary *summary);
+
+/* Time of the next sample [s], infinite behind the last. */
+double dea_flight_next_sample(const dea_flight *flight);
+/* Keeps the state at a time of the segment as the next sample; false where the film has left its frame. */
+bool dea_flight_record(dea_flight *flight, double time, const double *y);
+/* Takes w of the end of a step as the state; false past the most steps of a run. */
+bool dea_flight_step(dea_flight *flight, double time, const double *w);
+
+/* The segment from a time on to its end, by IDA; what happened. */
+dea_state dea_flight_implicit(dea_flight *flight, double from);
+/* The segment up to a time, by Runge-Kutta. */
+dea_state dea_flight_explicit(dea_flight *flight, double to);
+
+#endif

@@ -1,0 +1,240 @@
+/* A segment by IDA: residual, samples and energies between its steps. */
+#include <math.h>
+#include <string.h>
+
+#include "engine/ida/flight.h"
+
+/* Failures of one step after which a run is given up: the first step of a segment can be far too long. */
+enum { MOST_FAILS = 40 };
+
+static int residual(sunrealtype time, N_Vector w, N_Vector wp, N_Vector r, void *user)
+{
+    const dea_flight *flight = user;
+    const sunrealtype *unknowns = N_VGetArrayPointer(w);
+    const sunrealtype *slope = N_VGetArrayPointer(wp);
+    sunrealtype *out = N_VGetArrayPointer(r);
+    const dea_turn turn = dea_ring_turn(flight->ring, time, 0.0);
+    double y[DEA_MOTION_MOST], f[DEA_MOTION_MOST];
+    dea_ring_state(flight->ring, turn, unknowns, y);
+    if (!dea_motion_rates(&flight->motion, time, y, f)) {
+        return 1; /* a trial step too far: IDA takes a shorter one */
+    }
+    dea_ring_rates(flight->ring, turn, unknowns, f, out);
+    for (int i = 0; i < flight->motion.count; i++) {
+        out[i] = (i == 0 && flight->motion.algebraic ? 0.0 : slope[i]) - out[i];
+    }
+    return 0;
+}
+
+static int jacobian(sunrealtype time, sunrealtype cj, N_Vector w, N_Vector wp, N_Vector r, SUNMatrix matrix, void *user,
+                    N_Vector work1, N_Vector work2, N_Vector work3)
+{
+    const dea_flight *flight = user;
+    const int n = flight->motion.count;
+    sunrealtype *data = SUNDenseMatrix_Data(matrix);
+    (void)wp, (void)r, (void)work1, (void)work2, (void)work3;
+    if (flight->ring->turns) {
+        memcpy(data, flight->ring->jacobian, (size_t)(n * n) * sizeof *data);
+    } else {
+        dea_motion_jacobian(&flight->motion, time, N_VGetArrayPointer(w), data);
+    }
+    for (int i = 0; i < n * n; i++) {
+        data[i] = -data[i];
+    }
+    for (int i = flight->motion.algebraic ? 1 : 0; i < n; i++) {
+        data[i * n + i] += cj;
+    }
+    return 0;
+}
+
+dea_status dea_flight_integrator(SUNContext context, dea_flight *flight, dea_error *error)
+{
+    const dea_status status = dea_integrator_open(context, flight->motion.count, residual, &flight->integrator, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    void *ida = flight->integrator.ida;
+    flight->between = N_VClone(flight->integrator.y);
+    if (!flight->between || IDASetJacFn(ida, jacobian) != IDA_SUCCESS || IDASetUserData(ida, flight) != IDA_SUCCESS ||
+        IDASetMaxErrTestFails(ida, MOST_FAILS) != IDA_SUCCESS || IDASetMaxConvFails(ida, MOST_FAILS) != IDA_SUCCESS) {
+        return dea_fail(error, DEA_ERROR_ENGINE, "IDA did not start");
+    }
+    return DEA_OK;
+}
+
+/* w, or its derivative, at a time of the last step. */
+static const double *unknowns_at(const dea_flight *flight, double time, int derivative)
+{
+    N_Vector w = flight->between;
+    return IDAGetDky(flight->integrator.ida, time, derivative, w) == IDA_SUCCESS ? N_VGetArrayPointer(w) : NULL;
+}
+
+/* Where a damper alone sets the velocity of the last sample, the force that drives it is a small difference: IDA's own slope of u
+ * is the better number. */
+static void take_velocity(dea_flight *flight, double time)
+{
+    const dea_motion *motion = &flight->motion;
+    const double *slope = motion->v < 0 && !motion->algebraic ? unknowns_at(flight, time, 1) : NULL;
+    if (slope) {
+        flight->trace->moments[flight->trace->count - 1].v = slope[0] * motion->size[0];
+    }
+}
+
+/* Samples of the segment up to a time of it. */
+static dea_state take_samples(dea_flight *flight, double time, bool last)
+{
+    const dea_segment *segment = flight->motion.segment;
+    double y[DEA_MOTION_MOST];
+    for (double next = dea_flight_next_sample(flight); next <= segment->to; next = dea_flight_next_sample(flight)) {
+        const double at = fmax(0.0, next - segment->from);
+        const double *w = at <= time || last ? unknowns_at(flight, fmin(at, time), 0) : NULL;
+        if (!w) {
+            return at <= time ? DEA_STATE_FAILED : DEA_STATE_OK;
+        }
+        dea_ring_state(flight->ring, dea_ring_turn(flight->ring, fmin(at, time), 0.0), w, y);
+        if (!dea_flight_record(flight, at, y)) {
+            return DEA_STATE_PULL_IN;
+        }
+        take_velocity(flight, fmin(at, time));
+    }
+    return DEA_STATE_OK;
+}
+
+/* Gauss-Legendre rule on [-1, 1], its upper half. */
+enum { NODES = 6 };
+static const double node[NODES / 2] = {0.23861918608319690863, 0.66120938646626451366, 0.93246951420315202781};
+static const double gauss[NODES / 2] = {0.46791393457269104739, 0.36076157304813860757, 0.17132449237917034504};
+
+static double node_at(int g)
+{
+    return g < NODES / 2 ? -node[NODES / 2 - 1 - g] : node[g - NODES / 2];
+}
+
+static double gauss_at(int g)
+{
+    return g < NODES / 2 ? gauss[NODES / 2 - 1 - g] : gauss[g - NODES / 2];
+}
+
+static void audit_at(const dea_flight *flight, double time, double angle, const double *w, double weight)
+{
+    double y[DEA_MOTION_MOST], z[DEA_PRONY_MAX];
+    dea_ring_state(flight->ring, dea_ring_turn(flight->ring, time, angle), w, y);
+    const dea_moment moment = dea_motion_moment(&flight->motion, time, y);
+    dea_motion_branches(&flight->motion, y, z);
+    dea_audit_add(flight->audit, flight->motion.dynamics, &moment, z, weight);
+}
+
+/* Powers that turn with the ring, P = sum p_k e^{ik omega t}, |k| <= 2, with p_k smooth over the step of half width a: at each
+ * node t_g all p_k follow from PHASES turned states, and with int_-1^1 P_l(x) e^{iqx} dx = 2 i^l j_l(q) the weight of phase phi_j
+ * is
+ *
+ *     a g/PHASES [ 1 + 2 Re sum_k e^{-ik(phi_j + kappa x_g)} sum_l (2l+1) P_l(x_g) i^l j_l(k kappa) ],   kappa = omega a. */
+enum { HARMONICS = 2, PHASES = 2 * HARMONICS + 1 };
+
+/* sum_l (2l+1) P_l(x) i^l j_l(q), real and imaginary part, for q > NODES: there the recurrence of j_l is stable. */
+static void project(double x, double q, double *real, double *imaginary)
+{
+    double p0 = 1.0, p1 = x;
+    double j0 = sin(q) / q, j1 = (sin(q) / q - cos(q)) / q;
+    *real = *imaginary = 0.0;
+    for (int l = 0; l < NODES; l++) {
+        const double term = (2 * l + 1) * p0 * j0 * (l % 4 < 2 ? 1.0 : -1.0);
+        *(l % 2 == 0 ? real : imaginary) += term;
+        const double p2 = ((2 * l + 3) * x * p1 - (l + 1) * p0) / (l + 2);
+        const double j2 = (2 * l + 3) / q * j1 - j0;
+        p0 = p1, p1 = p2;
+        j0 = j1, j1 = j2;
+    }
+}
+
+static void audit_turns(const dea_flight *flight, double from, double to)
+{
+    const double half = 0.5 * (to - from);
+    const double kappa = flight->ring->omega * half;
+    for (int g = 0; g < NODES; g++) {
+        const double x = node_at(g);
+        const double time = from + half * (1.0 + x);
+        const double *w = unknowns_at(flight, time, 0);
+        double real[HARMONICS], imaginary[HARMONICS];
+        for (int k = 1; k <= HARMONICS; k++) {
+            project(x, k * kappa, &real[k - 1], &imaginary[k - 1]);
+        }
+        for (int j = 0; w && j < PHASES; j++) {
+            const double phase = 2.0 * DEA_PI * j / PHASES;
+            double weight = 1.0;
+            for (int k = 1; k <= HARMONICS; k++) {
+                const double angle = k * (phase + kappa * x);
+                weight += 2.0 * (cos(angle) * real[k - 1] + sin(angle) * imaginary[k - 1]);
+            }
+            audit_at(flight, time, phase, w, half * gauss_at(g) / PHASES * weight);
+        }
+    }
+}
+
+/* Energies of a step: by Gauss's rule where it resolves the ring. */
+static void audit_step(const dea_flight *flight, double from, double to)
+{
+    const double angle = flight->ring->turns ? 0.5 * flight->ring->omega * (to - from) : 0.0;
+    if (angle > NODES) {
+        audit_turns(flight, from, to);
+        return;
+    }
+    const int panels = 1 + (int)angle;
+    const double half = 0.5 * (to - from) / panels;
+    for (int i = 0; i < NODES * panels; i++) {
+        const double time = from + half * (2 * (i / NODES) + 1.0 + node_at(i % NODES));
+        const double *w = unknowns_at(flight, time, 0);
+        if (w) {
+            audit_at(flight, time, 0.0, w, half * gauss_at(i % NODES));
+        }
+    }
+}
+
+static bool begin(dea_flight *flight, double from)
+{
+    dea_integrator *m = &flight->integrator;
+    double f[DEA_MOTION_MOST];
+    double *w = N_VGetArrayPointer(m->y);
+    double *slope = N_VGetArrayPointer(m->yp);
+    const dea_turn turn = dea_ring_turn(flight->ring, from, 0.0);
+    dea_ring_unknowns(flight->ring, turn, flight->y, w);
+    if (!dea_motion_rates(&flight->motion, from, flight->y, f)) {
+        return false;
+    }
+    dea_ring_rates(flight->ring, turn, w, f, slope);
+    if (flight->motion.algebraic) {
+        slope[0] = dea_motion_moment(&flight->motion, from, flight->y).v / flight->motion.size[0];
+    }
+    return IDAReInit(m->ida, from, m->y, m->yp) == IDA_SUCCESS &&
+           IDASStolerances(m->ida, flight->tolerance, flight->tolerance) == IDA_SUCCESS &&
+           IDASetStopTime(m->ida, flight->motion.segment->to - flight->motion.segment->from) == IDA_SUCCESS;
+}
+
+dea_state dea_flight_implicit(dea_flight *flight, double from)
+{
+    dea_integrator *m = &flight->integrator;
+    const double width = flight->motion.segment->to - flight->motion.segment->from;
+    if (!begin(flight, from)) {
+        return DEA_STATE_PULL_IN;
+    }
+    double time = from;
+    for (int code = IDA_SUCCESS; code != IDA_TSTOP_RETURN;) {
+        const double before = time;
+        code = IDASolve(m->ida, width, &time, m->y, m->yp, IDA_ONE_STEP);
+        if (code < 0) {
+            const bool gone = code == IDA_REP_RES_ERR || dea_motion_folds(&flight->motion, time, flight->y);
+            return gone ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
+        }
+        if (!dea_flight_step(flight, time, N_VGetArrayPointer(m->y))) {
+            return DEA_STATE_FAILED;
+        }
+        const dea_state state = take_samples(flight, time, code == IDA_TSTOP_RETURN);
+        if (state != DEA_STATE_OK) {
+            return state;
+        }
+        if (flight->audit) {
+            audit_step(flight, before, time);
+        }
+    }
+    return DEA_STATE_OK;
+}

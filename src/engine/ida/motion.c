@@ -1,0 +1,254 @@
+#include "engine/ida/motion.h"
+
+#include <math.h>
+#include <string.h>
+
+/* What the equations need at one state, in SI units. */
+typedef struct local_state {
+    dea_edge edge;
+    double u, v;
+    double voltage;       /* of the film [V] */
+    double voltage_slope; /* dU/du at constant charge [V/m] */
+    double stress;        /* S + sum c_i (S - z_i) */
+    double force;         /* phi U^2 - A stress [N] */
+} local_state;
+
+void dea_motion_open(dea_dynamics *d, const dea_signal *signal, dea_motion *m)
+{
+    const dea_edge rest = dea_dynamics_edge(d, 0.0);
+    const double length = dea_dynamics_scale(d, signal->largest);
+    const bool heavy = d->mass > 0.0;
+    *m = (dea_motion){.dynamics = d, .signal = signal, .segment = signal->segments, .v = -1, .q = -1, .z = heavy ? 2 : 1};
+    m->stiffness = dea_dynamics_stiffness(d, 0.0, 0.0, false);
+    m->algebraic = !heavy && !(d->retardation > 0.0);
+    m->size[0] = length;
+    if (heavy) {
+        m->v = 1;
+        m->size[1] = length * sqrt(m->stiffness / d->mass);
+    }
+    m->count = m->z + (int)d->branch_count;
+    for (int i = m->z; i < m->count; i++) {
+        m->size[i] = rest.stress_slope * length;
+    }
+    if (d->series > 0.0) {
+        m->q = m->count++;
+        m->size[m->q] = rest.capacitance * (signal->largest > 0.0 ? signal->largest : 1.0);
+    }
+}
+
+double dea_motion_source(const dea_motion *m, double time)
+{
+    const dea_segment *segment = m->segment;
+    if (segment->sine || segment->start == segment->end) {
+        return dea_segment_voltage(m->signal, segment, segment->from + time);
+    }
+    return segment->start + (segment->end - segment->start) * fmin(time / (segment->to - segment->from), 1.0);
+}
+
+double dea_motion_slope(const dea_motion *m, double time)
+{
+    return dea_segment_slope(m->signal, m->segment, m->segment->from + time);
+}
+
+bool dea_motion_inside(const dea_motion *m, double u)
+{
+    return u > -m->dynamics->radius && u < m->dynamics->point.frame_radius - m->dynamics->radius;
+}
+
+/* False where a number is not finite, or a stretch not positive in springs that are not linear. */
+static bool look(const dea_motion *m, double time, const double *y, local_state *at)
+{
+    dea_dynamics *d = m->dynamics;
+    at->u = y[0] * m->size[0];
+    at->v = m->v >= 0 ? y[m->v] * m->size[m->v] : 0.0;
+    if (!d->linear && !dea_motion_inside(m, at->u)) {
+        return false;
+    }
+    at->edge = dea_dynamics_edge(d, at->u);
+    at->voltage_slope = 0.0;
+    if (m->q >= 0) {
+        at->voltage = y[m->q] * m->size[m->q] / at->edge.capacitance;
+        at->voltage_slope = -at->voltage * at->edge.capacitance_slope / at->edge.capacitance;
+    } else {
+        at->voltage = dea_motion_source(m, time);
+    }
+    at->stress = at->edge.stress * (1.0 + d->total_share);
+    for (size_t i = 0; i < d->branch_count; i++) {
+        at->stress -= d->branches[i].share * y[m->z + (int)i] * m->size[m->z + (int)i];
+    }
+    at->force = at->edge.push * at->voltage * at->voltage - at->edge.area * at->stress;
+    return isfinite(at->force) && isfinite(at->v);
+}
+
+/* Mechanical resistance A tau_KV S' [N s/m]. */
+static double resistance(const dea_motion *m, const local_state *at)
+{
+    return at->edge.area * m->dynamics->retardation * at->edge.stress_slope;
+}
+
+bool dea_motion_rates(const dea_motion *m, double time, const double *y, double *f)
+{
+    const dea_dynamics *d = m->dynamics;
+    local_state at;
+    if (!look(m, time, y, &at)) {
+        return false;
+    }
+    if (m->v >= 0) {
+        f[0] = at.v / m->size[0];
+        f[m->v] = (at.force - resistance(m, &at) * at.v) / (d->mass * m->size[m->v]);
+    } else if (m->algebraic) {
+        f[0] = at.force / (m->stiffness * m->size[0]);
+    } else {
+        f[0] = at.force / (resistance(m, &at) * m->size[0]);
+    }
+    for (size_t i = 0; i < d->branch_count; i++) {
+        const int k = m->z + (int)i;
+        f[k] = (at.edge.stress / m->size[k] - y[k]) / d->branches[i].tau;
+    }
+    if (m->q >= 0) {
+        const double current = (dea_motion_source(m, time) - at.voltage) / d->series - at.voltage * d->conductance;
+        f[m->q] = current / m->size[m->q];
+    }
+    return isfinite(f[0]);
+}
+
+/* Slope of the net force over u [N/m]. */
+static double force_slope(const dea_motion *m, const local_state *at)
+{
+    const dea_edge *e = &at->edge;
+    return (e->push_slope * at->voltage + 2.0 * e->push * at->voltage_slope) * at->voltage - e->area_slope * at->stress -
+           e->area * (1.0 + m->dynamics->total_share) * e->stress_slope;
+}
+
+/* The row of the edge equation: force over u, z_i and q, over @p unit [N]. */
+static void fill_edge_row(const dea_motion *m, const local_state *at, int row, double unit, double *jacobian)
+{
+    const dea_dynamics *d = m->dynamics;
+    const int n = m->count;
+    jacobian[row] = force_slope(m, at) * m->size[0] / unit;
+    for (size_t i = 0; i < d->branch_count; i++) {
+        const int k = m->z + (int)i;
+        jacobian[k * n + row] = at->edge.area * d->branches[i].share * m->size[k] / unit;
+    }
+    if (m->q >= 0) {
+        jacobian[m->q * n + row] = 2.0 * at->edge.push * at->voltage / at->edge.capacitance * m->size[m->q] / unit;
+    }
+}
+
+void dea_motion_jacobian(const dea_motion *m, double time, const double *y, double *jacobian)
+{
+    const dea_dynamics *d = m->dynamics;
+    const int n = m->count;
+    local_state at;
+    memset(jacobian, 0, (size_t)(n * n) * sizeof *jacobian);
+    if (!look(m, time, y, &at)) {
+        return;
+    }
+    const double r = resistance(m, &at);
+    if (m->v >= 0) {
+        const double unit = d->mass * m->size[m->v];
+        fill_edge_row(m, &at, m->v, unit, jacobian);
+        jacobian[m->v] -= at.edge.area_slope / at.edge.area * r * at.v * m->size[0] / unit;
+        jacobian[m->v * n + m->v] = -r / d->mass;
+        jacobian[m->v * n] = m->size[m->v] / m->size[0];
+    } else {
+        fill_edge_row(m, &at, 0, (m->algebraic ? m->stiffness : r) * m->size[0], jacobian);
+        jacobian[0] -= m->algebraic ? 0.0 : at.force * at.edge.area_slope / (at.edge.area * r);
+    }
+    for (size_t i = 0; i < d->branch_count; i++) {
+        const int k = m->z + (int)i;
+        jacobian[k] = at.edge.stress_slope * m->size[0] / (m->size[k] * d->branches[i].tau);
+        jacobian[k * n + k] = -1.0 / d->branches[i].tau;
+    }
+    if (m->q >= 0) {
+        const double admittance = 1.0 / d->series + d->conductance;
+        jacobian[m->q] = -admittance * at.voltage_slope * m->size[0] / m->size[m->q];
+        jacobian[m->q * n + m->q] = -admittance / at.edge.capacitance;
+    }
+}
+
+bool dea_motion_folds(const dea_motion *m, double time, const double *y)
+{
+    local_state at;
+    return !look(m, time, y, &at) || (m->algebraic && !(-force_slope(m, &at) > 0.02 * m->stiffness));
+}
+
+void dea_motion_branches(const dea_motion *m, const double *y, double *z)
+{
+    for (size_t i = 0; i < m->dynamics->branch_count; i++) {
+        z[i] = y[m->z + (int)i] * m->size[m->z + (int)i];
+    }
+}
+
+bool dea_motion_jump(const dea_motion *m, double *y)
+{
+    double z[DEA_PRONY_MAX];
+    double u = y[0] * m->size[0];
+    if (!m->algebraic || m->q >= 0) {
+        return true;
+    }
+    dea_motion_branches(m, y, z);
+    if (!dea_dynamics_follow(m->dynamics, m->segment->start, z, &u)) {
+        return false;
+    }
+    y[0] = u / m->size[0];
+    return true;
+}
+
+bool dea_motion_start(const dea_motion *m, bool from_bias, double *y)
+{
+    dea_dynamics *d = m->dynamics;
+    double u = 0.0;
+    memset(y, 0, (size_t)m->count * sizeof *y);
+    if (!from_bias || !(m->stiffness > 0.0)) {
+        return m->stiffness > 0.0;
+    }
+    const double voltage = m->segment->start / (1.0 + d->series * d->conductance);
+    if (!dea_dynamics_equilibrium(d, voltage, &u)) {
+        return false;
+    }
+    const dea_edge e = dea_dynamics_edge(d, u);
+    y[0] = u / m->size[0];
+    for (size_t i = 0; i < d->branch_count; i++) {
+        y[m->z + (int)i] = e.stress / m->size[m->z + (int)i];
+    }
+    if (m->q >= 0) {
+        y[m->q] = e.capacitance * voltage / m->size[m->q];
+    }
+    return true;
+}
+
+/* Velocity of a film without mass. An algebraic u that a charge moves, v = a + b U' with U' = (q' - U C' v)/C, is solved for v.
+ */
+static double velocity(const dea_motion *m, double time, const local_state *at, const double *z)
+{
+    dea_dynamics *d = m->dynamics;
+    if (m->q < 0 || !m->algebraic) {
+        return dea_dynamics_velocity(d, at->u, at->voltage, dea_motion_slope(m, time), z);
+    }
+    const double a = dea_dynamics_velocity(d, at->u, at->voltage, 0.0, z);
+    const double b = dea_dynamics_velocity(d, at->u, at->voltage, 1.0, z) - a;
+    const double current = (dea_motion_source(m, time) - at->voltage) / d->series - at->voltage * d->conductance;
+    return (a + b * current / at->edge.capacitance) / (1.0 - b * at->voltage_slope);
+}
+
+dea_moment dea_motion_moment(const dea_motion *m, double time, const double *y)
+{
+    double z[DEA_PRONY_MAX];
+    local_state at;
+    const double none = (double)NAN;
+    dea_moment moment = {
+        .time = m->segment->from + time, .source = dea_motion_source(m, time), .u = none, .v = none, .voltage = none};
+    if (!look(m, time, y, &at)) {
+        return moment;
+    }
+    moment.voltage = at.voltage;
+    moment.slope = dea_motion_slope(m, time);
+    moment.u = at.u;
+    moment.v = at.v;
+    if (m->v < 0) {
+        dea_motion_branches(m, y, z);
+        moment.v = velocity(m, time, &at, z);
+    }
+    return moment;
+}

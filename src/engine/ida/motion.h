@@ -1,0 +1,53 @@
+/* The moving network of one run as an index-1 problem  y' = f(t, y)  or, for an algebraic displacement,  0 = f(t, y),  in
+ * unknowns of size 1: only those that the scene needs.
+ *
+ *   u    displacement; with mass a state, with a damper alone u' follows from it, with neither algebraic
+ *   v    velocity, with mass
+ *   z_i  stress that branch i has relaxed from
+ *   q    charge of the film, with series resistance */
+#ifndef DEA_IDA_MOTION_H
+#define DEA_IDA_MOTION_H
+
+#include "drive/signal.h"
+#include "network/dynamics.h"
+
+enum { DEA_MOTION_MOST = DEA_PRONY_MAX + 3 };
+
+typedef struct dea_motion {
+    dea_dynamics *dynamics; /* borrowed, as all here */
+    const dea_signal *signal;
+    const dea_segment
+        *segment;     /* at which times are counted from its begin, so that a short edge late in a run keeps its digits */
+    int v, z, q;      /* where they are, -1: there is none; u is always 0 */
+    int count;        /* of unknowns */
+    bool algebraic;   /* u is */
+    double stiffness; /* at rest with the branches held [N/m] */
+    double size[DEA_MOTION_MOST]; /* of the unknowns [m, m/s, Pa or N, C] */
+} dea_motion;
+
+/* Lays out the unknowns. */
+void dea_motion_open(dea_dynamics *dynamics, const dea_signal *signal, dea_motion *motion);
+
+/* Source voltage [V] and its slope [V/s] at a time of the segment [s]. */
+double dea_motion_source(const dea_motion *motion, double time);
+double dea_motion_slope(const dea_motion *motion, double time);
+
+/* True where disc and annulus both are there. */
+bool dea_motion_inside(const dea_motion *motion, double u);
+/* f at y; false where the film cannot be. */
+bool dea_motion_rates(const dea_motion *motion, double time, const double *y, double *f);
+/* df/dy, column by column. S'' of the damper's force is left out: it serves Newton's method. */
+void dea_motion_jacobian(const dea_motion *motion, double time, const double *y, double *jacobian);
+/* True where an algebraic u is about to lose its equilibrium: hardly any stiffness is left. */
+bool dea_motion_folds(const dea_motion *motion, double time, const double *y);
+
+/* The state at the begin of a run; false without a stable equilibrium. */
+bool dea_motion_start(const dea_motion *motion, bool from_bias, double *y);
+/* Moves an algebraic u to the voltage of the begin of the segment, all else held; false without equilibrium. */
+bool dea_motion_jump(const dea_motion *motion, double *y);
+
+/* The moment that y is, and its branches. */
+dea_moment dea_motion_moment(const dea_motion *motion, double time, const double *y);
+void dea_motion_branches(const dea_motion *motion, const double *y, double *z);
+
+#endif

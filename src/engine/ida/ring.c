@@ -1,0 +1,177 @@
+#include "engine/ida/ring.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+/* Radians of a segment that make a ring worth it, and its least quality Im lambda/|Re lambda|. */
+static const double long_enough = 20.0;
+static const double light_enough = 4.0;
+
+enum { N = DEA_MOTION_MOST };
+
+static void multiply(int n, const double *a, const double *x, double *out)
+{
+    memset(out, 0, (size_t)n * sizeof *out);
+    for (int k = 0; k < n; k++) {
+        for (int i = 0; i < n; i++) {
+            out[i] += a[k * n + i] * x[k];
+        }
+    }
+}
+
+/* X from the right and left eigenvectors x, l of the pair: y = Re(x a) + what l^H leaves of the other unit vectors. */
+static void build_basis(const double *right, const double *left, dea_ring *ring)
+{
+    const int n = ring->n;
+    const double *xr = right, *xi = right + n;
+    const double *lr = left, *li = left + n;
+    double dr = 0.0; /* l^H x */
+    double di = 0.0;
+    for (int i = 0; i < n; i++) {
+        dr += lr[i] * xr[i] + li[i] * xi[i];
+        di += lr[i] * xi[i] - li[i] * xr[i];
+    }
+    const double square = dr * dr + di * di;
+    memset(ring->basis, 0, (size_t)(n * n) * sizeof *ring->basis);
+    for (int i = 0; i < n; i++) {
+        ring->basis[i] = xr[i];
+        ring->basis[n + i] = -xi[i];
+    }
+    for (int k = 2; k < n; k++) {
+        const double ar = (lr[k] * dr - li[k] * di) / square; /* conj(l_k)/(l^H x) */
+        const double ai = -(lr[k] * di + li[k] * dr) / square;
+        for (int i = 0; i < n; i++) {
+            ring->basis[k * n + i] = (i == k ? 1.0 : 0.0) - 2.0 * (xr[i] * ar - xi[i] * ai);
+        }
+    }
+}
+
+static bool invert(dea_ring *ring)
+{
+    const int n = ring->n;
+    lapack_int pivots[N];
+    memcpy(ring->inverse, ring->basis, (size_t)(n * n) * sizeof *ring->basis);
+    return LAPACKE_dgetrf(LAPACK_COL_MAJOR, n, n, ring->inverse, n, pivots) == 0 &&
+           LAPACKE_dgetri(LAPACK_COL_MAJOR, n, ring->inverse, n, pivots) == 0;
+}
+
+/* X^-1 J X - Omega. */
+static void turn_jacobian(const double *jacobian, dea_ring *ring)
+{
+    const int n = ring->n;
+    double column[N];
+    for (int k = 0; k < n; k++) {
+        multiply(n, jacobian, ring->basis + k * n, column);
+        multiply(n, ring->inverse, column, ring->jacobian + k * n);
+    }
+    ring->jacobian[1] -= ring->omega;
+    ring->jacobian[n] += ring->omega;
+}
+
+/* Eigenvalues and eigenvectors of the Jacobian: the pair that turns fastest, and what else there is. */
+static int find_pair(const double *real, const double *imaginary, dea_ring *ring)
+{
+    int pair = 0;
+    for (int i = 1; i < ring->n; i++) {
+        pair = imaginary[i] > imaginary[pair] ? i : pair;
+    }
+    ring->omega = imaginary[pair];
+    ring->decay = fmax(0.0, -real[pair]);
+    ring->fastest = 0.0;
+    for (int i = 0; i < ring->n; i++) {
+        if (i != pair && i != pair + 1) {
+            ring->fastest = fmax(ring->fastest, hypot(real[i], imaginary[i]));
+        }
+    }
+    return pair;
+}
+
+void dea_ring_stop(dea_ring *ring)
+{
+    ring->turns = false;
+}
+
+void dea_ring_find(const dea_motion *motion, dea_ring *ring)
+{
+    const dea_segment *segment = motion->segment;
+    const int n = ring->n = motion->count;
+    double jacobian[N * N], work[N * N], left[N * N], right[N * N], real[N], imaginary[N];
+    ring->turns = ring->light = false;
+    if (motion->v < 0 || !dea_motion_start(motion, true, ring->center)) {
+        return;
+    }
+    dea_motion_jacobian(motion, 0.0, ring->center, jacobian);
+    memcpy(work, jacobian, (size_t)(n * n) * sizeof *work);
+    if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'V', 'V', n, work, n, real, imaginary, left, n, right, n) != 0) {
+        return;
+    }
+    const int pair = find_pair(real, imaginary, ring);
+    ring->light = ring->omega * (segment->to - segment->from) > long_enough && ring->omega > light_enough * fabs(real[pair]);
+    if (!ring->light || segment->sine || segment->start != segment->end) {
+        return;
+    }
+    build_basis(right + pair * n, left + pair * n, ring);
+    if (invert(ring)) {
+        turn_jacobian(jacobian, ring);
+        ring->turns = true;
+    }
+}
+
+dea_turn dea_ring_turn(const dea_ring *ring, double time, double angle)
+{
+    const double whole = ring->omega * time + angle;
+    return ring->turns ? (dea_turn){cos(whole), sin(whole)} : (dea_turn){1.0, 0.0};
+}
+
+void dea_ring_state(const dea_ring *ring, dea_turn turn, const double *w, double *y)
+{
+    const int n = ring->n;
+    double turned[N];
+    if (!ring->turns) {
+        memcpy(y, w, (size_t)n * sizeof *y);
+        return;
+    }
+    memcpy(turned, w, (size_t)n * sizeof *y);
+    turned[0] = turn.c * w[0] - turn.s * w[1];
+    turned[1] = turn.s * w[0] + turn.c * w[1];
+    multiply(n, ring->basis, turned, y);
+    for (int i = 0; i < n; i++) {
+        y[i] += ring->center[i];
+    }
+}
+
+static void turn_back(dea_turn turn, double *w)
+{
+    const double first = turn.c * w[0] + turn.s * w[1];
+    w[1] = -turn.s * w[0] + turn.c * w[1];
+    w[0] = first;
+}
+
+void dea_ring_unknowns(const dea_ring *ring, dea_turn turn, const double *y, double *w)
+{
+    const int n = ring->n;
+    double change[N];
+    if (!ring->turns) {
+        memcpy(w, y, (size_t)n * sizeof *w);
+        return;
+    }
+    for (int i = 0; i < n; i++) {
+        change[i] = y[i] - ring->center[i];
+    }
+    multiply(n, ring->inverse, change, w);
+    turn_back(turn, w);
+}
+
+void dea_ring_rates(const dea_ring *ring, dea_turn turn, const double *w, const double *f, double *rates)
+{
+    const int n = ring->n;
+    if (!ring->turns) {
+        memcpy(rates, f, (size_t)n * sizeof *rates);
+        return;
+    }
+    multiply(n, ring->inverse, f, rates);
+    turn_back(turn, rates);
+    rates[0] += ring->omega * w[1];
+    rates[1] -= ring->omega * w[0];
+}

@@ -1,0 +1,157 @@
+/* Transients: runs at tighter and tighter tolerances, until two of them show that the answer is good enough. */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "engine/ida/flight.h"
+
+enum { MOST_RUNS = 8 };
+
+/* The error of a run falls at least with this power of its tolerance; what that promises is taken three times. */
+static const double order = 0.8;
+static const double safety = 6.0;
+static const double first_share = 0.1; /* from one tolerance to the next */
+static const double least_tolerance = 1e-14;
+
+/* Peak of the displacement over the samples, or a tenth of that over the run where the samples miss it [m]. */
+static double peak(const dea_trace *trace)
+{
+    double largest = fmax(0.1 * trace->largest_u, DBL_MIN);
+    for (size_t i = 0; i < trace->count; i++) {
+        largest = fmax(largest, fabs(trace->moments[i].u));
+    }
+    return largest;
+}
+
+/* Largest difference of two runs: displacement and film voltage relative to their peaks. A velocity that is a state is held to
+ * ten times that, relative to its peak and no less than what moves the film by its displacement within the run. */
+static double difference(const dea_flight *flight, const dea_trace *a, const dea_trace *b)
+{
+    const double u = peak(b);
+    const double v = fmax(b->largest_v, u / flight->scene->transient.until);
+    const double film = fmax(flight->signal->largest, DBL_MIN);
+    const double share = flight->motion.v >= 0 ? 0.1 : 0.0;
+    const size_t count = a->count < b->count ? a->count : b->count;
+    double largest = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        const dea_moment *p = &a->moments[i];
+        const dea_moment *q = &b->moments[i];
+        const double here = fmax(fabs(p->u - q->u) / u, share * fabs(p->v - q->v) / v);
+        largest = fmax(largest, fmax(here, fabs(p->voltage - q->voltage) / film));
+    }
+    return largest;
+}
+
+/* Local tolerance with which a run is likely to be good enough: errors of an explicit method add up over a ring. */
+static double first_tolerance(const dea_flight *flight, double accuracy)
+{
+    const dea_dynamics *d = flight->motion.dynamics;
+    return (d->mass > 0.0 && !d->linear ? 5e-4 : 0.1) * accuracy;
+}
+
+/* Share by which a tolerance must shrink so that a run of error @p error becomes a run of a third of the accuracy. */
+static double next_share(double error, double accuracy)
+{
+    return fmin(first_share, fmax(1e-3, pow(accuracy / (2.0 * safety * error), 1.0 / order)));
+}
+
+/* Leaves the better run of the last two in traces[1]; false where the accuracy was not reached. A run that broke off is good up
+ * to there. */
+static bool refine(dea_flight *flight, double accuracy, dea_trace traces[2], dea_summary *summary)
+{
+    double tolerance = first_tolerance(flight, accuracy);
+    double share = first_share;
+    dea_flight_run(flight, tolerance, &traces[1], NULL);
+    for (int i = 0; i < MOST_RUNS && tolerance > 1.5 * least_tolerance; i++) {
+        const dea_trace coarse = traces[1];
+        traces[1] = traces[0];
+        traces[0] = coarse;
+        share = fmax(share, least_tolerance / tolerance);
+        tolerance *= share;
+        dea_flight_run(flight, tolerance, &traces[1], summary);
+        const double shrinks = pow(share, order);
+        const double gap = difference(flight, &traces[0], &traces[1]);
+        const bool failed = traces[1].end == DEA_STATE_FAILED;
+        const bool comparable = failed || traces[0].count == traces[1].count;
+        if (getenv("DBG"))
+            fprintf(stderr, "tol %g steps %ld end %d %d rows %zu %zu gap %g\n", tolerance, flight->steps, traces[0].end,
+                    traces[1].end, traces[0].count, traces[1].count, gap);
+        summary->error = fmax(gap * fmin(1.0, safety * shrinks), 10.0 * tolerance);
+        if ((comparable && summary->error <= accuracy) || failed) {
+            return summary->error <= accuracy;
+        }
+        share = comparable ? next_share(gap * shrinks, accuracy) : first_share;
+    }
+    return false;
+}
+
+/* Rows of a trace; where it ended, or a row is past the film, all that follow are refused. */
+static void fill(const dea_flight *flight, const dea_trace *trace, dea_sample *samples)
+{
+    dea_state state = trace->end;
+    size_t done = 0;
+    size_t near = 0;
+    while (done < trace->count && dea_dynamics_sample(flight->motion.dynamics, &trace->moments[done], &samples[done])) {
+        done++;
+    }
+    if (done < trace->count) {
+        state = DEA_STATE_PULL_IN;
+    }
+    for (; done < flight->rows; done++) {
+        const double time = dea_layout_place(flight->scene, done);
+        near = dea_signal_find(flight->signal, near, time);
+        const double voltage = dea_segment_voltage(flight->signal, &flight->signal->segments[near], time);
+        samples[done] = dea_sample_refused(time, voltage, state);
+    }
+}
+
+static dea_status fly(dea_flight *flight, dea_sample *samples, dea_summary *summary, dea_error *error)
+{
+    dea_trace traces[2] = {{0}, {0}};
+    traces[0].moments = malloc(flight->rows * sizeof *traces[0].moments);
+    traces[1].moments = malloc(flight->rows * sizeof *traces[1].moments);
+    const bool room = traces[0].moments && traces[1].moments;
+    if (room) {
+        const double mass = flight->motion.dynamics->mass;
+        if (!refine(flight, flight->scene->accuracy, traces, summary)) {
+            traces[1].count = 0;
+            traces[1].end = DEA_STATE_FAILED;
+        }
+        fill(flight, &traces[1], samples);
+        summary->resonance = mass > 0.0 ? sqrt(flight->motion.stiffness / mass) / (2.0 * DEA_PI) : (double)NAN;
+    }
+    free(traces[0].moments);
+    free(traces[1].moments);
+    return room ? DEA_OK : dea_fail(error, DEA_ERROR_MEMORY, "out of memory for %zu samples", flight->rows);
+}
+
+static dea_status fly_signal(SUNContext context, const dea_scene *scene, dea_dynamics *dynamics, dea_sample *samples,
+                             dea_summary *summary, dea_error *error)
+{
+    dea_signal signal;
+    dea_flight flight;
+    dea_status status = dea_signal_open(scene, &signal, error);
+    if (status == DEA_OK) {
+        status = dea_flight_open(context, scene, dynamics, &signal, &flight, error);
+        if (status == DEA_OK) {
+            status = fly(&flight, samples, summary, error);
+        }
+        dea_flight_close(&flight);
+    }
+    dea_signal_close(&signal);
+    return status;
+}
+
+dea_status dea_transient_solve(SUNContext context, const dea_scene *scene, const dea_model *model, dea_sample *samples,
+                               dea_summary *summary, dea_error *error)
+{
+    dea_dynamics dynamics;
+    *summary = dea_summary_failed();
+    dea_status status = dea_dynamics_open(scene, model, &dynamics, error);
+    if (status == DEA_OK) {
+        status = fly_signal(context, scene, &dynamics, samples, summary, error);
+    }
+    dea_dynamics_close(&dynamics);
+    return status;
+}

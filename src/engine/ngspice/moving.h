@@ -1,0 +1,15 @@
+/* The time and frequency domain of the engine `ngspice`. */
+#ifndef DEA_NGSPICE_MOVING_H
+#define DEA_NGSPICE_MOVING_H
+
+#include "deaspice/engine.h"
+#include "engine/ngspice/library.h"
+
+/* One transient, as dea_engine says. */
+dea_status dea_ngspice_transient(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_sample *samples,
+                                 dea_summary *summary, dea_error *error);
+/* One frequency response, as dea_engine says. */
+dea_status dea_ngspice_ac(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_response *rows,
+                          dea_error *error);
+
+#endif

@@ -1,0 +1,225 @@
+#include "engine/ngspice/pieces.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Most corners of the voltage in one piece: the library walks through all of them at every step. */
+enum { MOST_CORNERS = 64 };
+
+/* Coefficients of D(s). */
+typedef struct film {
+    const dea_dynamics *dynamics;
+    double mass, resistance, stiffness;
+    double viscous;      /* A S': stiffness of a branch per share [N/m] */
+    double transduction; /* T = 2 phi U, 0 where the film sees the source [N/V] */
+    double capacitance, conductance;
+} film;
+
+static film film_at(dea_dynamics *d, double u, double voltage)
+{
+    const dea_edge e = dea_dynamics_edge(d, u);
+    const double viscous = e.area * e.stress_slope;
+    return (film){.dynamics = d,
+                  .mass = d->mass,
+                  .resistance = d->retardation * viscous,
+                  .stiffness = dea_dynamics_stiffness(d, u, voltage, true),
+                  .viscous = viscous,
+                  .transduction = d->series > 0.0 ? 2.0 * e.push * voltage : 0.0,
+                  .capacitance = e.capacitance,
+                  .conductance = d->conductance + (d->series > 0.0 ? 1.0 / d->series : 0.0)};
+}
+
+/* D(s) - m s^2 - r s, and its derivative. */
+static double complex springs(const film *f, double complex s, double complex *slope)
+{
+    double complex sum = f->stiffness;
+    *slope = 0.0;
+    for (size_t i = 0; i < f->dynamics->branch_count; i++) {
+        const dea_branch *branch = &f->dynamics->branches[i];
+        const double complex q = 1.0 + s * branch->tau;
+        sum += f->viscous * branch->share * s * branch->tau / q;
+        *slope += f->viscous * branch->share * branch->tau / (q * q);
+    }
+    if (f->transduction != 0.0) {
+        const double complex y = s * f->capacitance + f->conductance;
+        const double square = f->transduction * f->transduction;
+        sum += square * s / y;
+        *slope += square * f->conductance / (y * y);
+    }
+    return sum;
+}
+
+/* The root of D in the upper half plane, 0 where there is none, by Newton from the frequency with the branches held on. */
+static double complex ring_of(const film *f)
+{
+    const double held = f->stiffness + f->viscous * f->dynamics->total_share;
+    if (!(f->mass > 0.0) || !(held > 0.0)) {
+        return 0.0;
+    }
+    const double first = sqrt(held / f->mass);
+    double complex s = first * I;
+    for (int i = 0; i < 60; i++) {
+        double complex slope;
+        const double complex value = (f->mass * s + f->resistance) * s + springs(f, s, &slope);
+        const double complex step = value / (2.0 * f->mass * s + f->resistance + slope);
+        s -= step;
+        if (!(cabs(step) > 1e-14 * cabs(s))) {
+            break;
+        }
+    }
+    const bool rings = cimag(s) > fabs(creal(s)) && cabs(s) < 1e3 * first;
+    return rings ? s : 0.0;
+}
+
+dea_pace dea_pace_of(dea_dynamics *dynamics, double u, double voltage)
+{
+    const film f = film_at(dynamics, u, voltage);
+    const double complex ring = ring_of(&f);
+    dea_pace pace = {.omega = cimag(ring), .decay = -creal(ring), .fastest = INFINITY};
+    for (size_t i = 0; i < dynamics->branch_count; i++) {
+        pace.fastest = fmin(pace.fastest, dynamics->branches[i].tau);
+    }
+    const double held = f.stiffness + f.viscous * dynamics->total_share;
+    if (f.mass > 0.0 && pace.omega == 0.0) {
+        pace.fastest = fmin(pace.fastest, fmin(sqrt(f.mass / held), f.resistance > 0.0 ? f.mass / f.resistance : INFINITY));
+    } else if (f.mass > 0.0) {
+        pace.fastest = fmax(pace.fastest, 0.3 / pace.omega); /* the edge moves no faster than the ring */
+    } else if (f.resistance > 0.0) {
+        pace.fastest = fmin(pace.fastest, f.resistance / held);
+    }
+    if (dynamics->series > 0.0) {
+        pace.fastest = fmin(pace.fastest, f.capacitance / f.conductance);
+    }
+    return pace;
+}
+
+dea_matching dea_matching_of(dea_dynamics *dynamics, double u, double voltage, double step)
+{
+    const film f = film_at(dynamics, u, voltage);
+    const double complex ring = ring_of(&f);
+    const dea_matching none = {.mass = f.mass};
+    if (cimag(ring) == 0.0 || !(cimag(ring) * step < 2.0)) {
+        return none;
+    }
+    double complex slope;
+    const double complex s = 2.0 / step * ctanh(0.5 * step * ring);
+    const double complex rest = -springs(&f, s, &slope); /* = M s^2 + R s, with real M and R */
+    const double complex over = rest / s;                /* = M s + R */
+    const dea_matching fit = {.mass = cimag(over) / cimag(s),
+                              .resistance = creal(over) - cimag(over) / cimag(s) * creal(s) - f.resistance,
+                              .ring = ring,
+                              .root = s};
+    return fit.mass > 0.1 * f.mass && fit.mass < 10.0 * f.mass ? fit : none;
+}
+
+typedef struct cutter {
+    const dea_signal *signal;
+    const dea_pace *pace;
+    double life; /* of a ring [s] */
+    dea_pieces *pieces;
+    size_t room;
+    size_t corners; /* of the voltage inside the last piece */
+    bool exhausted;
+} cutter;
+
+/* True where the last piece can go on with that step through this segment. */
+static bool goes_on(const cutter *c, const dea_piece *next)
+{
+    if (c->pieces->count == 0 || next->jump || next->rings != c->pieces->pieces[c->pieces->count - 1].rings ||
+        c->corners >= MOST_CORNERS) {
+        return false;
+    }
+    const dea_piece *last = &c->pieces->pieces[c->pieces->count - 1];
+    const bool alike = next->step <= 1.5 * last->step && last->step <= 1.5 * next->step;
+    return alike && !c->signal->segments[last->segment].sine && !c->signal->segments[next->segment].sine;
+}
+
+static void add(cutter *c, dea_piece next)
+{
+    dea_pieces *pieces = c->pieces;
+    if (goes_on(c, &next)) {
+        dea_piece *last = &pieces->pieces[pieces->count - 1];
+        c->corners += last->segment != next.segment;
+        last->to = next.to;
+        last->step = fmin(last->step, next.step);
+        return;
+    }
+    if (pieces->count == c->room) {
+        const size_t room = c->room ? 2 * c->room : 64;
+        dea_piece *more = realloc(pieces->pieces, room * sizeof *more);
+        if (!more) {
+            c->exhausted = true;
+            return;
+        }
+        pieces->pieces = more;
+        c->room = room;
+    }
+    c->corners = 0;
+    pieces->pieces[pieces->count++] = next;
+}
+
+/* Step wanted at an age since the last corner, and the age up to which it is good: a fraction of the age, since all that was
+ * faster has settled; while the ring lives a fraction of its period, longer as it decays (errors of fourth order then weigh the
+ * same). */
+static double step_at(const cutter *c, double age, double *until)
+{
+    const dea_pace *pace = c->pace;
+    double step = 0.25 * fmax(pace->fastest, age);
+    *until = 16.0 * step;
+    if (pace->omega > 0.0 && age < c->life) {
+        const double decade = pace->decay > 0.0 ? log(10.0) / pace->decay : (double)INFINITY;
+        const double passed = floor(age / decade * (1.0 + 1e-9));
+        const double ring = fmin(pow(10.0, 0.25 * passed), 1.6) / pace->omega;
+        *until = fmin(*until, c->life);
+        if (ring < step) {
+            *until = fmin(c->life, (passed + 1.0) * decade);
+            step = ring;
+        }
+    }
+    return step;
+}
+
+static void cut_segment(cutter *c, size_t index, bool quiet)
+{
+    const dea_segment *segment = &c->signal->segments[index];
+    const double length = segment->to - segment->from;
+    const bool still = !segment->sine && segment->start == segment->end;
+    const double turn = 2.0 * DEA_PI * c->signal->sine.frequency;
+    const double limit = still ? length : segment->sine ? fmin(0.5 / turn, 0.25 * length) : 0.25 * length;
+    const bool jump = index > 0 && c->signal->segments[index - 1].end != segment->start;
+    double age = 0.0;
+    while (age < length && !c->exhausted) {
+        double until = length;
+        const double step = fmin(limit, quiet ? length : step_at(c, age, &until));
+        if (!(until < length - 0.1 * (until - age))) {
+            until = length;
+        }
+        add(c, (dea_piece){.from = segment->from + age,
+                           .to = until == length ? segment->to : segment->from + until,
+                           .step = step,
+                           .segment = index,
+                           .rings = !quiet && c->pace->omega > 0.0 && age < c->life,
+                           .jump = jump && age == 0.0});
+        age = until;
+    }
+}
+
+dea_status dea_pieces_cut(const dea_signal *signal, const dea_pace *pace, double accuracy, bool quiet, dea_pieces *pieces,
+                          dea_error *error)
+{
+    cutter c = {.signal = signal, .pace = pace, .pieces = pieces};
+    *pieces = (dea_pieces){0};
+    c.life = pace->decay > 0.0 ? log(10.0 / accuracy) / pace->decay : (double)INFINITY;
+    for (size_t i = 0; i < signal->count; i++) {
+        const dea_segment *segment = &signal->segments[i];
+        cut_segment(&c, i, i == 0 && quiet && !segment->sine && segment->start == segment->end);
+    }
+    if (c.exhausted) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for the pieces of a run");
+    }
+    for (size_t i = 0; i < pieces->count; i++) {
+        const dea_piece *piece = &pieces->pieces[i];
+        pieces->points += (piece->to - piece->from) / piece->step;
+    }
+    return DEA_OK;
+}

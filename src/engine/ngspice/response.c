@@ -1,0 +1,113 @@
+/* Frequency responses: the small-signal network about the equilibrium under the bias. Its elements are linear, so that no
+ * operating point is looked for and every frequency is solved exactly. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "engine/ngspice/moving.h"
+#include "netlist/mobility.h"
+
+/* Magnitude and phase [deg], -180 < phase <= 180. */
+static void polar(double re, double im, double *magnitude, double *phase)
+{
+    const double angle = atan2(im, re) * 180.0 / DEA_PI;
+    *magnitude = hypot(re, im);
+    *phase = angle <= -180.0 ? 180.0 : angle;
+}
+
+/* The flux of the spring is the displacement; the current into a voltage source is counted from its plus to its minus pole. */
+static void fill_row(const double *spring, const double *source, double stiffness, double frequency, dea_response *row)
+{
+    const double square = source[0] * source[0] + source[1] * source[1];
+    row->frequency = frequency;
+    polar(spring[0] / stiffness, spring[1] / stiffness, &row->displacement, &row->displacement_phase);
+    polar(-source[0] / square, source[1] / square, &row->impedance, &row->impedance_phase);
+    row->state = DEA_STATE_OK;
+}
+
+typedef struct response {
+    dea_ngspice *library;
+    const dea_scene *scene;
+    dea_dynamics *dynamics;
+    dea_mobility_bias bias;
+    dea_response *rows;
+} response;
+
+/* Rows first ... first + count - 1, on one grid. */
+static dea_status run_band(const response *r, size_t first, size_t count, dea_error *error)
+{
+    static const char *const names[] = {"lspring#branch", "vsource#branch"};
+    const dea_mobility_band band = {.from = dea_layout_place(r->scene, first),
+                                    .to = dea_layout_place(r->scene, first + count - 1),
+                                    .points_per_decade = count > 1 ? r->scene->ac.points_per_decade : 0};
+    const double stiffness = dea_dynamics_stiffness(r->dynamics, r->bias.u, r->bias.voltage, true);
+    char *netlist = NULL;
+    dea_ngspice_table table = {0};
+    dea_status status = dea_mobility_write_small(r->dynamics, &r->bias, &band, &netlist, error);
+    if (status == DEA_OK) {
+        status = dea_ngspice_run_all(r->library, netlist, names, 2, &table, error);
+    }
+    if (status == DEA_OK && table.count != count) {
+        status = dea_fail(error, DEA_ERROR_ENGINE, "ngspice gave %zu of %zu frequencies", table.count, count);
+    }
+    for (size_t i = 0; i < count && status == DEA_OK; i++) {
+        fill_row(&table.columns[0][2 * i], &table.columns[1][2 * i], stiffness, dea_layout_place(r->scene, first + i),
+                 &r->rows[first + i]);
+    }
+    dea_ngspice_table_free(&table);
+    free(netlist);
+    return status;
+}
+
+/* The state of the film under its bias stands in every row. */
+static void name_states(const response *r, size_t count, dea_state state)
+{
+    for (size_t i = 0; i < count; i++) {
+        r->rows[i].state = state;
+    }
+}
+
+static void refuse_rows(const response *r, size_t count)
+{
+    const double none = (double)NAN;
+    for (size_t i = 0; i < count; i++) {
+        r->rows[i] = (dea_response){dea_layout_place(r->scene, i), none, none, none, none, DEA_STATE_PULL_IN};
+    }
+}
+
+/* The last frequency is the end of the band, which need not lie on the grid of the others. */
+static dea_status run_bands(response *r, dea_error *error)
+{
+    const size_t count = dea_layout_of(r->scene).rows;
+    dea_dynamics *d = r->dynamics;
+    dea_sample at_bias;
+    r->bias.voltage = r->scene->ac.bias / (1.0 + d->series * d->conductance);
+    if (!dea_dynamics_equilibrium(d, r->bias.voltage, &r->bias.u) ||
+        !(dea_dynamics_stiffness(d, r->bias.u, r->bias.voltage, true) > 0.0)) {
+        refuse_rows(r, count);
+        return DEA_OK;
+    }
+    dea_status status = DEA_OK;
+    if (count > 1) {
+        status = run_band(r, 0, count - 1, error);
+    }
+    if (status == DEA_OK) {
+        status = run_band(r, count - 1, 1, error);
+    }
+    const dea_moment moment = {.source = r->scene->ac.bias, .voltage = r->bias.voltage, .u = r->bias.u};
+    (void)dea_dynamics_sample(d, &moment, &at_bias);
+    name_states(r, count, at_bias.state);
+    return status;
+}
+
+dea_status dea_ngspice_ac(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_response *rows,
+                          dea_error *error)
+{
+    dea_dynamics dynamics;
+    dea_status status = dea_dynamics_open(scene, model, &dynamics, error);
+    if (status == DEA_OK) {
+        response r = {.library = library, .scene = scene, .dynamics = &dynamics, .rows = rows};
+        status = run_bands(&r, error);
+    }
+    dea_dynamics_close(&dynamics);
+    return status;
+}

@@ -1,0 +1,426 @@
+#include "engine/ngspice/track.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Most time steps of one netlist: what its plot takes of memory. */
+static const double most_steps = 300000.0;
+
+/* An accepted point of the library with the slopes that go with it inside one segment. */
+typedef struct node {
+    dea_moment moment;
+    dea_mobility_state state;
+    double stress;         /* S */
+    double acceleration;   /* with mass [m/s^2] */
+    double current;        /* slope of the charge, with series resistance [A] */
+    double complex change; /* what correct() has added [m] */
+} node;
+
+typedef struct runner {
+    const dea_route *route;
+    dea_track *track;
+    dea_matching match;
+    bool rings; /* so does the film in this piece */
+    bool slow;  /* the piece steps over the ring, which is dead */
+    double step;
+    double speed;           /* velocities of the film over those of the matched network [1] */
+    double complex lag;     /* what irregular steps since the last corner did to a ring: to multiply by */
+    double complex carried; /* what those before it did: to add [m] */
+    size_t segment;
+    node last;      /* in the segment that begins there */
+    double pending; /* weight of its powers [s] */
+} runner;
+
+double dea_route_voltage(const dea_route *route, double source, double u, double charge)
+{
+    return route->dynamics->series > 0.0 ? charge / dea_dynamics_edge(route->dynamics, u).capacitance : source;
+}
+
+static bool is_free(const dea_dynamics *d)
+{
+    return !(d->mass > 0.0) && !(d->retardation > 0.0);
+}
+
+/* m u'' = phi U^2 - A [S + tau_KV S' u' + sum c_i (S - z_i)]. */
+static double acceleration(const dea_dynamics *d, const dea_edge *e, const node *n)
+{
+    double stress = e->stress + d->retardation * e->stress_slope * n->moment.v;
+    for (size_t i = 0; i < d->branch_count; i++) {
+        stress += d->branches[i].share * (e->stress - n->state.z[i]);
+    }
+    return (e->push * n->moment.voltage * n->moment.voltage - e->area * stress) / d->mass;
+}
+
+/* Velocity of a film without mass, or of one whose ring has died away: what is left of that would count too much over a long
+ * step. Behind a series resistance the slope of U = q/C(u) depends on it, and it on that slope: both are linear in the other. */
+static void set_velocity(dea_dynamics *d, const dea_edge *e, node *n)
+{
+    dea_moment *m = &n->moment;
+    if (d->series > 0.0) {
+        const double still = dea_dynamics_velocity(d, m->u, m->voltage, 0.0, n->state.z);
+        const double per_slope = dea_dynamics_velocity(d, m->u, m->voltage, 1.0, n->state.z) - still;
+        const double reaction = e->capacitance_slope * m->voltage / e->capacitance;
+        m->v = (still + per_slope * n->current / e->capacitance) / (1.0 + per_slope * reaction);
+        m->slope = n->current / e->capacitance - reaction * m->v;
+    } else {
+        m->v = dea_dynamics_velocity(d, m->u, m->voltage, m->slope, n->state.z);
+    }
+}
+
+/* A state at a time inside the segment. The velocity of a film without mass follows from the rest. */
+static node node_at(const runner *r, double time, const dea_mobility_state *state)
+{
+    const dea_route *route = r->route;
+    dea_dynamics *d = route->dynamics;
+    const dea_segment *segment = &route->signal->segments[r->segment];
+    const dea_edge e = dea_dynamics_edge(d, state->u);
+    node n = {.state = *state, .stress = e.stress, .moment = {.time = time, .u = state->u, .v = state->v}};
+    n.moment.source = dea_segment_voltage(route->signal, segment, time);
+    n.moment.slope = dea_segment_slope(route->signal, segment, time);
+    n.moment.voltage = d->series > 0.0 ? state->charge / e.capacitance : n.moment.source;
+    if (d->series > 0.0) {
+        n.current = (n.moment.source - n.moment.voltage) / d->series - n.moment.voltage * d->conductance;
+    }
+    if (r->slow || !(d->mass > 0.0)) {
+        set_velocity(route->slow, &e, &n);
+    } else {
+        n.acceleration = acceleration(d, &e, &n);
+    }
+    return n;
+}
+
+/* Cubic through two values and slopes, at x = 0 ... 1 of the interval @p h. */
+static double cubic(double a, double slope_a, double b, double slope_b, double h, double x)
+{
+    const double y = 1.0 - x;
+    return a * y * y * (1.0 + 2.0 * x) + b * x * x * (1.0 + 2.0 * y) + h * x * y * (slope_a * y - slope_b * x);
+}
+
+/* Quintic through two values, slopes and curvatures. */
+static double quintic(const node *a, const node *b, double h, double x)
+{
+    const double y = 1.0 - x;
+    const double x3 = x * x * x;
+    const double y3 = y * y * y;
+    return a->moment.u * y3 * (1.0 + 3.0 * x + 6.0 * x * x) + b->moment.u * x3 * (1.0 + 3.0 * y + 6.0 * y * y) +
+           h * (a->moment.v * y3 * x * (1.0 + 3.0 * x) - b->moment.v * x3 * y * (1.0 + 3.0 * y)) +
+           0.5 * h * h * (a->acceleration * y3 * x * x + b->acceleration * x3 * y * y);
+}
+
+/* State between two points of one segment. */
+static node between(const runner *r, const node *a, const node *b, double time)
+{
+    const dea_dynamics *d = r->route->dynamics;
+    const double h = b->moment.time - a->moment.time;
+    const double x = (time - a->moment.time) / h;
+    dea_mobility_state s = {.charge = cubic(a->state.charge, a->current, b->state.charge, b->current, h, x)};
+    for (size_t i = 0; i < d->branch_count; i++) {
+        const double rate = h / d->branches[i].tau;
+        const double slope_a = (a->stress - a->state.z[i]) * rate;
+        const double slope_b = (b->stress - b->state.z[i]) * rate;
+        s.z[i] = cubic(a->state.z[i], slope_a, b->state.z[i], slope_b, 1.0, x);
+    }
+    if (d->mass > 0.0 && !r->slow) {
+        s.u = quintic(a, b, h, x);
+        s.v = cubic(a->moment.v, a->acceleration, b->moment.v, b->acceleration, h, x);
+    } else {
+        s.u = cubic(a->moment.u, a->moment.v, b->moment.u, b->moment.v, h, x);
+    }
+    return node_at(r, time, &s);
+}
+
+/* Takes the samples up to the point @p b. */
+static void take_samples(runner *r, const node *b)
+{
+    dea_track *track = r->track;
+    while (track->reached < r->route->samples) {
+        const double time = dea_layout_place(r->route->scene, track->reached);
+        if (time > b->moment.time) {
+            return;
+        }
+        node n = *b;
+        if (time < b->moment.time) {
+            n = between(r, &r->last, b, time);
+        }
+        track->points[track->reached++] = (dea_track_point){n.moment.u, n.moment.v, n.state.charge};
+    }
+}
+
+/* Powers by Simpson's rule over each step. */
+static void add_power(runner *r, const node *n, double weight)
+{
+    if (weight > 0.0) {
+        dea_audit_add(&r->track->audit, r->route->dynamics, &n->moment, n->state.z, weight);
+    }
+}
+
+static void add_step(runner *r, const node *b)
+{
+    const node *a = &r->last;
+    const double h = b->moment.time - a->moment.time;
+    const node middle = between(r, a, b, 0.5 * (a->moment.time + b->moment.time));
+    add_power(r, a, r->pending + h / 6.0);
+    add_power(r, &middle, 4.0 * h / 6.0);
+    r->pending = h / 6.0;
+}
+
+/* The powers of the last point that are still open. */
+static void settle(runner *r)
+{
+    add_power(r, &r->last, r->pending);
+    r->pending = 0.0;
+}
+
+/* Displacement of the ring at a point, as a complex amplitude A: u = Re A, v = Re sA, u'' = Re s^2 A. */
+static double complex ring_at(double complex s, const node *n)
+{
+    const double d = -creal(s);
+    const double w = cimag(s);
+    const double a = -(n->acceleration + 2.0 * d * n->moment.v) / (w * w + d * d);
+    return a - I * (n->moment.v + d * a) / w;
+}
+
+/* Behind a corner the library's steps grow from a hundredth to their full length, on which alone the network is matched: each
+ * takes (1 + S h/2)/(1 - S h/2) for exp(s h). What that did to the ring is put right; it goes with h^3. */
+static void correct(runner *r, double step, node *n)
+{
+    const dea_segment *segment = &r->route->signal->segments[r->segment];
+    const double complex s = r->match.ring;
+    if (cimag(s) == 0.0) {
+        return;
+    }
+    if (r->carried != 0.0) {
+        r->carried *= cexp(s * step);
+    }
+    if (fabs(step - r->step) > 1e-9 * r->step && !segment->sine && segment->start == segment->end) {
+        const double complex half = 0.5 * step * r->match.root;
+        r->lag *= cexp(s * step) * (1.0 - half) / (1.0 + half);
+    }
+    const double complex change = r->carried + (r->lag - 1.0) * ring_at(s, n);
+    n->moment.u += creal(change);
+    n->moment.v += creal(s * change);
+    n->acceleration += creal(s * s * change);
+    n->state.u = n->moment.u;
+    n->state.v = n->moment.v;
+    n->change = change;
+}
+
+/* Goes on from @p time in its segment. */
+static void enter_segment(runner *r, double time, double next)
+{
+    const dea_signal *signal = r->route->signal;
+    const size_t segment = dea_signal_find(signal, r->segment, 0.5 * (time + next));
+    if (segment != r->segment) {
+        const dea_mobility_state state = r->last.state;
+        settle(r);
+        r->segment = segment;
+        r->carried = r->last.change;
+        r->lag = 1.0;
+        r->last = node_at(r, time, &state);
+    }
+}
+
+/* A film without mass must stay where its branches, held, keep it stable. */
+static bool is_stable(const runner *r, const node *n)
+{
+    dea_dynamics *d = r->route->dynamics;
+    return d->mass > 0.0 || dea_dynamics_stiffness(d, n->moment.u, n->moment.voltage, false) > 0.0;
+}
+
+/* Takes one more point; false where the film has left what it can do. */
+static bool advance(runner *r, double time, const dea_mobility_state *state)
+{
+    enter_segment(r, r->last.moment.time, time);
+    node n = node_at(r, time, state);
+    correct(r, time - r->last.moment.time, &n);
+    if (!isfinite(n.moment.u) || !isfinite(n.moment.v) || !is_stable(r, &n)) {
+        r->track->end = DEA_STATE_PULL_IN;
+        return false;
+    }
+    add_step(r, &n);
+    take_samples(r, &n);
+    r->last = n;
+    return true;
+}
+
+static dea_mobility_state scaled(dea_mobility_state state, double speed)
+{
+    state.v *= speed;
+    return state;
+}
+
+/* Reads the last point anew where the way of reading it has changed: another segment, or another piece. */
+static void start_again(runner *r)
+{
+    const dea_mobility_state state = r->last.state;
+    settle(r);
+    r->last = node_at(r, r->last.moment.time, &state);
+}
+
+static void set_piece(runner *r, dea_mobility_piece *piece, double to, double step)
+{
+    const dea_route *route = r->route;
+    const dea_segment *segment = &route->signal->segments[r->segment];
+    const double voltage = fabs(segment->end) > fabs(segment->start) ? segment->end : segment->start;
+    double u = 0.0;
+    const bool there = dea_dynamics_equilibrium(route->dynamics, voltage, &u);
+    r->match = dea_matching_of(route->dynamics, there ? u : 0.0, there ? voltage : 0.0, r->rings ? step : (double)INFINITY);
+    r->speed = r->match.mass > 0.0 ? sqrt(r->match.mass / route->dynamics->mass) : 1.0;
+    r->step = step;
+    r->slow = !r->rings && route->omega * step > 2.0;
+    r->lag = 1.0;
+    r->carried = 0.0;
+    start_again(r);
+    *piece = (dea_mobility_piece){.signal = route->signal,
+                                  .segment = r->segment,
+                                  .from = r->last.moment.time,
+                                  .to = to,
+                                  .step = step,
+                                  .scale = route->scale,
+                                  .mass = r->match.mass,
+                                  .conductance = r->match.resistance,
+                                  .start = scaled(r->last.state, 1.0 / r->speed)};
+}
+
+/* Why the library stopped: the film has lost its stability there, or not. */
+static dea_state verdict(const runner *r)
+{
+    dea_dynamics *d = r->route->dynamics;
+    const double rest = dea_dynamics_stiffness(d, 0.0, 0.0, false);
+    const double here = dea_dynamics_stiffness(d, r->last.moment.u, r->last.moment.voltage, false);
+    return here < 1e-3 * rest ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
+}
+
+/* The points of one netlist. */
+static void absorb(runner *r, const dea_ngspice_table *table, double from, double to)
+{
+    const double *const *columns = (const double *const *)table->columns;
+    const double *times = table->columns[0];
+    const double length = to - from;
+    for (size_t i = 0; i < table->count; i++) {
+        const bool last = times[i] >= length * (1.0 - 1e-12);
+        const double time = last ? to : from + times[i];
+        if (!(time > r->last.moment.time)) {
+            continue;
+        }
+        const dea_mobility_state state = scaled(dea_mobility_read(r->route->mobility, columns, i), r->speed);
+        if (!advance(r, time, &state) || last) {
+            return;
+        }
+    }
+    r->track->end = verdict(r);
+}
+
+static dea_status run_netlist(runner *r, double to, double step, dea_error *error)
+{
+    const char *names[DEA_MOBILITY_VECTORS];
+    const dea_mobility *mobility = r->route->mobility;
+    const dea_mobility_vectors vectors = dea_mobility_vectors_of(mobility);
+    dea_mobility_piece piece;
+    dea_ngspice_table table = {0};
+    char *netlist = NULL;
+    for (size_t i = 0; i < vectors.count; i++) {
+        names[i] = vectors.names[i];
+    }
+    set_piece(r, &piece, to, step);
+    dea_status status = dea_mobility_write(mobility, &piece, &netlist, error);
+    if (status == DEA_OK) {
+        status = dea_ngspice_run_all(r->route->library, netlist, names, vectors.count, &table, error);
+    }
+    if (status == DEA_OK) {
+        absorb(r, &table, piece.from, to);
+    }
+    dea_ngspice_table_free(&table);
+    free(netlist);
+    return status;
+}
+
+/* The voltage jumps: without mass, damper and series resistance the displacement goes with it, branches held. */
+static void jump(runner *r, size_t segment)
+{
+    const dea_route *route = r->route;
+    dea_dynamics *d = route->dynamics;
+    dea_mobility_state state = r->last.state;
+    settle(r);
+    r->segment = segment;
+    if (is_free(d) && d->series == 0.0) {
+        const double u = state.u;
+        if (!dea_dynamics_follow(d, route->signal->segments[segment].start, state.z, &state.u)) {
+            r->track->end = DEA_STATE_PULL_IN;
+            return;
+        }
+        dea_audit_jump(&r->track->audit, d, u, state.u, state.z);
+    }
+    r->last = node_at(r, r->last.moment.time, &state);
+}
+
+static dea_status run_piece(runner *r, const dea_piece *piece, double fineness, dea_error *error)
+{
+    const double steps = (piece->to - piece->from) / (piece->step * fineness);
+    const double parts = ceil(steps / most_steps);
+    dea_status status = DEA_OK;
+    r->rings = piece->rings;
+    if (piece->jump) {
+        jump(r, piece->segment);
+    }
+    for (double part = 1.0; part <= parts && status == DEA_OK && r->track->end == DEA_STATE_OK; part++) {
+        const double to = part == parts ? piece->to : piece->from + (piece->to - piece->from) * (part / parts);
+        const double behind = nextafter(r->last.moment.time, INFINITY);
+        enter_segment(r, r->last.moment.time, 2.0 * behind - r->last.moment.time);
+        status = run_netlist(r, to, piece->step * fineness, error);
+    }
+    return status;
+}
+
+/* Relaxed under the first voltage, or at rest; a film that follows its voltage jumps to where that wants it. */
+static bool start(runner *r)
+{
+    const dea_route *route = r->route;
+    dea_dynamics *d = route->dynamics;
+    const double source = route->signal->segments[0].start;
+    dea_mobility_state state = {0};
+    double voltage = 0.0;
+    if (route->scene->transient.from_bias) {
+        voltage = d->series > 0.0 ? source / (1.0 + d->series * d->conductance) : source;
+        if (!dea_dynamics_equilibrium(d, voltage, &state.u)) {
+            return false;
+        }
+        const dea_edge e = dea_dynamics_edge(d, state.u);
+        state.charge = e.capacitance * voltage;
+        for (size_t i = 0; i < d->branch_count; i++) {
+            state.z[i] = e.stress;
+        }
+    }
+    r->last = node_at(r, 0.0, &state);
+    r->track->start = state;
+    r->track->first = r->last.moment;
+    r->track->first.v = 0.0;
+    jump(r, 0);
+    if (r->track->end == DEA_STATE_OK) {
+        r->track->points[r->track->reached++] = (dea_track_point){r->last.moment.u, r->last.moment.v, r->last.state.charge};
+    }
+    return r->track->end == DEA_STATE_OK;
+}
+
+dea_status dea_track_run(const dea_route *route, double fineness, dea_track *track, dea_error *error)
+{
+    runner r = {.route = route, .track = track, .speed = 1.0};
+    *track = (dea_track){.end = DEA_STATE_OK};
+    track->points = malloc(route->samples * sizeof *track->points);
+    if (!track->points) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for the samples of a run");
+    }
+    dea_status status = DEA_OK;
+    if (!start(&r)) {
+        track->end = DEA_STATE_PULL_IN;
+    }
+    for (size_t i = 0; i < route->pieces->count && status == DEA_OK && track->end == DEA_STATE_OK; i++) {
+        status = run_piece(&r, &route->pieces->pieces[i], fineness, error);
+    }
+    if (track->reached > 0) {
+        settle(&r);
+    }
+    track->last = r.last.moment;
+    track->stop = r.last.state;
+    return status;
+}

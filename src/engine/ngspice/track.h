@@ -1,0 +1,44 @@
+/* What one run over all pieces leaves: the states at the samples, the energies, how far it came. */
+#ifndef DEA_NGSPICE_TRACK_H
+#define DEA_NGSPICE_TRACK_H
+
+#include "engine/ngspice/library.h"
+#include "engine/ngspice/pieces.h"
+#include "netlist/mobility.h"
+
+/* Displacement, velocity and charge at a sample. */
+typedef struct dea_track_point {
+    double u, v, charge;
+} dea_track_point;
+
+typedef struct dea_track {
+    dea_track_point *points; /* owned: computed by dea_track_run(), `reached` of them */
+    size_t reached;          /* samples before the run ended */
+    dea_state end;           /* why: ok, pull_in, failed */
+    dea_audit audit;
+    dea_moment first, last;
+    dea_mobility_state start, stop; /* the states that go with them */
+} dea_track;
+
+/* A run's fixed parts. */
+typedef struct dea_route {
+    dea_ngspice *library;
+    const dea_scene *scene;
+    dea_dynamics *dynamics;
+    dea_dynamics *slow; /* the same film without mass, and without damper where it has mass */
+    const dea_mobility *mobility;
+    const dea_signal *signal;
+    const dea_pieces *pieces;
+    size_t samples;
+    double scale; /* size of a displacement [m] */
+    double omega; /* of the ring [rad/s], 0: none */
+} dea_route;
+
+/* Runs the pieces with @p fineness times their steps; the caller frees track->points, also after a failure. A run that ends early
+ * is no failure of this call. */
+dea_status dea_track_run(const dea_route *route, double fineness, dea_track *track, dea_error *error);
+
+/* Film voltage that goes with a state. */
+double dea_route_voltage(const dea_route *route, double source, double u, double charge);
+
+#endif

@@ -1,0 +1,480 @@
+/* Force balance at the node `edge` (current): mass, springs, dampers and branches against the electrostatic force. Displacement
+ * is an output of the network: the flux of the spring, n times its current, or where the spring is hyperelastic the integral of
+ * the edge velocity in a capacitor of 1. `uic` with ic= everywhere: springs as inductors have no operating point. */
+#include "netlist/mobility.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "netlist/expression_text.h"
+#include "network/derivative.h"
+#include "network/formula.h"
+
+dea_status dea_mobility_open(const dea_scene *scene, const dea_dynamics *dynamics, dea_mobility *mobility, dea_error *error)
+{
+    dea_scene film = *scene;
+    film.drive.voltage = 1.0;
+    film.drive.series_resistance = film.drive.leakage_resistance = (double)NAN;
+    *mobility = (dea_mobility){.dynamics = dynamics, .stiffness = (double)NAN};
+    dea_network *network = &mobility->network;
+    const dea_status status = dea_network_build(&film, dynamics->model, NULL, network, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    dea_pool *pool = &network->pool;
+    mobility->stress = dea_network_stress(network);
+    mobility->area = dea_network_area(network);
+    mobility->push = SUB(dea_network_load(network), MUL(dea_network_softening(network), network->edge));
+    const dea_expr slope = dea_expr_slope(pool, mobility->stress);
+    mobility->resistance = SCALE(dynamics->retardation, MUL(mobility->area, slope));
+    if (pool->exhausted) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built");
+    }
+    if (dynamics->linear) {
+        mobility->stiffness = dea_expr_constant(pool, slope);
+    }
+    return DEA_OK;
+}
+
+void dea_mobility_close(dea_mobility *mobility)
+{
+    if (mobility) {
+        dea_network_free(&mobility->network);
+    }
+}
+
+static bool is_linear(const dea_mobility *mobility)
+{
+    return !isnan(mobility->stiffness);
+}
+
+typedef struct writer {
+    const dea_mobility *mobility;
+    const dea_dynamics *dynamics;
+    const dea_mobility_piece *piece;
+    dea_expression_text text;
+    FILE *out;
+} writer;
+
+/* One `.param name=value`. */
+static void parameter(FILE *out, const char *name, double value)
+{
+    fprintf(out, ".param %s=", name);
+    dea_netlist_number(out, value);
+    fputc('\n', out);
+}
+
+static void indexed(FILE *out, const char *name, size_t index, double value)
+{
+    char whole[32];
+    snprintf(whole, sizeof whole, "%s%zu", name, index);
+    parameter(out, whole, value);
+}
+
+static void write_springs(const writer *w)
+{
+    FILE *out = w->out;
+    const dea_network *network = &w->mobility->network;
+    for (int i = 0; i < network->element_count; i++) {
+        fprintf(out, "* %s: %s\n", network->elements[i].name, network->elements[i].meaning);
+    }
+    if (is_linear(w->mobility)) {
+        fputs("* compliance of all parallel springs [m/N]; its current is their force [N], its flux the displacement [m]\n", out);
+        parameter(out, "n_spring", 1.0 / w->mobility->stiffness);
+        parameter(out, "f_start", w->mobility->stiffness * w->piece->start.u);
+        fputs("lspring edge 0 {n_spring} ic={f_start}\n", out);
+        return;
+    }
+    fputs("* displacement [m], the integral of the edge velocity\n", out);
+    parameter(out, "u_start", w->piece->start.u);
+    fputs("gdisp 0 disp edge 0 1\ncdisp disp 0 1 ic={u_start}\n", out);
+    fputs("* stress of the relaxed springs [Pa] and their force [N], Eq. 18\nbstress stress 0 v=", out);
+    dea_expression_text_write(&w->text, w->mobility->stress);
+    fputs("\nbspring edge 0 i=", out);
+    dea_expression_text_factor(&w->text, w->mobility->area);
+    fputs("*v(stress)\n", out);
+}
+
+/* A branch of the Prony series beside a linear spring: a spring and a damper in series. */
+static void write_linear_branches(const writer *w)
+{
+    const double k = w->mobility->stiffness;
+    for (size_t i = 0; i < w->dynamics->branch_count; i++) {
+        const dea_branch *branch = &w->dynamics->branches[i];
+        const double stiffness = k * branch->share;
+        const size_t n = i + 1;
+        fprintf(w->out, "* branch %zu: compliance [m/N] in series with a mechanical resistance [N s/m], its inverse is written\n",
+                n);
+        indexed(w->out, "n_branch", n, 1.0 / stiffness);
+        indexed(w->out, "r_branch", n, 1.0 / (stiffness * branch->tau));
+        indexed(w->out, "f_branch", n, branch->share * (k * w->piece->start.u - w->piece->start.z[i]));
+        fprintf(w->out, "lbranch%zu edge b%zu {n_branch%zu} ic={f_branch%zu}\nrbranch%zu b%zu 0 {r_branch%zu}\n", n, n, n, n, n,
+                n, n);
+    }
+}
+
+/* Quasi-linear branches: z_i follows the stress with its time constant, A sum c_i (S - z_i) acts on the edge. */
+static void write_stress_branches(const writer *w)
+{
+    for (size_t i = 0; i < w->dynamics->branch_count; i++) {
+        const dea_branch *branch = &w->dynamics->branches[i];
+        const size_t n = i + 1;
+        fprintf(w->out, "* branch %zu: relaxed stress [Pa] with its time constant [s] and share of the long-term stress [1]\n",
+                n);
+        indexed(w->out, "tau", n, branch->tau);
+        indexed(w->out, "share", n, branch->share);
+        indexed(w->out, "z_start", n, w->piece->start.z[i]);
+        fprintf(w->out, "rbranch%zu stress z%zu {tau%zu}\ncbranch%zu z%zu 0 1 ic={z_start%zu}\n", n, n, n, n, n, n);
+    }
+    if (w->dynamics->branch_count > 0) {
+        fputs("* force of the branches [N]\nbbranches edge 0 i=", w->out);
+        dea_expression_text_factor(&w->text, w->mobility->area);
+        for (size_t i = 1; i <= w->dynamics->branch_count; i++) {
+            fprintf(w->out, "%s{share%zu}*(v(stress)-v(z%zu))", i == 1 ? "*(" : "+", i, i);
+        }
+        fputs(")\n", w->out);
+    }
+}
+
+static void write_motion(const writer *w)
+{
+    FILE *out = w->out;
+    if (w->piece->mass > 0.0) {
+        fputs("* mass that moves with the edge [kg] and its velocity at the start [m/s]\n", out);
+        parameter(out, "m_edge", w->piece->mass);
+        parameter(out, "v_start", w->piece->start.v);
+        fputs("cmass edge 0 {m_edge} ic={v_start}\n", out);
+    }
+    if (w->piece->conductance != 0.0) {
+        fputs("* mechanical resistance [N s/m] that fits the damping of the time steps to that of the film; its inverse is "
+              "written\n",
+              out);
+        parameter(out, "r_fit", 1.0 / w->piece->conductance);
+        fputs("rfit edge 0 {r_fit}\n", out);
+    }
+    if (w->dynamics->retardation > 0.0 && is_linear(w->mobility)) {
+        fputs("* kelvin-voigt damper, tau/n [N s/m]; its inverse is written\n", out);
+        parameter(out, "r_damper", 1.0 / (w->dynamics->retardation * w->mobility->stiffness));
+        fputs("rdamper edge 0 {r_damper}\n", out);
+    } else if (w->dynamics->retardation > 0.0) {
+        fputs("* kelvin-voigt damper, tau A dS/du times the velocity [N]\nbdamper edge 0 i=", out);
+        dea_expression_text_factor(&w->text, w->mobility->resistance);
+        fputs("*v(edge)\n", out);
+    }
+}
+
+/* The voltage of the source from the begin of the piece on: its segments as breakpoints, or a sine. */
+static void write_source(const writer *w, const char *node)
+{
+    const dea_mobility_piece *p = w->piece;
+    const dea_segment *segment = &p->signal->segments[p->segment];
+    fprintf(w->out, "* voltage of the source [V]\nvsource %s 0 ", node);
+    if (segment->sine) {
+        const dea_sine *sine = &p->signal->sine;
+        const double turns = sine->frequency * (p->from - sine->delay);
+        fputs("sin(", w->out);
+        dea_netlist_number(w->out, sine->offset);
+        fputc(' ', w->out);
+        dea_netlist_number(w->out, sine->amplitude);
+        fputc(' ', w->out);
+        dea_netlist_number(w->out, sine->frequency);
+        fputs(" 0 0 ", w->out);
+        dea_netlist_number(w->out, 360.0 * (turns - floor(turns)) + sine->phase * 180.0 / DEA_PI);
+        fputs(")\n", w->out);
+        return;
+    }
+    fputs("pwl(0 ", w->out);
+    dea_netlist_number(w->out, dea_segment_voltage(p->signal, segment, p->from));
+    for (size_t i = p->segment; i < p->signal->count && p->signal->segments[i].from < p->to; i++) {
+        const double end = fmin(p->signal->segments[i].to, p->to);
+        fputc(' ', w->out);
+        dea_netlist_number(w->out, end - p->from);
+        fputc(' ', w->out);
+        dea_netlist_number(w->out, dea_segment_voltage(p->signal, &p->signal->segments[i], end));
+    }
+    fputs(")\n", w->out);
+}
+
+/* The electrical side: the film's charge is the integral of its current, its voltage that charge over C(u). */
+static void write_port(const writer *w)
+{
+    FILE *out = w->out;
+    write_source(w, w->dynamics->series > 0.0 ? "source" : "film");
+    if (w->dynamics->conductance > 0.0) {
+        fputs("* leakage resistance of the film [Ohm]\n", out);
+        parameter(out, "r_leak", 1.0 / w->dynamics->conductance);
+        fputs("rleak film 0 {r_leak}\n", out);
+    }
+    if (w->dynamics->series > 0.0) {
+        fputs("* series resistance of source and electrodes [Ohm]\n", out);
+        parameter(out, "r_series", w->dynamics->series);
+        fputs("rseries source film {r_series}\n", out);
+        fputs("* film: its current, its charge [C], its voltage q/C(u)\nvfilm film plate 0\nfcharge 0 charge vfilm 1\n", out);
+        parameter(out, "q_start", w->piece->start.charge);
+        fputs("ccharge charge 0 1 ic={q_start}\nbfilm plate 0 v=v(charge)/(", out);
+        dea_expression_text_write(&w->text, w->mobility->network.capacitance);
+        fputs(")\n", out);
+    }
+    fputs("* electrostatic force phi U^2 = U^2/2 dC/du [N], Eq. 21, onto the edge\nbforce 0 edge i=", out);
+    dea_expression_text_factor(&w->text, w->mobility->push);
+    fputs("*v(film)*v(film)\n", out);
+}
+
+static double film_voltage(const writer *w)
+{
+    const dea_mobility_piece *p = w->piece;
+    if (w->dynamics->series > 0.0) {
+        const dea_pool *pool = &w->mobility->network.pool;
+        dea_pool_values(pool, 0.0, p->start.u, w->text.rest);
+        return p->start.charge / w->text.rest[w->mobility->network.capacitance];
+    }
+    return dea_segment_voltage(p->signal, &p->signal->segments[p->segment], p->from);
+}
+
+static void start_node(FILE *out, const char *node, double value)
+{
+    fprintf(out, " v(%s)=", node);
+    dea_netlist_number(out, value);
+}
+
+/* Where Newton starts in the first step: every node at its value. */
+static void write_start(writer *w)
+{
+    FILE *out = w->out;
+    const dea_mobility_state *start = &w->piece->start;
+    const double voltage = film_voltage(w);
+    fputs(".ic", out);
+    start_node(out, "film", voltage);
+    if (w->dynamics->series > 0.0) {
+        start_node(out, "plate", voltage);
+        start_node(out, "charge", start->charge);
+    }
+    start_node(out, "edge", start->v);
+    dea_expression_text_start(&w->text, 0.0, start->u);
+    if (!is_linear(w->mobility)) {
+        start_node(out, "disp", start->u);
+        start_node(out, "stress", w->text.rest[w->mobility->stress]);
+        for (size_t i = 0; i < w->dynamics->branch_count; i++) {
+            char name[24];
+            snprintf(name, sizeof name, "z%zu", i + 1);
+            start_node(out, name, start->z[i]);
+        }
+    }
+    fputc('\n', out);
+}
+
+/* The steps are as long as they may be, the step control of the library is off: its errors would follow no order. */
+static void write_analysis(const writer *w)
+{
+    const dea_mobility_piece *p = w->piece;
+    const dea_mobility_vectors vectors = dea_mobility_vectors_of(w->mobility);
+    const double speed = p->scale / p->step;
+    fputs(".options method=trap trtol=1e30 itl4=50 pivtol=1e-60 reltol=1e-7 vntol=", w->out);
+    dea_netlist_number(w->out, 1e-11 * fmin(speed, p->scale) + 1e-14 * speed);
+    fputs(" abstol=", w->out);
+    dea_netlist_number(w->out, 1e-12 * p->scale);
+    fputs(" chgtol=1e-30\n.save", w->out);
+    for (size_t i = 1; i < vectors.count; i++) {
+        const char *name = vectors.names[i];
+        const char *mark = strchr(name, '#');
+        if (mark) {
+            fprintf(w->out, " i(%.*s)", (int)(mark - name), name);
+        } else {
+            fprintf(w->out, " v(%s)", name);
+        }
+    }
+    fputs("\n.tran ", w->out);
+    dea_netlist_number(w->out, p->step);
+    fputc(' ', w->out);
+    dea_netlist_number(w->out, p->to - p->from);
+    fputs(" 0 ", w->out);
+    dea_netlist_number(w->out, p->step);
+    fputs(" uic\n.end\n", w->out);
+}
+
+/* Every expression that a card writes, as often as it does. */
+static void declare(writer *w)
+{
+    const dea_mobility *m = w->mobility;
+    dea_expression_text_use(&w->text, m->push);
+    if (w->dynamics->series > 0.0) {
+        dea_expression_text_use(&w->text, m->network.capacitance);
+    }
+    if (!is_linear(m)) {
+        dea_expression_text_use(&w->text, m->area);
+        dea_expression_text_use(&w->text, m->stress);
+        if (w->dynamics->branch_count > 0) {
+            dea_expression_text_use(&w->text, m->area);
+        }
+        if (w->dynamics->retardation > 0.0) {
+            dea_expression_text_use(&w->text, m->resistance);
+        }
+    }
+    dea_expression_text_share(&w->text);
+}
+
+static void write_piece(writer *w)
+{
+    fputs("* moving dielectric elastomer actuator: v(edge) = velocity of the disc edge [m/s], current = force [N]\n", w->out);
+    declare(w);
+    dea_expression_text_parameters(&w->text);
+    write_port(w);
+    write_springs(w);
+    if (is_linear(w->mobility)) {
+        write_linear_branches(w);
+    } else {
+        write_stress_branches(w);
+    }
+    write_motion(w);
+    dea_expression_text_nodes(&w->text);
+    write_start(w);
+    write_analysis(w);
+}
+
+/* Closes the stream; on DEA_OK its text belongs to the caller. */
+static dea_status finish(FILE *out, bool ready, char **text, dea_error *error)
+{
+    const bool sound = out && !ferror(out);
+    const bool closed = out && fclose(out) == 0;
+    if (!ready || !sound || !closed) {
+        free(*text);
+        *text = NULL;
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
+    }
+    return DEA_OK;
+}
+
+dea_status dea_mobility_write(const dea_mobility *mobility, const dea_mobility_piece *piece, char **text, dea_error *error)
+{
+    size_t length = 0;
+    *text = NULL;
+    writer w = {.mobility = mobility, .dynamics = mobility->dynamics, .piece = piece, .out = open_memstream(text, &length)};
+    const char *node = is_linear(mobility) ? "({n_spring}*i(lspring))" : "v(disp)";
+    const bool ready = w.out && dea_expression_text_open(&w.text, &mobility->network.pool, w.out, node);
+    if (ready) {
+        write_piece(&w);
+    }
+    dea_expression_text_close(&w.text);
+    return finish(w.out, ready, text, error);
+}
+
+static void add_vector(dea_mobility_vectors *vectors, const char *format, size_t index)
+{
+    char *name = vectors->names[vectors->count++];
+    const char *number = strchr(format, '%');
+    snprintf(name, DEA_MOBILITY_NAME, "%.*s", (int)(number ? number - format : (ptrdiff_t)strlen(format)), format);
+    if (number) {
+        const size_t used = strlen(name);
+        snprintf(name + used, DEA_MOBILITY_NAME - used, "%zu%s", index, number + 1);
+    }
+}
+
+dea_mobility_vectors dea_mobility_vectors_of(const dea_mobility *mobility)
+{
+    const bool linear = is_linear(mobility);
+    dea_mobility_vectors vectors = {.count = 0};
+    add_vector(&vectors, "time", 0);
+    add_vector(&vectors, linear ? "lspring#branch" : "disp", 0);
+    add_vector(&vectors, "edge", 0);
+    for (size_t i = 1; i <= mobility->dynamics->branch_count; i++) {
+        add_vector(&vectors, linear ? "lbranch%#branch" : "z%", i);
+    }
+    if (mobility->dynamics->series > 0.0) {
+        add_vector(&vectors, "charge", 0);
+    }
+    return vectors;
+}
+
+dea_mobility_state dea_mobility_read(const dea_mobility *mobility, const double *const *columns, size_t index)
+{
+    const dea_dynamics *d = mobility->dynamics;
+    const double k = mobility->stiffness;
+    const double first = columns[1][index];
+    dea_mobility_state state = {.u = is_linear(mobility) ? first / k : first, .v = columns[2][index]};
+    for (size_t i = 0; i < d->branch_count; i++) {
+        const double value = columns[3 + i][index];
+        state.z[i] = is_linear(mobility) ? first - value / d->branches[i].share : value;
+    }
+    if (d->series > 0.0) {
+        state.charge = columns[3 + d->branch_count][index];
+    }
+    return state;
+}
+
+/* Transduction T = dF/dU = dq/du = 2 phi U: force from the film's voltage and current from the edge's velocity. */
+static void write_transducer(FILE *out, const dea_dynamics *d, const dea_edge *e, const dea_mobility_bias *bias)
+{
+    fputs("* source of 1 V\n", out);
+    fputs(d->series > 0.0 ? "vsource source 0 dc 0 ac 1\n" : "vsource film 0 dc 0 ac 1\n", out);
+    if (d->series > 0.0) {
+        fputs("* series resistance of source and electrodes [Ohm]\n", out);
+        parameter(out, "r_series", d->series);
+        fputs("rseries source film {r_series}\n", out);
+    }
+    if (d->conductance > 0.0) {
+        fputs("* leakage resistance of the film [Ohm]\n", out);
+        parameter(out, "r_leak", 1.0 / d->conductance);
+        fputs("rleak film 0 {r_leak}\n", out);
+    }
+    fputs("* capacitance of the film at the bias [F]\n", out);
+    parameter(out, "c_film", e->capacitance);
+    fputs("cfilm film 0 {c_film}\n* transduction 2 phi U [N/V] = [A s/m]: force on the edge, current into the film\n", out);
+    parameter(out, "transduction", 2.0 * e->push * bias->voltage);
+    fputs("gforce 0 edge film 0 {transduction}\ngcurrent film 0 edge 0 {transduction}\n", out);
+}
+
+static void write_small_mechanics(FILE *out, dea_dynamics *d, const dea_edge *e, const dea_mobility_bias *bias)
+{
+    const double viscous = e->area * e->stress_slope;
+    fputs("* compliance of the relaxed film at the bias, d(A S - phi U^2)/du inverted [m/N]; its flux is the displacement\n",
+          out);
+    parameter(out, "n_spring", 1.0 / dea_dynamics_stiffness(d, bias->u, bias->voltage, true));
+    fputs("lspring edge 0 {n_spring}\n", out);
+    for (size_t i = 0; i < d->branch_count; i++) {
+        const double stiffness = viscous * d->branches[i].share;
+        const size_t n = i + 1;
+        fprintf(out, "* branch %zu: compliance [m/N] in series with a mechanical resistance [N s/m], its inverse is written\n",
+                n);
+        indexed(out, "n_branch", n, 1.0 / stiffness);
+        indexed(out, "r_branch", n, 1.0 / (stiffness * d->branches[i].tau));
+        fprintf(out, "lbranch%zu edge b%zu {n_branch%zu}\nrbranch%zu b%zu 0 {r_branch%zu}\n", n, n, n, n, n, n);
+    }
+    if (d->retardation > 0.0) {
+        fputs("* kelvin-voigt damper [N s/m]; its inverse is written\n", out);
+        parameter(out, "r_damper", 1.0 / (d->retardation * viscous));
+        fputs("rdamper edge 0 {r_damper}\n", out);
+    }
+    if (d->mass > 0.0) {
+        fputs("* mass that moves with the edge [kg]\n", out);
+        parameter(out, "m_edge", d->mass);
+        fputs("cmass edge 0 {m_edge}\n", out);
+    }
+}
+
+dea_status dea_mobility_write_small(dea_dynamics *dynamics, const dea_mobility_bias *bias, const dea_mobility_band *band,
+                                    char **text, dea_error *error)
+{
+    size_t length = 0;
+    const dea_edge edge = dea_dynamics_edge(dynamics, bias->u);
+    *text = NULL;
+    FILE *out = open_memstream(text, &length);
+    if (!out) {
+        return finish(out, false, text, error);
+    }
+    fputs("* dielectric elastomer actuator about its bias: v(edge) = velocity [m/s], current = force [N]\n", out);
+    write_transducer(out, dynamics, &edge, bias);
+    write_small_mechanics(out, dynamics, &edge, bias);
+    fputs(".options noopac pivtol=1e-60\n.save i(lspring) i(vsource)\n.ac ", out);
+    if (band->points_per_decade > 0) {
+        fprintf(out, "dec %zu ", band->points_per_decade);
+    } else {
+        fputs("lin 1 ", out);
+    }
+    dea_netlist_number(out, band->from);
+    fputc(' ', out);
+    dea_netlist_number(out, band->to);
+    fputs("\n.end\n", out);
+    return finish(out, true, text, error);
+}

@@ -1,0 +1,383 @@
+#include "network/dynamics.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+enum { AREA, STRESS, PUSH, CAPACITANCE, OUTPUTS };
+
+/* Slowest first. */
+static int by_time(const void *a, const void *b)
+{
+    const double x = ((const dea_branch *)a)->tau;
+    const double y = ((const dea_branch *)b)->tau;
+    return (x < y) - (x > y);
+}
+
+/* Shares of the long-term stress, c = g/g_inf; branches of the same time are one. False where no long-term
+ * stress is left. */
+static bool set_branches(const dea_material *material, dea_dynamics *d)
+{
+    double rest = 1.0;
+    for (size_t i = 0; i < material->prony_count; i++) {
+        rest -= material->prony[i].g;
+    }
+    if (!(rest > 0.0)) {
+        return false;
+    }
+    for (size_t i = 0; i < material->prony_count; i++) {
+        d->branches[i] = (dea_branch){material->prony[i].g / rest, material->prony[i].tau};
+        d->total_share += d->branches[i].share;
+    }
+    qsort(d->branches, material->prony_count, sizeof *d->branches, by_time);
+    for (size_t i = 0; i < material->prony_count; i++) {
+        if (d->branch_count > 0 && d->branches[d->branch_count - 1].tau == d->branches[i].tau) {
+            d->branches[d->branch_count - 1].share += d->branches[i].share;
+        } else {
+            d->branches[d->branch_count++] = d->branches[i];
+        }
+    }
+    return true;
+}
+
+static void set_port(const dea_drive *drive, dea_dynamics *d)
+{
+    d->port = !isnan(drive->series_resistance) || !isnan(drive->leakage_resistance);
+    d->series = isnan(drive->series_resistance) ? 0.0 : drive->series_resistance;
+    d->conductance = isnan(drive->leakage_resistance) ? 0.0 : 1.0 / drive->leakage_resistance;
+}
+
+/* The functions of u under 1 V, so that the force is phi. */
+static dea_status compile(dea_network *network, dea_dynamics *d, dea_error *error)
+{
+    dea_pool *pool = &network->pool;
+    const dea_expr softening = dea_expr_mul(pool, dea_network_softening(network), network->edge);
+    const dea_expr refs[OUTPUTS] = {[AREA] = dea_network_area(network),
+                                    [STRESS] = dea_network_stress(network),
+                                    [PUSH] = dea_expr_sub(pool, dea_network_load(network), softening),
+                                    [CAPACITANCE] = network->capacitance};
+    const dea_status status = dea_tape_compile(pool, refs, OUTPUTS, &d->tape, error);
+    return status == DEA_OK ? dea_balance_open(network, &d->balance, error) : status;
+}
+
+/* The film sees its own voltage as symbol 0, whatever the resistances leave of the source's. */
+static dea_status build(const dea_scene *scene, dea_dynamics *d, dea_error *error)
+{
+    dea_scene film = *scene;
+    dea_network network;
+    const dea_axis voltage = {.offset = offsetof(dea_scene, drive.voltage)};
+    film.drive.series_resistance = film.drive.leakage_resistance = (double)NAN;
+    film.drive.voltage = 1.0;
+    dea_film_prepare(&film, &d->point.film);
+    dea_point_place(&film, &d->point);
+    if (!dea_point_valid(&d->point) || !(scene->actuator.electrode_mass >= 0.0 || isnan(scene->actuator.electrode_mass))) {
+        return dea_fail(error, DEA_ERROR_USAGE, "the scene has a number out of its range");
+    }
+    dea_status status = dea_network_build(&film, d->model, &voltage, &network, error);
+    if (status == DEA_OK) {
+        status = compile(&network, d, error);
+    }
+    dea_network_free(&network);
+    return status;
+}
+
+dea_status dea_dynamics_open(const dea_scene *scene, const dea_model *model, dea_dynamics *d, dea_error *error)
+{
+    *d = (dea_dynamics){.model = model,
+                        .radius = NAN,
+                        .focal_length = scene->actuator.focal_length,
+                        .refractive_index = scene->actuator.refractive_index,
+                        .linear = model->linear != NULL};
+    if (!model->dynamic) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s has no time domain", model->name);
+    }
+    const dea_status status = build(scene, d, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    set_port(&scene->drive, d);
+    if (!set_branches(&scene->material, d)) {
+        return dea_fail(error, DEA_ERROR_USAGE, "the shares g of the branches sum to 1 or more");
+    }
+    d->radius = d->point.coverage * d->point.frame_radius;
+    d->mass = dea_point_mass(scene, &d->point);
+    d->retardation = isnan(scene->material.retardation) ? 0.0 : scene->material.retardation;
+    if (!isnan(d->focal_length) && !(d->focal_length * (d->refractive_index - 1.0) >= d->radius)) {
+        return dea_fail(error, DEA_ERROR_USAGE,
+                        "the cap of the lens cannot have so short a focal length: its radius of curvature, "
+                        "%g m, is less than the lens radius, %g m",
+                        d->focal_length * (d->refractive_index - 1.0), d->radius);
+    }
+    return DEA_OK;
+}
+
+void dea_dynamics_close(dea_dynamics *dynamics)
+{
+    dea_tape_free(&dynamics->tape);
+    dea_balance_close(&dynamics->balance);
+}
+
+dea_edge dea_dynamics_edge(dea_dynamics *dynamics, double u)
+{
+    dea_tape *tape = &dynamics->tape;
+    dea_tape_run(tape, 1.0, u);
+    return (dea_edge){
+        .area = dea_tape_value(tape, AREA),
+        .area_slope = dea_tape_slope(tape, AREA),
+        .stress = dea_tape_value(tape, STRESS),
+        .stress_slope = dea_tape_slope(tape, STRESS),
+        .push = dea_tape_value(tape, PUSH),
+        .push_slope = dea_tape_slope(tape, PUSH),
+        .capacitance = dea_tape_value(tape, CAPACITANCE),
+        .capacitance_slope = dea_tape_slope(tape, CAPACITANCE),
+    };
+}
+
+bool dea_dynamics_equilibrium(const dea_dynamics *dynamics, double voltage, double *u)
+{
+    dea_point point = dynamics->point;
+    dea_row row = dea_row_failed();
+    point.voltage = voltage;
+    dynamics->model->solve(&point, 1e-12, &row);
+    *u = row.displacement;
+    return row.state != DEA_STATE_PULL_IN && row.state != DEA_STATE_FAILED;
+}
+
+double dea_dynamics_stiffness(dea_dynamics *dynamics, double u, double voltage, bool relaxed)
+{
+    const dea_edge e = dea_dynamics_edge(dynamics, u);
+    const double held = relaxed ? 0.0 : dynamics->total_share;
+    return e.area * (1.0 + held) * e.stress_slope + e.area_slope * e.stress - e.push_slope * voltage * voltage;
+}
+
+double dea_dynamics_scale(dea_dynamics *dynamics, double voltage)
+{
+    const dea_edge e = dea_dynamics_edge(dynamics, 0.0);
+    const double size = fabs(e.push * voltage * voltage / (e.area * e.stress_slope));
+    const double longest = fmin(dynamics->radius, dynamics->point.frame_radius - dynamics->radius);
+    return size > 0.0 && size < longest ? size : longest;
+}
+
+/* Sum of c_i (S - z_i), and of what these lose a second. */
+static double branch_stress(const dea_dynamics *d, double stress, const double *z)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < d->branch_count; i++) {
+        sum += d->branches[i].share * (stress - z[i]);
+    }
+    return sum;
+}
+
+static double branch_loss(const dea_dynamics *d, double stress, const double *z)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < d->branch_count; i++) {
+        sum += d->branches[i].share * (stress - z[i]) / d->branches[i].tau;
+    }
+    return sum;
+}
+
+/* Net force without mass and damper, A [S + sum c_i (S - z_i)] - phi U^2, and its slope over u. */
+static double imbalance(dea_dynamics *d, double u, double voltage, const double *z, double *slope)
+{
+    const dea_edge e = dea_dynamics_edge(d, u);
+    const double stress = e.stress + branch_stress(d, e.stress, z);
+    *slope = e.area_slope * stress + e.area * (1.0 + d->total_share) * e.stress_slope - e.push_slope * voltage * voltage;
+    return e.area * stress - e.push * voltage * voltage;
+}
+
+/* Newton on imbalance = wanted from *u on, over stable states only. */
+static bool newton(dea_dynamics *d, double voltage, const double *z, double wanted, double *u)
+{
+    const double longest = fmin(d->radius, d->point.frame_radius - d->radius);
+    double last = INFINITY;
+    for (int i = 0; i < 30; i++) {
+        double slope;
+        const double excess = imbalance(d, *u, voltage, z, &slope) - wanted;
+        if (!(slope > 0.0)) {
+            return false;
+        }
+        const double step = excess / slope;
+        if (!(fabs(step) <= 0.1 * longest)) {
+            return false;
+        }
+        *u -= step;
+        if (fabs(step) <= 4e-16 * fabs(*u) || (fabs(step) < 1e-10 * longest && fabs(step) >= 0.5 * last)) {
+            return true;
+        }
+        last = fabs(step);
+    }
+    return last <= 1e-12 * longest;
+}
+
+bool dea_dynamics_follow(dea_dynamics *dynamics, double voltage, const double *z, double *u)
+{
+    double slope;
+    const double start = imbalance(dynamics, *u, voltage, z, &slope);
+    double at = 0.0; /* share of the imbalance that is taken off */
+    double step = 1.0;
+    while (at < 1.0) {
+        const double next = fmin(1.0, at + step);
+        double guess = *u;
+        if (newton(dynamics, voltage, z, (1.0 - next) * start, &guess)) {
+            *u = guess;
+            at = next;
+            step *= 2.0;
+        } else {
+            step *= 0.25;
+            if (step < 1e-9) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+double dea_dynamics_velocity(dea_dynamics *dynamics, double u, double voltage, double slope, const double *z)
+{
+    double stiffness;
+    const double force = imbalance(dynamics, u, voltage, z, &stiffness);
+    const dea_edge e = dea_dynamics_edge(dynamics, u);
+    if (dynamics->retardation > 0.0) {
+        return -force / (e.area * dynamics->retardation * e.stress_slope);
+    }
+    return (2.0 * e.push * voltage * slope + e.area * branch_loss(dynamics, e.stress, z)) / stiffness;
+}
+
+dea_sample dea_sample_refused(double time, double voltage, dea_state state)
+{
+    const double none = (double)NAN;
+    return (dea_sample){time, voltage, none, none, none, none, none, none, none, state};
+}
+
+/* Plano-convex cap of a liquid of fixed volume V = pi h (3 a^2 + h^2)/6 over the aperture radius a:
+ * h = 2 a sinh(asinh(3 V/(pi a^3))/3), f = (a^2 + h^2)/(2 h (n - 1)). */
+static double focal_length(const dea_dynamics *d, double strain)
+{
+    const double curvature = d->focal_length * (d->refractive_index - 1.0); /* its radius at rest */
+    const double a0 = d->radius;
+    const double h0 = a0 * a0 / (curvature + sqrt((curvature - a0) * (curvature + a0)));
+    const double volume = 0.5 * h0 * (3.0 * a0 * a0 + h0 * h0); /* 3 V/pi */
+    const double a = a0 * (1.0 + strain);
+    const double h = 2.0 * a * sinh(asinh(volume / (a * a * a)) / 3.0);
+    return (a * a + h * h) / (2.0 * h * (d->refractive_index - 1.0));
+}
+
+/* Current of the source: through R_s, or d(C U)/dt and the leakage. */
+static double current(const dea_dynamics *d, const dea_edge *e, const dea_moment *m)
+{
+    if (d->series > 0.0) {
+        return (m->source - m->voltage) / d->series;
+    }
+    return e->capacitance * m->slope + e->capacitance_slope * m->v * m->voltage + m->voltage * d->conductance;
+}
+
+bool dea_dynamics_sample(dea_dynamics *dynamics, const dea_moment *moment, dea_sample *sample)
+{
+    dea_row row = dea_row_failed();
+    const bool inside = moment->u > -dynamics->radius && moment->u < dynamics->point.frame_radius - dynamics->radius;
+    if (inside) {
+        dea_balance_fill(&dynamics->balance, moment->voltage, moment->u, &row);
+    }
+    if (!inside || row.state == DEA_STATE_FAILED || !isfinite(moment->v)) {
+        *sample = dea_sample_refused(moment->time, moment->source, DEA_STATE_PULL_IN);
+        return false;
+    }
+    *sample = dea_sample_refused(moment->time, moment->source, row.state);
+    sample->displacement = row.displacement;
+    sample->strain = row.strain;
+    sample->velocity = moment->v;
+    sample->force = row.force;
+    if (dynamics->port) {
+        const dea_edge e = dea_dynamics_edge(dynamics, moment->u);
+        sample->current = current(dynamics, &e, moment);
+        sample->charge = e.capacitance * moment->voltage;
+    }
+    if (!isnan(dynamics->focal_length)) {
+        sample->focal_length = focal_length(dynamics, row.strain);
+    }
+    return true;
+}
+
+void dea_audit_add(dea_audit *audit, dea_dynamics *dynamics, const dea_moment *m, const double *z, double weight)
+{
+    const dea_edge e = dea_dynamics_edge(dynamics, m->u);
+    const double square = m->voltage * m->voltage;
+    const double leak = square * dynamics->conductance;
+    const double drop = m->source - m->voltage;
+    const bool series = dynamics->series > 0.0;
+    const double work = series ? m->source * drop / dynamics->series : e.push * square * m->v + leak;
+    const double ohmic = leak + (series ? drop * drop / dynamics->series : 0.0);
+    audit->work += weight * work;
+    audit->dissipated += weight * (ohmic + e.area * dynamics->retardation * e.stress_slope * m->v * m->v);
+    audit->branch += weight * e.area * branch_stress(dynamics, e.stress, z) * m->v;
+    const double kinetic = 0.5 * dynamics->mass * m->v * m->v;
+    audit->largest = fmax(fmax(audit->largest, kinetic), fmax(fabs(audit->work), fabs(audit->dissipated)));
+}
+
+/* Ten-point Gauss-Legendre rule on [0, 1], its lower half. */
+static const double places[5] = {0.013046735741414139961, 0.067468316655507744634, 0.160295215850487796883,
+                                 0.283302302935376404600, 0.425562830509184394558};
+static const double weights[5] = {0.033335672154344068797, 0.074725674575290296573, 0.109543181257991021998,
+                                  0.134633359654998177546, 0.147762112357376435087};
+
+enum { PANELS = 16 };
+
+/* int A S du and, where z is given, int A sum c_i (S - z_i) du instead, from u to @p to. */
+static double force_integral(dea_dynamics *d, double u, double to, const double *z)
+{
+    double sum = 0.0;
+    for (int panel = 0; panel < PANELS; panel++) {
+        for (int i = 0; i < 10; i++) {
+            const double place = i < 5 ? places[i] : 1.0 - places[9 - i];
+            const dea_edge e = dea_dynamics_edge(d, u + (to - u) * (((double)panel + place) / PANELS));
+            sum += weights[i < 5 ? i : 9 - i] * e.area * (z ? branch_stress(d, e.stress, z) : e.stress);
+        }
+    }
+    return sum * (to - u) / PANELS;
+}
+
+void dea_audit_jump(dea_audit *audit, dea_dynamics *dynamics, double u, double to, const double *z)
+{
+    const double branch = dynamics->branch_count > 0 ? force_integral(dynamics, u, to, z) : 0.0;
+    audit->branch += branch;
+    audit->work += branch + force_integral(dynamics, u, to, NULL);
+    audit->largest = fmax(audit->largest, fabs(audit->work));
+}
+
+/* Energy of the branches' springs: (1/2) c_i (A/S') (S - z_i)^2. */
+static double branch_energy(dea_dynamics *d, double u, const double *z)
+{
+    const dea_edge e = dea_dynamics_edge(d, u);
+    double sum = 0.0;
+    for (size_t i = 0; i < d->branch_count; i++) {
+        const double stretch = e.stress - z[i];
+        sum += 0.5 * d->branches[i].share * e.area / e.stress_slope * stretch * stretch;
+    }
+    return sum;
+}
+
+static double electric_energy(dea_dynamics *d, const dea_moment *m)
+{
+    return 0.5 * dea_dynamics_edge(d, m->u).capacitance * m->voltage * m->voltage;
+}
+
+void dea_audit_close(const dea_audit *audit, dea_dynamics *dynamics, const dea_moment *first, const double *first_z,
+                     const dea_moment *last, const double *last_z, dea_summary *summary)
+{
+    const double springs = branch_energy(dynamics, last->u, last_z) - branch_energy(dynamics, first->u, first_z);
+    const double before = electric_energy(dynamics, first);
+    const double after = electric_energy(dynamics, last);
+    summary->electric = after - before;
+    summary->elastic = force_integral(dynamics, first->u, last->u, NULL) + springs;
+    summary->kinetic = 0.5 * dynamics->mass * (last->v * last->v - first->v * first->v);
+    summary->work = audit->work + (dynamics->series > 0.0 ? 0.0 : summary->electric);
+    summary->dissipated = audit->dissipated + audit->branch - springs;
+    if (dynamics->mass == 0.0) {
+        summary->kinetic = 0.0;
+    }
+    const double spent = summary->electric + summary->elastic + summary->kinetic + summary->dissipated;
+    double largest = fmax(audit->largest, fabs(audit->branch));
+    largest = fmax(largest, fmax(fabs(summary->elastic), fmax(before, after)));
+    summary->residual = largest > 0.0 ? fabs(summary->work - spent) / largest : 0.0;
+}

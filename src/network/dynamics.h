@@ -1,0 +1,93 @@
+/* The moving network of one run: what every engine in the time and frequency domain, and every row of them, is made from.
+ *
+ *   m u'' + A(u) [ S(u) + tau_KV S'(u) u' + sum c_i (S(u) - z_i) ] = phi(u) U^2,    z_i' = (S(u) - z_i)/tau_i
+ *
+ * with the film voltage U, the long-term stress S on the area A (A = 1 and S = K u where the springs are linear), c_i =
+ * g_i/g_inf, phi = (1/2) dC/du. Relaxed, z_i = S. With an electrical port: U_s = U + R_s (d(C U)/dt + U/R_p). */
+#ifndef DEA_DYNAMICS_H
+#define DEA_DYNAMICS_H
+
+#include "network/balance.h"
+
+typedef struct dea_branch {
+    double share; /* c = g/g_inf, of the long-term stress [1] */
+    double tau;   /* [s] */
+} dea_branch;
+
+typedef struct dea_dynamics {
+    dea_point point;
+    const dea_model *model;
+    double mass;                        /* [kg], 0: none */
+    double retardation;                 /* tau_KV [s], 0: none */
+    dea_branch branches[DEA_PRONY_MAX]; /* slowest first, those of equal time drawn together */
+    size_t branch_count;
+    double total_share;                    /* sum of c_i */
+    bool port;                             /* a resistance is given: current and charge are wanted */
+    double series;                         /* R_s [Ohm], 0: the film sees the source */
+    double conductance;                    /* 1/R_p [S], 0: no leakage */
+    double radius;                         /* r_a [m] */
+    double focal_length, refractive_index; /* NAN: no optics */
+    bool linear;                           /* A and dS/du are constant */
+    dea_tape tape;                         /* owned: A, S, phi, C */
+    dea_balance balance;                   /* owned: rows */
+} dea_dynamics;
+
+/* The functions of u and their slopes. */
+typedef struct dea_edge {
+    double area, area_slope;               /* A [m^2 or 1] */
+    double stress, stress_slope;           /* S [Pa or N] */
+    double push, push_slope;               /* phi [N/V^2] */
+    double capacitance, capacitance_slope; /* C [F]; its slope is 2 phi */
+} dea_edge;
+
+/* Compiles the network of a scene whose axes are at their place; the caller ends it with dea_dynamics_close(), also after a
+ * failure. DEA_ERROR_UNSUPPORTED for a model that is not dynamic, DEA_ERROR_USAGE for numbers out of range, DEA_ERROR_MEMORY. */
+dea_status dea_dynamics_open(const dea_scene *scene, const dea_model *model, dea_dynamics *dynamics, dea_error *error);
+void dea_dynamics_close(dea_dynamics *dynamics);
+
+dea_edge dea_dynamics_edge(dea_dynamics *dynamics, double u);
+/* Static displacement under film voltage U from the model's own equation; false where there is none. */
+bool dea_dynamics_equilibrium(const dea_dynamics *dynamics, double voltage, double *u);
+/* Net stiffness of the relaxed film dR/du - dF/du at u under film voltage U [N/m]; relaxed false: with the branches held. */
+double dea_dynamics_stiffness(dea_dynamics *dynamics, double u, double voltage, bool relaxed);
+/* A displacement that is large for this film under that voltage: its size for tolerances [m], > 0. */
+double dea_dynamics_scale(dea_dynamics *dynamics, double voltage);
+
+/* Without mass and damper the displacement follows the rest: solves the edge equation for u, from @p u on; false without a
+ * solution connected to it (pull-in). */
+bool dea_dynamics_follow(dea_dynamics *dynamics, double voltage, const double *z, double *u);
+/* Velocity that goes with u, the film voltage, its slope and z where there is no mass (with mass it is a state) [m/s]. */
+double dea_dynamics_velocity(dea_dynamics *dynamics, double u, double voltage, double slope, const double *z);
+
+/* State of the moving network at one time. */
+typedef struct dea_moment {
+    double time;
+    double source;  /* source voltage [V] */
+    double voltage; /* film voltage [V] */
+    double slope;   /* of the film voltage [V/s], used where there is no series resistance */
+    double u, v;    /* [m], [m/s] */
+} dea_moment;
+
+/* Fills a row; its state says slack or breakdown. A displacement past what the film can do is pull_in: false, as for all that
+ * follows. */
+bool dea_dynamics_sample(dea_dynamics *dynamics, const dea_moment *moment, dea_sample *sample);
+/* A row without numbers but time and voltage. */
+dea_sample dea_sample_refused(double time, double voltage, dea_state state);
+
+/* Energy balance of a run, from the states between its samples. */
+typedef struct dea_audit {
+    double work;       /* put in by the source; without series resistance what it does mechanically and to the leakage [J] */
+    double dissipated; /* in resistances and dampers [J] */
+    double branch;     /* work done on the branches [J] */
+    double largest;    /* of the energies seen [J] */
+} dea_audit;
+
+/* Adds @p weight [s] times the powers at a moment; z: states of the branches. */
+void dea_audit_add(dea_audit *audit, dea_dynamics *dynamics, const dea_moment *moment, const double *z, double weight);
+/* Adds a jump of the displacement from u to @p to at constant z (no mass, no damper). */
+void dea_audit_jump(dea_audit *audit, dea_dynamics *dynamics, double u, double to, const double *z);
+/* Energies between a first and a last moment, into the summary. */
+void dea_audit_close(const dea_audit *audit, dea_dynamics *dynamics, const dea_moment *first, const double *first_z,
+                     const dea_moment *last, const double *last_z, dea_summary *summary);
+
+#endif

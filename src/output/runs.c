@@ -1,0 +1,164 @@
+#include "output/runs.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SPOT_PLACES = 20 };
+
+static double value_at(const dea_runs *runs, const void *point, size_t row, size_t column)
+{
+    double value;
+    memcpy(&value, (const char *)point + row * runs->layout.row_size + runs->layout.columns[column].offset, sizeof value);
+    return value;
+}
+
+/* Columns that a picture of the study shows: those that the layout has, the first in the largest panel. */
+static void quantities_choose(const dea_scene *scene, dea_runs *runs)
+{
+    static const size_t transient[] = {offsetof(dea_sample, strain), offsetof(dea_sample, voltage), offsetof(dea_sample, current),
+                                       offsetof(dea_sample, focal_length)};
+    static const size_t ac[] = {offsetof(dea_response, displacement), offsetof(dea_response, displacement_phase),
+                                offsetof(dea_response, impedance), offsetof(dea_response, impedance_phase)};
+    const size_t *offsets = scene->study == DEA_STUDY_AC ? ac : transient;
+    for (size_t i = 0; i < DEA_RUNS_QUANTITIES; i++) {
+        for (size_t k = 0; k < runs->layout.column_count; k++) {
+            if (runs->layout.columns[k].offset == offsets[i]) {
+                runs->quantities[runs->quantity_count++] = k;
+            }
+        }
+    }
+}
+
+dea_status dea_runs_open(const dea_scene *scene, dea_runs *runs, dea_error *error)
+{
+    *runs = (dea_runs){.layout = dea_layout_of(scene), .count = dea_scene_point_count(scene) * scene->model_count};
+    if (runs->count > DEA_CURVES_MAX) {
+        return dea_fail(error, DEA_ERROR_USAGE, "%zu runs are too many for one picture (at most %d): give the axes fewer values",
+                        runs->count, DEA_CURVES_MAX);
+    }
+    if (runs->layout.rows < 2) {
+        return dea_fail(error, DEA_ERROR_USAGE, "nothing to draw: each run is a single point");
+    }
+    quantities_choose(scene, runs);
+    const size_t most = runs->layout.rows < DEA_RUNS_POINTS ? runs->layout.rows : DEA_RUNS_POINTS;
+    runs->runs = calloc(runs->count, sizeof *runs->runs);
+    runs->room = malloc(runs->count * runs->quantity_count * 2 * most * sizeof *runs->room);
+    if (!runs->runs || !runs->room) {
+        dea_runs_close(runs);
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+    }
+    double *next = runs->room;
+    for (size_t i = 0; i < runs->count * runs->quantity_count; i++, next += 2 * most) {
+        runs->runs[i / runs->quantity_count].traces[i % runs->quantity_count] = (dea_trace){next, next + most, 0};
+    }
+    return DEA_OK;
+}
+
+static void trace_add(dea_trace *trace, double x, double y)
+{
+    trace->x[trace->count] = x;
+    trace->y[trace->count++] = y;
+}
+
+/* Keeps a quantity. Angles follow their predecessor: whole turns are added where they leap by more than half a turn, which the
+ * answer of a film without losses does at its resonance. */
+static void trace_take(const dea_runs *runs, dea_trace *trace, const void *point, size_t column, double turn)
+{
+    const size_t rows = runs->layout.rows;
+    const size_t stride = rows <= DEA_RUNS_POINTS ? 1 : (2 * rows - 1) / DEA_RUNS_POINTS + 1;
+    double before = (double)NAN;
+    trace->count = 0;
+    for (size_t first = 0; first < rows; first += stride) {
+        double x[2] = {value_at(runs, point, first, 0), 0.0}, y[2] = {(double)NAN, (double)NAN}; /* least, largest */
+        for (size_t row = first; row < first + stride && row < rows; row++) {
+            double value = value_at(runs, point, row, column);
+            value += turn > 0.0 && fabs(value - before) > 0.51 * turn ? turn * round((before - value) / turn) : 0.0;
+            before = isfinite(value) ? value : before;
+            for (int end = 0; end < 2 && isfinite(value); end++) {
+                if (!isfinite(y[end]) || (end == 0 ? value < y[end] : value > y[end])) {
+                    x[end] = value_at(runs, point, row, 0);
+                    y[end] = value;
+                }
+            }
+        }
+        const int early = isfinite(y[0]) && x[1] < x[0] ? 1 : 0;
+        trace_add(trace, x[early], y[early]);
+        if (stride > 1 && isfinite(y[0]) && x[0] != x[1]) {
+            trace_add(trace, x[1 - early], y[1 - early]);
+        }
+    }
+}
+
+static void spot_add(const dea_runs *runs, dea_run *run, const void *point, size_t row, dea_state state)
+{
+    for (size_t mark = 0; mark < DEA_MARKS; mark++) {
+        if (dea_marks[mark].state == state && run->spot_count < DEA_SPOTS) {
+            run->spots[run->spot_count++] =
+                (dea_spot){value_at(runs, point, row, 0), value_at(runs, point, row, runs->quantities[0]), mark};
+        }
+    }
+}
+
+/* A limit is marked where it is passed and every so often from there on, pull-in where the curve ends. */
+static void spots_take(const dea_runs *runs, dea_run *run, const void *point)
+{
+    const dea_layout *layout = &runs->layout;
+    const size_t step = layout->rows / SPOT_PLACES + 1;
+    dea_state before = DEA_STATE_OK;
+    size_t since = 0; /* row where the state began */
+    run->spot_count = 0;
+    for (size_t row = 0; row < layout->rows; row++) {
+        const dea_state state = dea_layout_state(layout, (const char *)point + row * layout->row_size);
+        since = state != before ? row : since;
+        if (state == DEA_STATE_PULL_IN) {
+            if (before != state && row > 0) {
+                spot_add(runs, run, point, row - 1, state);
+            }
+        } else if (state != before || (row - since) % step == 0) {
+            spot_add(runs, run, point, row, state);
+        }
+        before = state;
+    }
+}
+
+void dea_runs_take(dea_runs *runs, size_t number, const void *point)
+{
+    dea_run *run = &runs->runs[number];
+    for (size_t i = 0; i < runs->quantity_count; i++) {
+        const size_t column = runs->quantities[i];
+        const bool angle = strcmp(runs->layout.columns[column].unit, "degree") == 0;
+        trace_take(runs, &run->traces[i], point, column, angle ? 360.0 : 0.0);
+    }
+    spots_take(runs, run, point);
+}
+
+size_t dea_runs_find(const dea_runs *runs, size_t offset)
+{
+    for (size_t i = 0; i < runs->quantity_count; i++) {
+        if (runs->layout.columns[runs->quantities[i]].offset == offset) {
+            return i;
+        }
+    }
+    return SIZE_MAX;
+}
+
+double dea_runs_largest(const dea_runs *runs, size_t quantity)
+{
+    double largest = 0.0;
+    for (size_t i = 0; i < runs->count; i++) {
+        const dea_trace *trace = &runs->runs[i].traces[quantity];
+        for (size_t k = 0; k < trace->count; k++) {
+            largest = isfinite(trace->y[k]) ? fmax(largest, fabs(trace->y[k])) : largest;
+        }
+    }
+    return largest;
+}
+
+void dea_runs_close(dea_runs *runs)
+{
+    free(runs->runs);
+    free(runs->room);
+    *runs = (dea_runs){.count = 0};
+}

@@ -1,0 +1,260 @@
+#include "program/findings.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "deaspice/model.h"
+#include "output/label.h"
+#include "support/number.h"
+
+static const double resolved = 0.1;    /* periods of an oscillation from one sample to the next that still show it */
+static const double negligible = 1e-5; /* overshoot: below it is what an engine's error makes of none */
+
+static void print_number(FILE *stream, double value)
+{
+    char text[DEA_NUMBER_LENGTH + 1];
+    text[dea_number_write(text, value)] = '\0';
+    fputs(text, stream);
+}
+
+/* "1.23 ms" */
+static void print_quantity(double value, const char *unit)
+{
+    char text[DEA_NUMBER_LENGTH];
+    const dea_scale scale = dea_scale_choose(fabs(value), unit);
+    fprintf(stderr, "%s %s", dea_number_text(text, value * scale.factor, 4), scale.unit);
+}
+
+dea_findings dea_findings_begin(const dea_scene *scene, FILE *averages)
+{
+    const double none = (double)NAN;
+    const bool averaged = scene->study == DEA_STUDY_TRANSIENT && scene->transient.average_count > 0;
+    dea_findings findings = {.scene = scene,
+                             .layout = dea_layout_of(scene),
+                             .averages = averaged ? averages : NULL,
+                             .error = none,
+                             .residual = none,
+                             .pull_in = none,
+                             .resonance = {none, none}};
+    if (findings.averages) {
+        fputs(scene->model_count > 1 ? "model," : "", averages);
+        for (size_t i = 0; i < scene->axis_count; i++) {
+            fprintf(averages, "%s,", scene->axes[i].column);
+        }
+        fputs("from_s,to_s,strain,displacement_m\n", averages);
+    }
+    return findings;
+}
+
+/* Model and axes of run number @p number: last axis fastest, models slowest. */
+static void print_place(FILE *stream, const dea_scene *scene, size_t number)
+{
+    size_t step = dea_scene_point_count(scene);
+    if (scene->model_count > 1) {
+        fprintf(stream, "%s,", scene->models[number / step]->name);
+    }
+    for (size_t i = 0; i < scene->axis_count; i++) {
+        step /= scene->axes[i].count;
+        print_number(stream, scene->axes[i].values[number / step % scene->axes[i].count]);
+        fputc(',', stream);
+    }
+}
+
+static void print_averages(const dea_findings *findings, size_t number, const dea_sample *samples)
+{
+    const dea_transient *transient = &findings->scene->transient;
+    for (size_t i = 0; findings->averages && i < transient->average_count; i++) {
+        const dea_window window = transient->averages[i];
+        const dea_average mean = dea_measure_average(samples, findings->layout.rows, window);
+        const double numbers[] = {window.from, window.to, mean.strain, mean.displacement};
+        print_place(findings->averages, findings->scene, number);
+        for (size_t k = 0; k < 4; k++) {
+            print_number(findings->averages, numbers[k]);
+            fputc(k < 3 ? ',' : '\n', findings->averages);
+        }
+    }
+}
+
+/* The scene of run number @p number; its lists still belong to @p scene. */
+static dea_scene scene_of_run(const dea_scene *scene, size_t number)
+{
+    dea_scene placed = *scene;
+    size_t rest = number;
+    for (size_t i = scene->axis_count; i-- > 0; rest /= scene->axes[i].count) {
+        const double value = scene->axes[i].values[rest % scene->axes[i].count];
+        memcpy((char *)&placed + scene->axes[i].offset, &value, sizeof value);
+    }
+    return placed;
+}
+
+static void take_transient(dea_findings *findings, size_t number, const void *point)
+{
+    const dea_layout *layout = &findings->layout;
+    const dea_sample *samples = point;
+    memcpy(&findings->summary, (const char *)point + layout->rows * layout->row_size, sizeof findings->summary);
+    findings->error = fmax(findings->error, findings->summary.error);
+    findings->residual = fmax(findings->residual, findings->summary.residual);
+    const dea_scene placed = scene_of_run(findings->scene, number);
+    findings->edge_count = dea_measure_edges(&placed, samples, layout->rows, findings->edges);
+    for (size_t i = 0; i < layout->rows; i++) {
+        if (samples[i].state == DEA_STATE_PULL_IN) {
+            findings->pulled++;
+            findings->pull_in = fmin(findings->pull_in, samples[i].time);
+            break;
+        }
+    }
+    print_averages(findings, number, samples);
+}
+
+static void take_response(dea_findings *findings, const void *point)
+{
+    findings->band = dea_measure_band(point, findings->layout.rows);
+    findings->resonance[0] = fmin(findings->resonance[0], findings->band.resonance);
+    findings->resonance[1] = fmax(findings->resonance[1], findings->band.resonance);
+}
+
+void dea_findings_take(dea_findings *findings, size_t first, const void *points, size_t count)
+{
+    const dea_layout *layout = &findings->layout;
+    for (size_t i = 0; i < count; i++) {
+        const char *point = (const char *)points + i * layout->point_size;
+        for (size_t k = 0; k < layout->rows; k++) {
+            findings->states[dea_layout_state(layout, point + k * layout->row_size)]++;
+        }
+        if (findings->scene->study == DEA_STUDY_TRANSIENT) {
+            take_transient(findings, first + i, point);
+        } else if (findings->scene->study == DEA_STUDY_AC) {
+            take_response(findings, point);
+        }
+    }
+    findings->points += count;
+}
+
+static void print_states(const dea_findings *findings)
+{
+    const char *before = ": ";
+    for (size_t i = 0; i < DEA_STATE_COUNT; i++) {
+        if (findings->states[i] > 0) {
+            fprintf(stderr, "%s%zu %s", before, findings->states[i], dea_state_name((dea_state)i));
+            before = ", ";
+        }
+    }
+    fputc('\n', stderr);
+}
+
+/* "12 points", "2501 samples", "6 runs of 2501 samples" */
+static void print_amount(const dea_findings *findings)
+{
+    static const char *const rows[] = {
+        [DEA_STUDY_SWEEP] = "point", [DEA_STUDY_TRANSIENT] = "sample", [DEA_STUDY_AC] = "frequenc"};
+    const bool sweep = findings->scene->study == DEA_STUDY_SWEEP, ac = findings->scene->study == DEA_STUDY_AC;
+    const size_t count = sweep ? findings->points : findings->layout.rows;
+    if (!sweep && findings->points != 1) {
+        fprintf(stderr, "%zu runs of ", findings->points);
+    }
+    fprintf(stderr, "%zu %s%s", count, rows[findings->scene->study], ac ? count == 1 ? "y" : "ies" : count == 1 ? "" : "s");
+}
+
+/* A time that the samples may be too coarse for. */
+static void print_time(const dea_findings *findings, double time)
+{
+    const bool unseen = time < findings->scene->transient.every;
+    fputs(unseen ? "less than " : "", stderr);
+    print_quantity(unseen ? findings->scene->transient.every : time, "s");
+}
+
+static void print_edge(const dea_findings *findings, const dea_edge_answer *edge)
+{
+    char text[DEA_NUMBER_LENGTH];
+    if (isnan(edge->overshoot)) {
+        return;
+    }
+    fprintf(stderr, "%s at ", edge->rising ? "switched on" : "switched off");
+    print_quantity(edge->time, "s");
+    fputs(": 10-90 % in ", stderr);
+    print_time(findings, edge->rise_time);
+    fputs(", settled to 2 % in ", stderr);
+    print_time(findings, edge->settling_time);
+    if (edge->overshoot < negligible) {
+        fputs(", no overshoot\n", stderr);
+        return;
+    }
+    fprintf(stderr, ", overshoot %s %%\n", dea_number_text(text, 100.0 * edge->overshoot, 3));
+}
+
+/* How the film answered a step, where the samples can tell. */
+static void print_edges(const dea_findings *findings)
+{
+    const double every = findings->scene->transient.every, resonance = findings->summary.resonance;
+    if (findings->edge_count > 0 && every * resonance > resolved) {
+        fputs("no rise and settling times: samples every ", stderr);
+        print_quantity(every, "s");
+        fputs(" do not show the first resonance, those every ", stderr);
+        print_quantity(resolved / resonance, "s");
+        fputs(" would\n", stderr);
+        return;
+    }
+    for (size_t i = 0; i < findings->edge_count; i++) {
+        print_edge(findings, &findings->edges[i]);
+    }
+}
+
+static void print_transients(const dea_findings *findings)
+{
+    const char *worst = findings->points > 1 ? "worst " : "";
+    if (!isnan(findings->error)) {
+        fprintf(stderr, "%sestimated error %.2g of the largest displacement", worst, findings->error);
+        fputs(isnan(findings->residual) ? "\n" : ", ", stderr);
+    }
+    if (!isnan(findings->residual)) {
+        fprintf(stderr, "%senergy balance off by %.2g\n", worst, findings->residual);
+    }
+    if (findings->points == 1 && !isnan(findings->summary.resonance)) {
+        fputs("first resonance ", stderr);
+        print_quantity(findings->summary.resonance, "Hz");
+        fputc('\n', stderr);
+    }
+    if (findings->points == 1) {
+        print_edges(findings);
+    }
+    if (findings->pulled > 0) {
+        fputs("pull_in from t = ", stderr);
+        print_quantity(findings->pull_in, "s");
+        fputs(" on", stderr);
+        if (findings->points > 1) {
+            fprintf(stderr, " at the earliest, in %zu of %zu runs", findings->pulled, findings->points);
+        }
+        fputc('\n', stderr);
+    }
+}
+
+static void print_responses(const dea_findings *findings)
+{
+    const double *resonance = findings->resonance;
+    if (!isnan(resonance[0])) {
+        fputs(findings->points > 1 ? "resonances from " : "resonance ", stderr);
+        print_quantity(resonance[0], "Hz");
+        if (findings->points > 1) {
+            fputs(" to ", stderr);
+            print_quantity(resonance[1], "Hz");
+        }
+        fputc('\n', stderr);
+    }
+    if (findings->points == 1 && !isnan(findings->band.bandwidth)) {
+        fputs("bandwidth (-3 dB) ", stderr);
+        print_quantity(findings->band.bandwidth, "Hz");
+        fputc('\n', stderr);
+    }
+}
+
+void dea_findings_print(const dea_findings *findings, const dea_engine *engine, double seconds)
+{
+    print_amount(findings);
+    fprintf(stderr, " in %.3g s (%s)", seconds, engine->name);
+    print_states(findings);
+    if (findings->scene->study == DEA_STUDY_TRANSIENT) {
+        print_transients(findings);
+    } else if (findings->scene->study == DEA_STUDY_AC) {
+        print_responses(findings);
+    }
+}

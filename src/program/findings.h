@@ -1,0 +1,35 @@
+/** @file findings.h
+ * What a run tells besides its result: averages as they come, and a summary at its end.
+ */
+#ifndef DEA_PROGRAM_FINDINGS_H
+#define DEA_PROGRAM_FINDINGS_H
+
+#include <stdio.h>
+
+#include "deaspice/engine.h"
+#include "deaspice/measures.h"
+
+typedef struct dea_findings {
+    const dea_scene *scene;
+    dea_layout layout;
+    FILE *averages;                 /**< where they are printed, NULL: nowhere */
+    size_t points;                  /**< taken so far */
+    size_t states[DEA_STATE_COUNT]; /**< rows in each state */
+    double error, residual;         /**< the worst of all transients, NAN: none known */
+    size_t pulled;                  /**< runs that pull in */
+    double pull_in;                 /**< earliest time of that [s] */
+    double resonance[2];            /**< lowest and highest of all frequency responses [Hz], NAN: none */
+    dea_summary summary;            /**< of the last transient, as the edges */
+    dea_edge_answer edges[DEA_EDGES];
+    size_t edge_count;
+    dea_band band; /**< of the last frequency response */
+} dea_findings;
+
+/** Findings of a study that has not begun; prints the head of the averages. The scene and the stream must outlive them. */
+dea_findings dea_findings_begin(const dea_scene *scene, FILE *averages);
+/** Takes points as a run hands them over; prints their averages. */
+void dea_findings_take(dea_findings *findings, size_t first, const void *points, size_t count);
+/** Prints the summary of the run on standard error. */
+void dea_findings_print(const dea_findings *findings, const dea_engine *engine, double seconds);
+
+#endif

@@ -1,7 +1,7 @@
 /* One run of a transient at one tolerance. Every segment of the voltage is a problem of its own, solved
  *
  *   - by IDA (variable order BDF) in general, in the turning frame of a ring where the network is linear;
- *   - by an explicit Runge-Kutta method of order 8 (ARKODE) while a light ring lives in a film that is not linear, or under a
+ *   - by an explicit Runge-Kutta method (ARKODE) while a light ring lives in a film that is not linear, or under a
  *     voltage that varies: BDF would crawl through its periods. */
 #ifndef DEA_IDA_FLIGHT_H
 #define DEA_IDA_FLIGHT_H

@@ -4,6 +4,11 @@
 
 #include "engine/ida/flight.h"
 
+/* Shares of the stiffness at rest: next to a fold, where steps no longer tell this side from the other, and so near to one that
+ * it is the reason why IDA gave up. */
+static const double folded = 1e-4;
+static const double soft = 0.02;
+
 /* Failures of one step after which a run is given up: the first step of a segment can be far too long. */
 enum { MOST_FAILS = 40 };
 
@@ -222,7 +227,7 @@ dea_state dea_flight_implicit(dea_flight *flight, double from)
         const double before = time;
         code = IDASolve(m->ida, width, &time, m->y, m->yp, IDA_ONE_STEP);
         if (code < 0) {
-            const bool gone = code == IDA_REP_RES_ERR || dea_motion_folds(&flight->motion, time, flight->y);
+            const bool gone = code == IDA_REP_RES_ERR || dea_motion_firmness(&flight->motion, time, flight->y) < soft;
             return gone ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
         }
         if (!dea_flight_step(flight, time, N_VGetArrayPointer(m->y))) {
@@ -231,6 +236,9 @@ dea_state dea_flight_implicit(dea_flight *flight, double from)
         const dea_state state = take_samples(flight, time, code == IDA_TSTOP_RETURN);
         if (state != DEA_STATE_OK) {
             return state;
+        }
+        if (dea_motion_firmness(&flight->motion, time, flight->y) < folded) {
+            return DEA_STATE_PULL_IN;
         }
         if (flight->audit) {
             audit_step(flight, before, time);

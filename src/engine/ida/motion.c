@@ -167,10 +167,10 @@ void dea_motion_jacobian(const dea_motion *m, double time, const double *y, doub
     }
 }
 
-bool dea_motion_folds(const dea_motion *m, double time, const double *y)
+double dea_motion_firmness(const dea_motion *m, double time, const double *y)
 {
     local_state at;
-    return !look(m, time, y, &at) || (m->algebraic && !(-force_slope(m, &at) > 0.02 * m->stiffness));
+    return !m->algebraic ? 1.0 : look(m, time, y, &at) ? -force_slope(m, &at) / m->stiffness : 0.0;
 }
 
 void dea_motion_branches(const dea_motion *m, const double *y, double *z)

@@ -38,8 +38,8 @@ bool dea_motion_inside(const dea_motion *motion, double u);
 bool dea_motion_rates(const dea_motion *motion, double time, const double *y, double *f);
 /* df/dy, column by column. S'' of the damper's force is left out: it serves Newton's method. */
 void dea_motion_jacobian(const dea_motion *motion, double time, const double *y, double *jacobian);
-/* True where an algebraic u is about to lose its equilibrium: hardly any stiffness is left. */
-bool dea_motion_folds(const dea_motion *motion, double time, const double *y);
+/* Net stiffness that holds an algebraic u, over that at rest: 0 where it loses its equilibrium. 1 for a u that is a state. */
+double dea_motion_firmness(const dea_motion *motion, double time, const double *y);
 
 /* The state at the begin of a run; false without a stable equilibrium. */
 bool dea_motion_start(const dea_motion *motion, bool from_bias, double *y);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* Radians of a segment that make a ring worth it, and its least quality Im lambda/|Re lambda|. */
-static const double long_enough = 20.0;
+static const double long_enough = 6.0;
 static const double light_enough = 4.0;
 
 enum { N = DEA_MOTION_MOST };

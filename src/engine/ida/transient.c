@@ -1,16 +1,16 @@
 /* Transients: runs at tighter and tighter tolerances, until two of them show that the answer is good enough. */
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "engine/ida/flight.h"
 
 enum { MOST_RUNS = 8 };
 
-/* The error of a run falls at least with this power of its tolerance; what that promises is taken three times. */
+/* The error of a run falls at least with this power of its tolerance; of what that promises a multiple is taken. */
 static const double order = 0.8;
-static const double safety = 6.0;
+static const double safety = 9.0;
+static const double doubt = 1.5;       /* most that an error is taken for, over the difference of two runs */
 static const double first_share = 0.1; /* from one tolerance to the next */
 static const double least_tolerance = 1e-14;
 
@@ -47,10 +47,11 @@ static double difference(const dea_flight *flight, const dea_trace *a, const dea
 static double first_tolerance(const dea_flight *flight, double accuracy)
 {
     const dea_dynamics *d = flight->motion.dynamics;
-    return (d->mass > 0.0 && !d->linear ? 5e-4 : 0.1) * accuracy;
+    return (d->mass > 0.0 && !d->linear ? 1e-3 : 0.1) * accuracy;
 }
 
-/* Share by which a tolerance must shrink so that a run of error @p error becomes a run of a third of the accuracy. */
+/* Share by which a tolerance must shrink so that a run of error @p error becomes one whose estimate is half the
+ * accuracy. */
 static double next_share(double error, double accuracy)
 {
     return fmin(first_share, fmax(1e-3, pow(accuracy / (2.0 * safety * error), 1.0 / order)));
@@ -69,15 +70,13 @@ static bool refine(dea_flight *flight, double accuracy, dea_trace traces[2], dea
         traces[0] = coarse;
         share = fmax(share, least_tolerance / tolerance);
         tolerance *= share;
+        *summary = dea_summary_failed();
         dea_flight_run(flight, tolerance, &traces[1], summary);
         const double shrinks = pow(share, order);
         const double gap = difference(flight, &traces[0], &traces[1]);
         const bool failed = traces[1].end == DEA_STATE_FAILED;
         const bool comparable = failed || traces[0].count == traces[1].count;
-        if (getenv("DBG"))
-            fprintf(stderr, "tol %g steps %ld end %d %d rows %zu %zu gap %g\n", tolerance, flight->steps, traces[0].end,
-                    traces[1].end, traces[0].count, traces[1].count, gap);
-        summary->error = fmax(gap * fmin(1.0, safety * shrinks), 10.0 * tolerance);
+        summary->error = fmax(gap * fmin(doubt, safety * shrinks), fmax(10.0 * tolerance, 0.1 * accuracy));
         if ((comparable && summary->error <= accuracy) || failed) {
             return summary->error <= accuracy;
         }

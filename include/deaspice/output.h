@@ -1,6 +1,6 @@
 /** @file output.h
- * Writers of studies (CSV, NetCDF). Points come in order, block after block, so memory does not grow
- * with the study. A file appears whole under its name or not at all.
+ * Writers of studies (CSV, NetCDF, SPICE raw). Points come in order, block after block, so memory does not grow
+ * with the study (raw: it holds one run of the last axis). A file appears whole under its name or not at all.
  */
 #ifndef DEASPICE_OUTPUT_H
 #define DEASPICE_OUTPUT_H
@@ -16,8 +16,8 @@ typedef struct dea_writer dea_writer;
 
 /** Opens a writer of the study's rows; the scene must outlive it. Where the target cannot be written this fails, before any work.
  *
- * @param path   target, "-" for standard output (CSV only)
- * @param format "csv" or "nc"; NULL: from the ending of @p path, csv where it has none
+ * @param path   target, "-" for standard output (CSV and raw)
+ * @param format "csv", "nc" or "raw"; NULL: from the ending of @p path, csv where it has none
  * @param engine name of the engine, for the provenance of the file
  * @param[out] writer the caller ends it with dea_writer_finish()
  * @return DEA_OK, DEA_ERROR_USAGE (unknown format), DEA_ERROR_IO, DEA_ERROR_MISSING (no NetCDF library), DEA_ERROR_MEMORY

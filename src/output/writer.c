@@ -4,7 +4,7 @@
 #include <string.h>
 #include <strings.h>
 
-static const dea_format *const formats[] = {&dea_format_csv, &dea_format_netcdf};
+static const dea_format *const formats[] = {&dea_format_csv, &dea_format_netcdf, &dea_format_raw};
 
 struct dea_writer {
     const dea_format *format;
@@ -37,10 +37,10 @@ static dea_status format_choose(const char *path, const char *wanted, const dea_
         return DEA_OK;
     }
     if (wanted) {
-        return dea_fail(error, DEA_ERROR_USAGE, "unknown format \"%.40s\"; accepted: csv, nc", wanted);
+        return dea_fail(error, DEA_ERROR_USAGE, "unknown format \"%.40s\"; accepted: csv, nc, raw", wanted);
     }
     return dea_fail(error, DEA_ERROR_USAGE,
-                    "%.400s: the ending \".%.40s\" names no format; accepted: .csv, .nc, or give the format", path, ending);
+                    "%.400s: the ending \".%.40s\" names no format; accepted: .csv, .nc, .raw, or give the format", path, ending);
 }
 
 static dea_status writer_start(dea_writer *writer, const dea_scene *scene, const char *engine, const char *path, dea_error *error)

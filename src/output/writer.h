@@ -16,6 +16,6 @@ typedef struct dea_format {
     dea_status (*close)(void *state, bool keep, dea_error *error);
 } dea_format;
 
-extern const dea_format dea_format_csv, dea_format_netcdf;
+extern const dea_format dea_format_csv, dea_format_netcdf, dea_format_raw;
 
 #endif

@@ -163,7 +163,7 @@ const dea_command dea_command_run = {
             "or --plot is given. SCENE is a YAML file, - is standard input.\n"
             "\n"
             "  -o, --output FILE     write the result to FILE, - is standard output\n"
-            "      --format F        csv or nc; default: from the ending of FILE\n"
+            "      --format F        csv, nc or raw; default: from the ending of FILE\n"
             "      --plot FILE       draw the result, FILE ends in .svg or .png\n"
             "      --engine E        direct, ngspice (default) or ida\n"
             "      --model M         model instead of the scene's; several with commas between\n"

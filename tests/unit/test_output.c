@@ -463,8 +463,8 @@ static void targets_that_cannot_be_written_are_refused_at_once(void **state)
     } cases[] = {
         {in_folder("none/a.csv"), NULL, DEA_ERROR_IO, "No such file or directory"},
         {folder, "csv", DEA_ERROR_IO, "Is a directory"},
-        {in_folder("a.txt"), NULL, DEA_ERROR_USAGE, ".csv, .nc"},
-        {in_folder("a.csv"), "json", DEA_ERROR_USAGE, "unknown format \"json\""},
+        {in_folder("a.txt"), NULL, DEA_ERROR_USAGE, ".csv, .nc, .raw"},
+        {in_folder("a.csv"), "json", DEA_ERROR_USAGE, "unknown format \"json\"; accepted: csv, nc, raw"},
         {"-", "nc", DEA_ERROR_USAGE, "regular file"},
         {"/dev/null", "nc", DEA_ERROR_USAGE, "regular file"},
         {"", "csv", DEA_ERROR_IO, "without a name"},

@@ -68,14 +68,22 @@ static void write_file(const char *name, const char *text)
     assert_int_equal(fclose(file), 0);
 }
 
+/* Reads a file and ends it with a NUL; returns its length, 0 where there is none. */
+static size_t read_bytes(const char *name, char *bytes)
+{
+    FILE *file = fopen(name, "rb");
+    bytes[0] = '\0';
+    if (!file)
+        return 0;
+    const size_t length = fread(bytes, 1, TEXT_LENGTH - 1, file);
+    bytes[length] = '\0';
+    fclose(file);
+    return length;
+}
+
 static void read_file(const char *name, char *text)
 {
-    FILE *file = fopen(name, "r");
-    text[0] = '\0';
-    if (!file)
-        return;
-    text[fread(text, 1, TEXT_LENGTH - 1, file)] = '\0';
-    fclose(file);
+    (void)read_bytes(name, text);
 }
 
 /* Starts the program in the test's folder with the words up to NULL. */
@@ -191,6 +199,23 @@ static void wrong_usage_is_told_with_a_guess(void **state)
     check_wrong("coverage");
     RUN("materials", "elastosil-2031");
     check_wrong("did you mean \"elastosil-2030\"");
+}
+
+static void raw_file_and_standard_output_hold_the_same(void **state)
+{
+    (void)state;
+    static char file[TEXT_LENGTH], pipe[TEXT_LENGTH];
+    setenv("SOURCE_DATE_EPOCH", "1700000000", 1);
+    RUN("run", "step.yaml", "--engine", "direct", "-q", "-o", "step.raw");
+    assert_int_equal(last.status, 0);
+    RUN("run", "step.yaml", "--engine", "direct", "-q", "--format", "raw");
+    unsetenv("SOURCE_DATE_EPOCH");
+    assert_int_equal(last.status, 0);
+    assert_true(begins(last.out, "Title: switched on and off\nDate: Tue Nov 14 22:13:20  2023\nPlotname: Transient Analysis\n"));
+    const size_t length = read_bytes("step.raw", file);
+    assert_in_range(length, 201 * 7 * sizeof(double), 201 * 7 * sizeof(double) + 600); /* 0 to 100 ms, header */
+    assert_int_equal(read_bytes("out.txt", pipe), length);
+    assert_memory_equal(pipe, file, length);
 }
 
 static void run_prints_csv(void **state)
@@ -557,6 +582,7 @@ int main(void)
         cmocka_unit_test(help_and_version_succeed),
         cmocka_unit_test(wrong_usage_is_told_with_a_guess),
         cmocka_unit_test(run_prints_csv),
+        cmocka_unit_test(raw_file_and_standard_output_hold_the_same),
         cmocka_unit_test(run_writes_a_file_and_sums_up),
         cmocka_unit_test(transient_writes_its_samples_and_prints_its_averages),
         cmocka_unit_test(averages_stand_beside_a_result_on_standard_output),

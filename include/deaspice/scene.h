@@ -145,6 +145,9 @@ typedef struct dea_setting {
  * given: without a scalar of its own it holds the first value of its axis. An axis of one point is `from`, with `to` left out or
  * equal.
  *
+ * An end of a path that fits several keys means the one that the scene has: `voltage` is the step's beside a step. A setting of
+ * one alternative takes the place of the other: sweep, transient, ac; step, points, sine, file; waveform and static voltage.
+ *
  * @param path     file name, "-" for standard input; only regular files and pipes are read, at most 16 MiB
  * @param settings overrides with the same checks and units as the file, may be NULL when @p setting_count is 0
  * @param model    model name, or names with commas between, that replaces the scene's; or NULL

@@ -13,7 +13,7 @@ enum { SAMPLES = 2501, ON = 500, OFF = 1500, MANY = 1000, FEW = 100, TEXT = 256,
 static const char *const form =
     "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
     "material: {yeoh: {C1: 178426 Pa, C2: -6023 Pa, C3: 4234 Pa}, permittivity: 2.8, density: 1080 kg/m^3,\n"
-    "           prony: [{g: 0.1, tau: 0.03 s}, {g: 0.1, tau: 0.3 s}, {g: 0.05, tau: 3 s}]}\n"
+    "           prony: [{g: 0.1, tau: 1 ms}, {g: 0.1, tau: 0.3 s}, {g: 0.05, tau: 3 s}]}\n"
     "drive: {waveform: {step: {on: 5 s, off: 15 s, voltage: 4500 V, rise: 1 us}}}\n"
     "model: lumped\naccuracy: %g\nstudy:\n  transient: {until: 25 s, every: 10 ms}\n%s";
 
@@ -91,7 +91,7 @@ static matrix exponential(const matrix *a, long double duration)
 /* K = Y A_cross (1/r_a + 1/(r - r_a)) and the force per U^2 of Eqs. 19-21; mass of physics.md, section 5. */
 static matrix protocol_matrix(const dea_scene *scene)
 {
-    static const long double g[] = {0.1L, 0.1L, 0.05L}, tau[] = {0.03L, 0.3L, 3.0L};
+    static const long double g[] = {0.1L, 0.1L, 0.05L}, tau[] = {0.001L, 0.3L, 3.0L};
     dea_point point;
     dea_film_prepare(scene, &point.film);
     dea_point_place(scene, &point);

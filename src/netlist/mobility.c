@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/models.h"
 #include "netlist/expression_text.h"
 #include "network/derivative.h"
 #include "network/formula.h"
@@ -32,6 +33,7 @@ dea_status dea_mobility_open(const dea_scene *scene, const dea_dynamics *dynamic
     if (pool->exhausted) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built");
     }
+    mobility->rest = dea_point_capacitance(&dynamics->point);
     if (dynamics->linear) {
         mobility->stiffness = dea_expr_constant(pool, slope);
     }
@@ -126,7 +128,7 @@ static void write_stress_branches(const writer *w)
         indexed(w->out, "tau", n, branch->tau);
         indexed(w->out, "share", n, branch->share);
         indexed(w->out, "z_start", n, w->piece->start.z[i]);
-        fprintf(w->out, "rbranch%zu stress z%zu {tau%zu}\ncbranch%zu z%zu 0 1 ic={z_start%zu}\n", n, n, n, n, n, n);
+        fprintf(w->out, "gbranch%zu 0 z%zu stress z%zu 1\ncbranch%zu z%zu 0 {tau%zu} ic={z_start%zu}\n", n, n, n, n, n, n, n);
     }
     if (w->dynamics->branch_count > 0) {
         fputs("* force of the branches [N]\nbbranches edge 0 i=", w->out);
@@ -211,9 +213,11 @@ static void write_port(const writer *w)
         fputs("* series resistance of source and electrodes [Ohm]\n", out);
         parameter(out, "r_series", w->dynamics->series);
         fputs("rseries source film {r_series}\n", out);
-        fputs("* film: its current, its charge [C], its voltage q/C(u)\nvfilm film plate 0\nfcharge 0 charge vfilm 1\n", out);
-        parameter(out, "q_start", w->piece->start.charge);
-        fputs("ccharge charge 0 1 ic={q_start}\nbfilm plate 0 v=v(charge)/(", out);
+        fputs("* film: its current into its capacitance at rest [F], whose charge over C(u) is its voltage\n", out);
+        parameter(out, "c_rest", w->mobility->rest);
+        parameter(out, "u_rest", w->piece->start.charge / w->mobility->rest);
+        fputs("vfilm film plate 0\nfcharge 0 charge vfilm 1\nccharge charge 0 {c_rest} ic={u_rest}\n", out);
+        fputs("bfilm plate 0 v=v(charge)*{c_rest}/(", out);
         dea_expression_text_write(&w->text, w->mobility->network.capacitance);
         fputs(")\n", out);
     }
@@ -249,7 +253,7 @@ static void write_start(writer *w)
     start_node(out, "film", voltage);
     if (w->dynamics->series > 0.0) {
         start_node(out, "plate", voltage);
-        start_node(out, "charge", start->charge);
+        start_node(out, "charge", start->charge / w->mobility->rest);
     }
     start_node(out, "edge", start->v);
     dea_expression_text_start(&w->text, 0.0, start->u);
@@ -265,16 +269,20 @@ static void write_start(writer *w)
     fputc('\n', out);
 }
 
-/* The steps are as long as they may be, the step control of the library is off: its errors would follow no order. */
+/* The steps are as long as they may be, the step control of the library is off: its errors would follow no order. The library
+ * takes a corner at the print interval, with a first step of the Euler rule behind it, which would damp a ring: with mass that
+ * interval is short. */
 static void write_analysis(const writer *w)
 {
     const dea_mobility_piece *p = w->piece;
     const dea_mobility_vectors vectors = dea_mobility_vectors_of(w->mobility);
     const double speed = p->scale / p->step;
-    fputs(".options method=trap trtol=1e30 itl4=50 pivtol=1e-60 reltol=1e-7 vntol=", w->out);
-    dea_netlist_number(w->out, 1e-11 * fmin(speed, p->scale) + 1e-14 * speed);
+    /* rounding of the velocity: of that of a ring, or where no mass holds it, of differences of u over a step */
+    const double noise = p->mass > 0.0 ? 1e-14 * sqrt(p->force * p->scale / p->mass) : 1e-11 * speed;
+    fputs(".options method=trap trtol=1e30 itl4=50 pivtol=1e-60 pivrel=0.3 reltol=1e-7 vntol=", w->out);
+    dea_netlist_number(w->out, 1e-11 * fmin(speed, p->scale) + noise);
     fputs(" abstol=", w->out);
-    dea_netlist_number(w->out, 1e-12 * p->scale);
+    dea_netlist_number(w->out, 1e-10 * p->force);
     fputs(" chgtol=1e-30\n.save", w->out);
     for (size_t i = 1; i < vectors.count; i++) {
         const char *name = vectors.names[i];
@@ -286,7 +294,7 @@ static void write_analysis(const writer *w)
         }
     }
     fputs("\n.tran ", w->out);
-    dea_netlist_number(w->out, p->step);
+    dea_netlist_number(w->out, p->mass > 0.0 ? 0.01 * p->step : p->step);
     fputc(' ', w->out);
     dea_netlist_number(w->out, p->to - p->from);
     fputs(" 0 ", w->out);
@@ -398,7 +406,7 @@ dea_mobility_state dea_mobility_read(const dea_mobility *mobility, const double 
         state.z[i] = is_linear(mobility) ? first - value / d->branches[i].share : value;
     }
     if (d->series > 0.0) {
-        state.charge = columns[3 + d->branch_count][index];
+        state.charge = mobility->rest * columns[3 + d->branch_count][index];
     }
     return state;
 }

@@ -12,6 +12,7 @@ typedef struct dea_mobility {
     dea_expr stress, area, push;  /* S, A, phi */
     dea_expr resistance;          /* tau_KV A S' [N s/m], where there is a damper */
     double stiffness;             /* of all linear springs [N/m]; NAN where the springs are hyperelastic */
+    double rest;                  /* capacitance of the film at rest [F] */
 } dea_mobility;
 
 /* States of the network: what one piece of a run hands to the next. */
@@ -28,6 +29,7 @@ typedef struct dea_mobility_piece {
     double from, to;    /* [s] */
     double step;        /* longest time step [s] */
     double scale;       /* size of a displacement, for tolerances [m] */
+    double force;       /* that goes with it, for tolerances [N] */
     double mass;        /* [kg] */
     double conductance; /* 0: none; resistor beside the mass that fits the rule's damping to the film's [N s/m] */
     dea_mobility_state start;

@@ -88,7 +88,7 @@ dea_yeoh_terms dea_symbols_yeoh(const dea_symbols *symbols)
 }
 
 /* Y = dsigma/dlambda = 4 (lambda + 2 lambda^-5) w + 8 g^2 (2 C2 + 6 C3 J)/lambda. */
-static dea_expr operating_modulus(const dea_symbols *symbols)
+dea_expr dea_symbols_modulus(const dea_symbols *symbols)
 {
     dea_pool *pool = symbols->pool;
     const dea_yeoh_terms t = dea_symbols_yeoh(symbols);
@@ -114,7 +114,7 @@ static dea_symbols symbols_of(const dea_scene *scene, const dea_axis *axis, dea_
         s.yeoh[i] = MUL(share, scalar(pool, scene, axis, &material->yeoh[i]));
     }
     const dea_expr modulus = scalar(pool, scene, axis, &material->modulus);
-    s.modulus = given(pool, modulus) ? MUL(share, modulus) : operating_modulus(&s);
+    s.modulus = given(pool, modulus) ? MUL(share, modulus) : dea_symbols_modulus(&s);
     const dea_expr slope = scalar(pool, scene, axis, &material->permittivity_per_stretch);
     const dea_expr relative = ADD(scalar(pool, scene, axis, &material->permittivity), MUL(slope, s.prestretch));
     s.permittivity = SCALE(DEA_EPSILON_0, relative);
@@ -191,6 +191,16 @@ static void place_edge(const dea_symbols *symbols, dea_network *network)
     network->breakdown = symbols->breakdown;
 }
 
+dea_status dea_network_build_symbols(const dea_symbols *symbols, const dea_model *model, dea_network *network, dea_error *error)
+{
+    place_edge(symbols, network);
+    model->network(symbols, network);
+    if (network->pool.exhausted) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built");
+    }
+    return DEA_OK;
+}
+
 dea_status dea_network_build(const dea_scene *scene, const dea_model *model, const dea_axis *axis, dea_network *network,
                              dea_error *error)
 {
@@ -203,12 +213,7 @@ dea_status dea_network_build(const dea_scene *scene, const dea_model *model, con
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built");
     }
     const dea_symbols symbols = symbols_of(scene, axis, &network->pool);
-    place_edge(&symbols, network);
-    model->network(&symbols, network);
-    if (network->pool.exhausted) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built");
-    }
-    return DEA_OK;
+    return dea_network_build_symbols(&symbols, model, network, error);
 }
 
 static dea_expr sum_of(dea_network *network, dea_role role)

@@ -58,6 +58,8 @@ typedef struct dea_network {
  * The caller frees it with dea_network_free(), also after a failure. */
 dea_status dea_network_build(const dea_scene *scene, const dea_model *model, const dea_axis *axis, dea_network *network,
                              dea_error *error);
+/* The same from symbols whose pool is that of the zeroed network. */
+dea_status dea_network_build_symbols(const dea_symbols *symbols, const dea_model *model, dea_network *network, dea_error *error);
 void dea_network_free(dea_network *network);
 /* Adds an element; names and meanings are borrowed for the life of the network. */
 void dea_network_add(dea_network *network, dea_role role, const char *name, const char *meaning, dea_expr value);
@@ -82,6 +84,8 @@ typedef struct dea_yeoh_terms {
     dea_expr square, g, j, w; /* y = lambda^2, y - y^-2, I - 3, dW/dI */
 } dea_yeoh_terms;
 dea_yeoh_terms dea_symbols_yeoh(const dea_symbols *symbols);
+/* Y = dsigma/dlambda at the pre-stretch [Pa]. */
+dea_expr dea_symbols_modulus(const dea_symbols *symbols);
 /* M = eps (U/H)^2 [Pa]. */
 dea_expr dea_symbols_pressure(const dea_symbols *symbols);
 /* eps lambda_pre^4/H^2 [Pa/V^2], the electrostatic stress at the pre-stretch per U^2. */

@@ -190,10 +190,11 @@ static void cut_segment(cutter *c, size_t index, bool quiet)
     double age = 0.0;
     while (age < length && !c->exhausted) {
         double until = length;
-        const double step = fmin(limit, quiet ? length : step_at(c, age, &until));
+        const double wanted = quiet ? length : step_at(c, age, &until);
         if (!(until < length - 0.1 * (until - age))) {
             until = length;
         }
+        const double step = fmin(fmin(limit, wanted), 0.125 * (until - age)); /* finer steps must differ from the first few */
         add(c, (dea_piece){.from = segment->from + age,
                            .to = until == length ? segment->to : segment->from + until,
                            .step = step,

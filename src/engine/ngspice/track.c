@@ -24,6 +24,7 @@ typedef struct runner {
     bool slow;  /* the piece steps over the ring, which is dead */
     double step;
     double speed;           /* velocities of the film over those of the matched network [1] */
+    bool euler;             /* the next step is the first behind a corner */
     double complex lag;     /* what irregular steps since the last corner did to a ring: to multiply by */
     double complex carried; /* what those before it did: to add [m] */
     size_t segment;
@@ -194,8 +195,9 @@ static void correct(runner *r, double step, node *n)
     }
     if (fabs(step - r->step) > 1e-9 * r->step && !segment->sine && segment->start == segment->end) {
         const double complex half = 0.5 * step * r->match.root;
-        r->lag *= cexp(s * step) * (1.0 - half) / (1.0 + half);
+        r->lag *= cexp(s * step) * (r->euler ? 1.0 - 2.0 * half : (1.0 - half) / (1.0 + half));
     }
+    r->euler = false;
     const double complex change = r->carried + (r->lag - 1.0) * ring_at(s, n);
     n->moment.u += creal(change);
     n->moment.v += creal(s * change);
@@ -216,6 +218,7 @@ static void enter_segment(runner *r, double time, double next)
         r->segment = segment;
         r->carried = r->last.change;
         r->lag = 1.0;
+        r->euler = true;
         r->last = node_at(r, time, &state);
     }
 }
@@ -270,6 +273,7 @@ static void set_piece(runner *r, dea_mobility_piece *piece, double to, double st
     r->slow = !r->rings && route->omega * step > 2.0;
     r->lag = 1.0;
     r->carried = 0.0;
+    r->euler = true;
     start_again(r);
     *piece = (dea_mobility_piece){.signal = route->signal,
                                   .segment = r->segment,
@@ -277,6 +281,7 @@ static void set_piece(runner *r, dea_mobility_piece *piece, double to, double st
                                   .to = to,
                                   .step = step,
                                   .scale = route->scale,
+                                  .force = route->scale * dea_dynamics_stiffness(route->dynamics, 0.0, 0.0, false),
                                   .mass = r->match.mass,
                                   .conductance = r->match.resistance,
                                   .start = scaled(r->last.state, 1.0 / r->speed)};

@@ -1,0 +1,539 @@
+/* The network in the mobility analogy: what its netlist holds, and what ngspice makes of it in time and frequency. */
+#include "random_transients.h"
+
+#include <ctype.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "engine/ngspice/track.h"
+
+/* The paper's protocol on its film: 0 V, 4.5 kV from 5 s to 15 s, 0 V. */
+static dea_scene protocol(const char *model)
+{
+    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, (double)NAN);
+    scene.models[0] = dea_model_find(model);
+    scene.study = DEA_STUDY_TRANSIENT;
+    scene.transient = (dea_transient){.until = 25.0, .every = 0.01};
+    scene.drive.waveform = (dea_waveform){.kind = DEA_WAVE_STEP, .step = {5.0, 15.0, 4500.0, 1e-6}, .period = (double)NAN};
+    return scene;
+}
+
+static void add_branches(dea_scene *scene)
+{
+    scene->material.prony_count = 3;
+    scene->material.prony[0] = (dea_prony){0.1, 0.03};
+    scene->material.prony[1] = (dea_prony){0.1, 0.3};
+    scene->material.prony[2] = (dea_prony){0.05, 3.0};
+}
+
+/* Netlist of the whole run as one piece; the caller frees it. */
+static char *netlist_of(const dea_scene *scene)
+{
+    dea_error error = {0};
+    dea_dynamics dynamics;
+    dea_mobility mobility;
+    dea_signal signal;
+    char *text = NULL;
+    assert_int_equal(dea_dynamics_open(scene, scene->models[0], &dynamics, &error), DEA_OK);
+    assert_int_equal(dea_mobility_open(scene, &dynamics, &mobility, &error), DEA_OK);
+    assert_int_equal(dea_signal_open(scene, &signal, &error), DEA_OK);
+    const dea_mobility_piece piece = {
+        .signal = &signal, .to = scene->transient.until, .step = 1e-3, .scale = 1e-3, .force = 1.0, .mass = dynamics.mass};
+    assert_int_equal(dea_mobility_write(&mobility, &piece, &text, &error), DEA_OK);
+    dea_signal_close(&signal);
+    dea_mobility_close(&mobility);
+    dea_dynamics_close(&dynamics);
+    return text;
+}
+
+/* Cards that begin with a word. */
+static size_t cards(const char *netlist, const char *word)
+{
+    size_t count = 0;
+    const size_t length = strlen(word);
+    for (const char *line = netlist; line; line = strchr(line, '\n') ? strchr(line, '\n') + 1 : NULL) {
+        count += strncmp(line, word, length) == 0;
+    }
+    return count;
+}
+
+static void assert_cards(const dea_scene *scene, const char *word, size_t count)
+{
+    char *netlist = netlist_of(scene);
+    if (cards(netlist, word) != count) {
+        print_error("%s of %s: %zu, wanted %zu\n", word, scene->models[0]->name, cards(netlist, word), count);
+        fail();
+    }
+    free(netlist);
+}
+
+static void network_has_the_elements_of_the_scene_and_no_other(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lumped", "lame", "coverage"};
+    for (int i = 0; i < 3; i++) {
+        dea_scene scene = protocol(models[i]);
+        const bool linear = scene.models[0]->linear != NULL;
+        assert_cards(&scene, "cmass", 0);
+        assert_cards(&scene, "lspring", linear ? 1 : 0);
+        assert_cards(&scene, "bspring", linear ? 0 : 1);
+        assert_cards(&scene, "r", 0);
+        assert_cards(&scene, "c", linear ? 0 : 1);
+        assert_cards(&scene, "bforce", 1);
+        scene.material.density = 1080.0;
+        assert_cards(&scene, "cmass", 1);
+        add_branches(&scene);
+        assert_cards(&scene, linear ? "lbranch" : "gbranch", 3);
+        assert_cards(&scene, linear ? "rbranch" : "cbranch", 3);
+        scene.material.retardation = 1e-4;
+        assert_cards(&scene, linear ? "rdamper" : "bdamper", 1);
+        assert_cards(&scene, "rseries", 0);
+        scene.drive.leakage_resistance = 1e11;
+        assert_cards(&scene, "rleak", 1);
+        assert_cards(&scene, "ccharge", 0);
+        scene.drive.series_resistance = 1e6;
+        assert_cards(&scene, "rseries", 1);
+        assert_cards(&scene, "ccharge", 1);
+    }
+}
+
+static void every_number_of_an_expression_is_a_parameter(void **state)
+{
+    (void)state;
+    dea_scene scene = protocol("coverage");
+    scene.material.density = 1080.0;
+    scene.material.retardation = 1e-4;
+    scene.drive.series_resistance = 1e6;
+    add_branches(&scene);
+    char *netlist = netlist_of(&scene);
+    assert_true(netlist[0] == '*' && netlist[1] == ' ');
+    assert_string_equal(netlist + strlen(netlist) - 6, "\n.end\n");
+    for (char *line = strtok(netlist, "\n"); line; line = strtok(NULL, "\n")) {
+        assert_false(isspace((unsigned char)line[0]));
+        for (const char *at = line; *at && line[0] != '*'; at++) {
+            assert_false(isupper((unsigned char)*at));
+            assert_false(line[0] == 'b' && *at == '.'); /* a fraction written out */
+        }
+    }
+    free(netlist);
+}
+
+static void both_edges_of_a_pulse_are_corners_of_the_source(void **state)
+{
+    (void)state;
+    const dea_scene scene = protocol("lumped");
+    char *netlist = netlist_of(&scene);
+    assert_non_null(strstr(netlist, "vsource film 0 pwl(0 0 5 0 5.0000010000000001 4500 15 4500 15.000000999999999 0 25 0)\n"));
+    free(netlist);
+}
+
+/* What a study gave: rows and summary, or rows of a response. */
+typedef struct outcome {
+    char *point; /* owned */
+    size_t size;
+    char log[300];
+} outcome;
+
+static dea_status take(void *user, size_t first, const void *points, size_t count, dea_error *error)
+{
+    outcome *o = user;
+    (void)error;
+    assert_int_equal(first, 0);
+    assert_int_equal(count, 1);
+    memcpy(o->point, points, o->size);
+    return DEA_OK;
+}
+
+static void keep_log(void *user, const char *line)
+{
+    outcome *o = user;
+    snprintf(o->log, sizeof o->log, "%s", line);
+}
+
+static outcome run(const dea_scene *scene, const char *engine)
+{
+    dea_error error = {0};
+    outcome o = {.size = dea_layout_of(scene).point_size};
+    o.point = malloc(o.size);
+    assert_non_null(o.point);
+    const dea_run_options options = {.jobs = 1, .points = take, .log = keep_log, .user = &o};
+    if (dea_study_run(scene, dea_engine_find(engine), &options, &error) != DEA_OK) {
+        fail_msg("%s: %s", engine, error.message);
+    }
+    return o;
+}
+
+static dea_sample sample_of(const outcome *o, size_t index)
+{
+    dea_sample sample;
+    memcpy(&sample, o->point + index * sizeof sample, sizeof sample);
+    return sample;
+}
+
+static dea_summary summary_of(const dea_scene *scene, const outcome *o)
+{
+    const dea_layout layout = dea_layout_of(scene);
+    dea_summary summary;
+    memcpy(&summary, dea_layout_summary(&layout, o->point), sizeof summary);
+    return summary;
+}
+
+/* Largest difference of two runs over the peak, where both have numbers; NAN where their states differ. */
+static double difference(const dea_scene *scene, const outcome *a, const outcome *b)
+{
+    double worst = 0.0;
+    double peak = 0.0;
+    for (size_t i = 0; i < dea_layout_of(scene).rows; i++) {
+        const dea_sample x = sample_of(a, i);
+        const dea_sample y = sample_of(b, i);
+        if (x.state != y.state) {
+            return (double)NAN;
+        }
+        worst = fmax(worst, isnan(y.displacement) ? 0.0 : fabs(x.displacement - y.displacement));
+        peak = fmax(peak, isnan(y.displacement) ? 0.0 : fabs(y.displacement));
+    }
+    return peak > 0.0 ? worst / peak : 0.0;
+}
+
+static void check_run(const dea_scene *scene, const dea_scene *judged, const char *judge, double judge_error, int number)
+{
+    outcome answer = run(scene, "ngspice");
+    outcome wanted = run(judged, judge);
+    const dea_summary summary = summary_of(scene, &answer);
+    const double error = difference(scene, &answer, &wanted);
+    const bool judged_whole = sample_of(&wanted, dea_layout_of(scene).rows - 1).state != DEA_STATE_FAILED;
+    const bool good = error <= scene->accuracy + judge_error && error <= summary.error + judge_error &&
+                      summary.residual <= 10.0 * scene->accuracy;
+    if (judged_whole && !good) {
+        print_error("scene %d, %s against %s: error %.3g, bar %.3g, wanted %.3g, energies %.3g, %s\n", number,
+                    scene->models[0]->name, judge, error, summary.error, scene->accuracy, summary.residual, answer.log);
+        fail();
+    }
+    free(answer.point);
+    free(wanted.point);
+}
+
+static void linear_films_move_as_their_closed_form_says(void **state)
+{
+    (void)state;
+    int checked = 0;
+    for (int i = 0; i < 120; i++) {
+        uint64_t seed = 4000037u * (uint64_t)(i + 1);
+        dea_scene scene;
+        random_transient(&seed, &scene);
+        scene.accuracy = random_decades(&seed, 1e-6, 1e-3);
+        dea_scene exact = scene;
+        exact.accuracy = 1e-10;
+        if (scene.models[0]->linear && !dea_engine_refuses(dea_engine_find("direct"), &exact, scene.models[0])) {
+            check_run(&scene, &exact, "direct", 1e-9, i);
+            checked++;
+        }
+    }
+    assert_true(checked >= 15);
+}
+
+static void films_of_every_model_move_as_by_another_integrator(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 24; i++) {
+        uint64_t seed = 5000011u * (uint64_t)(i + 1);
+        dea_scene scene;
+        random_transient(&seed, &scene);
+        scene.accuracy = random_decades(&seed, 1e-5, 1e-3);
+        dea_scene finer = scene;
+        finer.accuracy = 1e-2 * scene.accuracy;
+        check_run(&scene, &finer, "ida", finer.accuracy, i);
+    }
+}
+
+/* K (1 + c) u - c K z = F, z' = (u - z)/tau: u = F/K (1 - c/(1 + c) exp(-t/(tau (1 + c)))). */
+static void creep_is_right_over_a_day(void **state)
+{
+    (void)state;
+    dea_scene scene = protocol("lumped");
+    scene.material.prony_count = 1;
+    scene.material.prony[0] = (dea_prony){0.3, 2e4};
+    scene.transient = (dea_transient){.until = 1e5, .every = 100.0};
+    scene.drive.waveform.step = (dea_step){0.0, (double)NAN, 3000.0, 0.0};
+    const double c = 0.3 / 0.7;
+    dea_scene rest = scene;
+    rest.drive.voltage = 3000.0;
+    const double last = solve_direct(&rest, "lumped").displacement;
+    outcome o = run(&scene, "ngspice");
+    for (size_t i = 0; i <= 1000; i++) {
+        const dea_sample s = sample_of(&o, i);
+        assert_near(s.displacement, last * (1.0 - c / (1.0 + c) * exp(-s.time / (2e4 * (1.0 + c)))), 1e-6 * last);
+    }
+    free(o.point);
+}
+
+static void film_that_starts_in_its_equilibrium_stays_there(void **state)
+{
+    (void)state;
+    dea_scene scene = protocol("coverage");
+    add_branches(&scene);
+    scene.material.density = 1080.0;
+    scene.transient.from_bias = true;
+    scene.drive.waveform.step = (dea_step){0.0, (double)NAN, 4500.0, 0.0};
+    dea_scene rest = scene;
+    rest.drive.voltage = 4500.0;
+    const double u = solve_direct(&rest, "coverage").displacement;
+    outcome o = run(&scene, "ngspice");
+    for (size_t i = 0; i < dea_layout_of(&scene).rows; i++) {
+        assert_near(sample_of(&o, i).displacement, u, 1e-9 * u);
+    }
+    free(o.point);
+}
+
+static void rows_before_a_pull_in_are_kept(void **state)
+{
+    (void)state;
+    dea_scene scene = protocol("coverage");
+    scene.actuator.coverage = 0.1;
+    scene.material.yeoh[1] = scene.material.yeoh[2] = 0.0; /* a neo-Hookean film folds */
+    const double most = pull_in_voltage(&scene, "coverage");
+    double times[] = {0.0, 1.0};
+    double voltages[] = {0.0, 2.0 * most};
+    scene.drive.voltage = 2.0 * most;
+    assert_int_equal(solve_direct(&scene, "coverage").state, DEA_STATE_PULL_IN);
+    scene.drive.voltage = (double)NAN;
+    scene.drive.waveform =
+        (dea_waveform){.kind = DEA_WAVE_POINTS, .times = times, .voltages = voltages, .point_count = 2, .period = (double)NAN};
+    scene.transient = (dea_transient){.until = 1.0, .every = 0.01};
+    scene.accuracy = 1e-3;
+    outcome o = run(&scene, "ngspice");
+    for (size_t i = 0; i <= 100; i++) {
+        const dea_sample s = sample_of(&o, i);
+        dea_scene still = scene;
+        still.drive.voltage = s.voltage;
+        const dea_row row = solve_direct(&still, "coverage");
+        if (fabs(s.voltage - most) > 0.02 * most) {
+            assert_int_equal(s.state, row.state);
+        }
+        if (s.voltage < 0.95 * most) {
+            assert_near(s.displacement, row.displacement, 1e-3 * fabs(row.displacement) + 1e-12);
+        }
+    }
+    assert_int_equal(sample_of(&o, 100).state, DEA_STATE_PULL_IN);
+    free(o.point);
+}
+
+static void transients_beyond_its_rule_are_refused_by_name(void **state)
+{
+    (void)state;
+    dea_scene scene = protocol("lumped");
+    scene.accuracy = 0.9e-6;
+    const char *why = dea_engine_refuses(dea_engine_find("ngspice"), &scene, scene.models[0]);
+    assert_non_null(why);
+    assert_non_null(strstr(why, "trapezoidal"));
+    scene.accuracy = 1e-6;
+    assert_null(dea_engine_refuses(dea_engine_find("ngspice"), &scene, scene.models[0]));
+}
+
+static void ring_too_long_for_its_accuracy_fails_and_says_so(void **state)
+{
+    (void)state;
+    dea_scene scene = protocol("lumped");
+    scene.material.density = 1080.0; /* nothing damps 600 Hz over an hour */
+    scene.transient = (dea_transient){.until = 3600.0, .every = 1.0};
+    outcome o = run(&scene, "ngspice");
+    assert_int_equal(sample_of(&o, 3600).state, DEA_STATE_FAILED);
+    assert_non_null(strstr(o.log, "time steps"));
+    free(o.point);
+}
+
+/* The library lives in a process of its own: what a child finds is told by its exit status. */
+typedef struct child_route {
+    dea_scene scene;
+    dea_dynamics dynamics, slow;
+    dea_mobility mobility;
+    dea_signal signal;
+    dea_pieces pieces;
+    dea_route route;
+} child_route;
+
+static void lay_route(child_route *c)
+{
+    dea_error error = {0};
+    c->scene.accuracy = 1e-6;
+    const bool ready = dea_dynamics_open(&c->scene, c->scene.models[0], &c->dynamics, &error) == DEA_OK &&
+                       dea_mobility_open(&c->scene, &c->dynamics, &c->mobility, &error) == DEA_OK &&
+                       dea_signal_open(&c->scene, &c->signal, &error) == DEA_OK;
+    c->slow = c->dynamics;
+    c->slow.mass = c->slow.retardation = 0.0;
+    const dea_pace pace = dea_pace_of(&c->dynamics, 0.0, 0.0);
+    c->route = (dea_route){.scene = &c->scene,
+                           .dynamics = &c->dynamics,
+                           .slow = &c->slow,
+                           .mobility = &c->mobility,
+                           .signal = &c->signal,
+                           .pieces = &c->pieces,
+                           .samples = dea_layout_of(&c->scene).rows,
+                           .scale = 1e-3,
+                           .omega = pace.omega};
+    if (!ready || dea_pieces_cut(&c->signal, &pace, 1e-6, true, &c->pieces, &error) != DEA_OK ||
+        dea_ngspice_open(&c->route.library, &error) != DEA_OK) {
+        _exit(100);
+    }
+}
+
+static dea_track track(const child_route *c, double fineness)
+{
+    dea_error error = {0};
+    dea_track t;
+    if (dea_track_run(&c->route, fineness, &t, &error) != DEA_OK || t.end != DEA_STATE_OK) {
+        fprintf(stderr, "%s\n", error.message);
+        _exit(101);
+    }
+    return t;
+}
+
+static double track_difference(const child_route *c, const dea_track *a, const dea_track *b)
+{
+    double worst = 0.0;
+    double peak = 0.0;
+    for (size_t i = 0; i < c->route.samples; i++) {
+        worst = fmax(worst, fabs(a->points[i].u - b->points[i].u));
+        peak = fmax(peak, fabs(b->points[i].u));
+    }
+    return worst / peak;
+}
+
+static void run_in_child(void (*work)(void))
+{
+    int status;
+    const pid_t pid = fork();
+    assert_true(pid >= 0);
+    if (pid == 0) {
+        work();
+        _exit(0);
+    }
+    assert_int_equal(waitpid(pid, &status, 0), pid);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), 0);
+}
+
+/* A fifth of a second of the ring after switch-on. */
+static child_route ringing_route(void)
+{
+    child_route c = {.scene = protocol("lumped")};
+    c.scene.material.density = 1080.0;
+    add_branches(&c.scene);
+    c.scene.transient = (dea_transient){.until = 0.2, .every = 1e-3};
+    c.scene.drive.waveform.step = (dea_step){0.01, (double)NAN, 4500.0, 1e-6};
+    return c;
+}
+
+static void measure_order(void)
+{
+    child_route c = ringing_route();
+    lay_route(&c);
+    const dea_track finest = track(&c, 1.0 / 128.0);
+    const dea_track coarse = track(&c, 1.0 / 8.0);
+    const dea_track fine = track(&c, 1.0 / 32.0);
+    const double order = log(track_difference(&c, &coarse, &finest) / track_difference(&c, &fine, &finest)) / log(4.0);
+    if (!(order > 1.8 && order < 2.5)) {
+        fprintf(stderr, "order %g\n", order);
+        _exit(1);
+    }
+}
+
+static void error_falls_with_the_square_of_the_step(void **state)
+{
+    (void)state;
+    run_in_child(measure_order);
+}
+
+/* The same steps in one netlist and in many. */
+static void compare_pieces(void)
+{
+    child_route c = ringing_route();
+    lay_route(&c);
+    const double step = 1.0 / 16.0;
+    const dea_track whole = track(&c, step);
+    dea_piece cut[400];
+    size_t count = 0;
+    for (size_t i = 0; i < c.pieces.count; i++) {
+        const dea_piece *p = &c.pieces.pieces[i];
+        const int parts = p->rings && p->to - p->from > 0.01 ? 20 : 1;
+        for (int k = 0; k < parts; k++) {
+            cut[count] = *p;
+            cut[count].from = p->from + (p->to - p->from) * k / parts;
+            cut[count].to = k + 1 == parts ? p->to : p->from + (p->to - p->from) * (k + 1) / parts;
+            count++;
+        }
+    }
+    dea_pieces many = {.pieces = cut, .count = count};
+    c.route.pieces = &many;
+    const dea_track parts = track(&c, step);
+    const double change = track_difference(&c, &parts, &whole);
+    if (count < 20 || !(change < 1e-5)) {
+        fprintf(stderr, "%zu pieces change the run by %g\n", count, change);
+        _exit(1);
+    }
+}
+
+static void run_in_pieces_is_the_run_in_one(void **state)
+{
+    (void)state;
+    run_in_child(compare_pieces);
+}
+
+static double angle_between(double a, double b)
+{
+    return fabs(remainder(a - b, 360.0));
+}
+
+static void frequency_responses_are_those_of_the_closed_form(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 30; i++) {
+        uint64_t seed = 7000003u * (uint64_t)(i + 1);
+        dea_scene scene;
+        random_transient(&seed, &scene);
+        scene.study = DEA_STUDY_AC;
+        scene.accuracy = 1e-9;
+        scene.ac = (dea_ac){.from = 0.01 / scene.transient.until,
+                            .to = 1000.3 / scene.transient.until,
+                            .points_per_decade = 7,
+                            .bias = random_between(&seed, 0.1, 0.9) * pull_in_voltage(&scene, scene.models[0]->name)};
+        outcome a = run(&scene, "ngspice");
+        outcome b = run(&scene, "direct");
+        for (size_t k = 0; k < dea_layout_of(&scene).rows; k++) {
+            dea_response x, y;
+            memcpy(&x, a.point + k * sizeof x, sizeof x);
+            memcpy(&y, b.point + k * sizeof y, sizeof y);
+            assert_int_equal(x.state, y.state);
+            assert_true(x.frequency == y.frequency);
+            if (x.state != DEA_STATE_PULL_IN) {
+                assert_relative(x.displacement, y.displacement, 1e-9);
+                assert_relative(x.impedance, y.impedance, 1e-9);
+                assert_true(angle_between(x.displacement_phase, y.displacement_phase) < 1e-7);
+                assert_true(angle_between(x.impedance_phase, y.impedance_phase) < 1e-7);
+            }
+        }
+        free(a.point);
+        free(b.point);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(network_has_the_elements_of_the_scene_and_no_other),
+        cmocka_unit_test(every_number_of_an_expression_is_a_parameter),
+        cmocka_unit_test(both_edges_of_a_pulse_are_corners_of_the_source),
+        cmocka_unit_test(creep_is_right_over_a_day),
+        cmocka_unit_test(film_that_starts_in_its_equilibrium_stays_there),
+        cmocka_unit_test(rows_before_a_pull_in_are_kept),
+        cmocka_unit_test(transients_beyond_its_rule_are_refused_by_name),
+        cmocka_unit_test(ring_too_long_for_its_accuracy_fails_and_says_so),
+        cmocka_unit_test(error_falls_with_the_square_of_the_step),
+        cmocka_unit_test(run_in_pieces_is_the_run_in_one),
+        cmocka_unit_test(frequency_responses_are_those_of_the_closed_form),
+        cmocka_unit_test(linear_films_move_as_their_closed_form_says),
+        cmocka_unit_test(films_of_every_model_move_as_by_another_integrator),
+    };
+    return cmocka_run_group_tests_name("mobility", tests, NULL, NULL);
+}

@@ -223,11 +223,13 @@ static void enter_segment(runner *r, double time, double next)
     }
 }
 
-/* A film without mass must stay where its branches, held, keep it stable. */
-static bool is_stable(const runner *r, const node *n)
+/* The edge lies between centre and frame, and a film without mass stays where its branches, held, keep it stable. */
+static bool is_possible(const runner *r, const node *n)
 {
     dea_dynamics *d = r->route->dynamics;
-    return d->mass > 0.0 || dea_dynamics_stiffness(d, n->moment.u, n->moment.voltage, false) > 0.0;
+    const double u = n->moment.u;
+    const bool inside = u > -d->radius && u < d->point.frame_radius - d->radius && isfinite(n->moment.v);
+    return inside && (d->mass > 0.0 || dea_dynamics_stiffness(d, u, n->moment.voltage, false) > 0.0);
 }
 
 /* Takes one more point; false where the film has left what it can do. */
@@ -236,7 +238,7 @@ static bool advance(runner *r, double time, const dea_mobility_state *state)
     enter_segment(r, r->last.moment.time, time);
     node n = node_at(r, time, state);
     correct(r, time - r->last.moment.time, &n);
-    if (!isfinite(n.moment.u) || !isfinite(n.moment.v) || !is_stable(r, &n)) {
+    if (!is_possible(r, &n)) {
         r->track->end = DEA_STATE_PULL_IN;
         return false;
     }
@@ -287,13 +289,16 @@ static void set_piece(runner *r, dea_mobility_piece *piece, double to, double st
                                   .start = scaled(r->last.state, 1.0 / r->speed)};
 }
 
-/* Why the library stopped: the film has lost its stability there, or not. */
+/* Why the library stopped: the film has lost its stability there or will find no equilibrium, or another reason. */
 static dea_state verdict(const runner *r)
 {
     dea_dynamics *d = r->route->dynamics;
+    const dea_segment *segment = &r->route->signal->segments[r->segment];
     const double rest = dea_dynamics_stiffness(d, 0.0, 0.0, false);
     const double here = dea_dynamics_stiffness(d, r->last.moment.u, r->last.moment.voltage, false);
-    return here < 1e-3 * rest ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
+    double u;
+    const bool lost = here < 1e-3 * rest || !dea_dynamics_equilibrium(d, fmax(fabs(segment->start), fabs(segment->end)), &u);
+    return lost ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
 }
 
 /* The points of one netlist. */

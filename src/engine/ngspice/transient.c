@@ -95,11 +95,13 @@ static dea_mobility_state better_state(const dea_mobility_state *coarse, const d
 static void fill_summary(const dea_route *route, const levels *l, dea_summary *summary)
 {
     dea_dynamics *d = route->dynamics;
-    const dea_audit *coarse = &l->coarse.audit;
+    const bool whole = l->fine.end == DEA_STATE_OK;
+    const dea_track *other = whole ? &l->coarse : &l->fine; /* runs that end early do not end at one time */
+    const dea_audit *coarse = &other->audit;
     const dea_audit *fine = &l->fine.audit;
     const dea_audit audit = {better(coarse->work, fine->work), better(coarse->dissipated, fine->dissipated),
                              better(coarse->branch, fine->branch), fine->largest};
-    const dea_mobility_state stop = better_state(&l->coarse.stop, &l->fine.stop, d->branch_count);
+    const dea_mobility_state stop = better_state(&other->stop, &l->fine.stop, d->branch_count);
     dea_moment last = l->fine.last;
     last.u = stop.u;
     last.v = stop.v;

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "drive/signal.h"
+#include "network/dynamics.h"
 #include "program/program.h"
 
 /* Rows of all runs that a check keeps as its reference. */
@@ -35,6 +37,7 @@ typedef struct dea_comparison {
     char *reference; /* points as the layout has them */
     size_t points;
     bool filling;          /* points are the reference itself */
+    double least[COLUMNS]; /* magnitude that samples of a transient can miss altogether, where they fall between pulses */
     double scale[COLUMNS]; /* largest magnitude in the reference */
     double worst[COLUMNS]; /* largest difference */
     size_t states;         /* rows whose states differ */
@@ -86,6 +89,29 @@ static double value_of(const dea_comparison *comparison, const char *row, size_t
     double value;
     memcpy(&value, row + comparison->layout.columns[comparison->columns[number].column].offset, sizeof value);
     return value;
+}
+
+/* A hundredth of what the largest voltage of the run would do at rest. */
+static void set_least(dea_comparison *comparison)
+{
+    dea_dynamics dynamics;
+    dea_signal signal = {0};
+    const dea_scene *scene = comparison->scene;
+    if (dea_dynamics_open(scene, scene->models[0], &dynamics, NULL) == DEA_OK &&
+        dea_signal_open(scene, &signal, NULL) == DEA_OK && signal.largest > 0.0) {
+        const double u = dea_dynamics_scale(&dynamics, signal.largest);
+        const dea_edge at = dea_dynamics_edge(&dynamics, 0.0);
+        const dea_sample swing = {.displacement = u,
+                                  .strain = u / dynamics.radius,
+                                  .force = fabs(at.push) * signal.largest * signal.largest,
+                                  .charge = at.capacitance * signal.largest,
+                                  .focal_length = fmax(0.0, dynamics.focal_length)};
+        for (size_t c = 0; c < comparison->column_count; c++) {
+            comparison->least[c] = 0.01 * value_of(comparison, (const char *)&swing, c);
+        }
+    }
+    dea_signal_close(&signal);
+    dea_dynamics_close(&dynamics);
 }
 
 /* Largest magnitude of a column over the rows of a point. */
@@ -163,7 +189,7 @@ static void take_point(dea_comparison *comparison, size_t number, const char *po
         memcpy(reference, point, layout->point_size);
     }
     for (size_t c = 0; c < comparison->column_count; c++) {
-        peaks[c] = peak_of(comparison, reference, c);
+        peaks[c] = fmax(peak_of(comparison, reference, c), comparison->least[c]);
         comparison->scale[c] = fmax(comparison->scale[c], peaks[c]);
     }
     if (!comparison->filling) {
@@ -329,6 +355,9 @@ static void check_model(const dea_arguments *arguments, const char *path, const 
     dea_comparison comparison = {
         .scene = scene, .layout = dea_layout_of(scene), .points = dea_scene_point_count(scene), .filling = true};
     choose_columns(&comparison);
+    if (scene->study == DEA_STUDY_TRANSIENT) {
+        set_least(&comparison);
+    }
     comparison.reference = malloc(comparison.points * comparison.layout.point_size);
     if (!comparison.reference) {
         dea_complain("out of memory for %zu points", comparison.points);
@@ -359,7 +388,8 @@ static void check_scene(const dea_arguments *arguments, const char *path, dea_ta
         dea_scene_free(&scene);
         return;
     }
-    const double tolerance = isnan(arguments->tolerance) ? scene.accuracy : arguments->tolerance;
+    const double both = scene.study == DEA_STUDY_TRANSIENT ? 2.0 : 1.0; /* each engine may be off by the accuracy */
+    const double tolerance = isnan(arguments->tolerance) ? both * scene.accuracy : arguments->tolerance;
     for (size_t i = 0; i < scene.model_count && dea_signals_caught() == 0; i++) {
         dea_scene alone = scene;
         alone.models[0] = scene.models[i];
@@ -395,7 +425,8 @@ const dea_command dea_command_check = {
             "of the run, and the columns estimate and balance show what the engine itself\n"
             "says of its error and of its energy balance. Phases differ in radian.\n"
             "\n"
-            "      --tolerance T     difference that still agrees; default: the scene's accuracy\n"
+            "      --tolerance T     difference that still agrees; default: the scene's accuracy,\n"
+            "                        in a transient twice that, as both engines may be off by it\n"
             "      --engine E        compare only this engine with the first\n"
             "      --model M         model instead of the scene's; several with commas between\n"
             "      --set KEY=VALUE   change a value of the scene; may be repeated\n"

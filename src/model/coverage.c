@@ -2,6 +2,7 @@
 #include "model/film_balance.h"
 #include "network/formula.h"
 #include "network/hyperelastic.h"
+#include "support/gauss.h"
 
 static void solve(const dea_point *point, double accuracy, dea_row *row)
 {
@@ -25,21 +26,15 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
                  taut);
 }
 
-/* Ten-point Gauss-Legendre rule on [0, 1], its lower half. */
-static const double places[] = {0.013046735741414139961, 0.067468316655507744634, 0.160295215850487796883,
-                                0.283302302935376404600, 0.425562830509184394558};
-static const double weights[] = {0.033335672154344068797, 0.074725674575290296573, 0.109543181257991021998,
-                                 0.134633359654998177546, 0.147762112357376435087};
-
 /* int_0^1 (1 + e t)^4/(1 + s t) dt by the rule: in closed form it takes a logarithm and loses all digits as B nears 1. */
 static dea_expr mean_push(dea_pool *pool, dea_expr s, dea_expr e)
 {
     const dea_expr one = NUM(1.0);
     dea_expr sum = NUM(0.0);
-    for (int i = 0; i < 10; i++) {
-        const double t = i < 5 ? places[i] : 1.0 - places[9 - i];
+    for (int i = 0; i < DEA_GAUSS_POINTS; i++) {
+        const double t = dea_gauss_place(i);
         const dea_expr fourth = SQUARE(SQUARE(ADD(one, SCALE(t, e))));
-        sum = ADD(sum, SCALE(weights[i < 5 ? i : 9 - i], DIV(fourth, ADD(one, SCALE(t, s)))));
+        sum = ADD(sum, SCALE(dea_gauss_weight(i), DIV(fourth, ADD(one, SCALE(t, s)))));
     }
     return sum;
 }

@@ -4,6 +4,8 @@
 #include <stddef.h>
 #include <stdlib.h>
 
+#include "support/gauss.h"
+
 enum { AREA, STRESS, PUSH, CAPACITANCE, OUTPUTS };
 
 /* Slowest first. */
@@ -315,12 +317,6 @@ void dea_audit_add(dea_audit *audit, dea_dynamics *dynamics, const dea_moment *m
     audit->largest = fmax(fmax(audit->largest, kinetic), fmax(fabs(audit->work), fabs(audit->dissipated)));
 }
 
-/* Ten-point Gauss-Legendre rule on [0, 1], its lower half. */
-static const double places[5] = {0.013046735741414139961, 0.067468316655507744634, 0.160295215850487796883,
-                                 0.283302302935376404600, 0.425562830509184394558};
-static const double weights[5] = {0.033335672154344068797, 0.074725674575290296573, 0.109543181257991021998,
-                                  0.134633359654998177546, 0.147762112357376435087};
-
 enum { PANELS = 16 };
 
 /* int A S du and, where z is given, int A sum c_i (S - z_i) du instead, from u to @p to. */
@@ -328,10 +324,10 @@ static double force_integral(dea_dynamics *d, double u, double to, const double 
 {
     double sum = 0.0;
     for (int panel = 0; panel < PANELS; panel++) {
-        for (int i = 0; i < 10; i++) {
-            const double place = i < 5 ? places[i] : 1.0 - places[9 - i];
-            const dea_edge e = dea_dynamics_edge(d, u + (to - u) * (((double)panel + place) / PANELS));
-            sum += weights[i < 5 ? i : 9 - i] * e.area * (z ? branch_stress(d, e.stress, z) : e.stress);
+        for (int i = 0; i < DEA_GAUSS_POINTS; i++) {
+            const double place = ((double)panel + dea_gauss_place(i)) / PANELS;
+            const dea_edge e = dea_dynamics_edge(d, u + (to - u) * place);
+            sum += dea_gauss_weight(i) * e.area * (z ? branch_stress(d, e.stress, z) : e.stress);
         }
     }
     return sum * (to - u) / PANELS;

@@ -29,7 +29,7 @@ JOBS     ?= $(shell nproc 2>/dev/null || echo 1)
 SANITIZE := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 
 .DELETE_ON_ERROR:
-.PHONY: all unit demo check test asan fuzz clang bench examples-agree asan-run install uninstall clean packages packages-check
+.PHONY: all unit demo check test asan fuzz clang bench netlists examples-agree asan-run install uninstall clean packages packages-check
 
 all: $(BUILD)/deaspice $(BUILD)/libdeaspice.so
 
@@ -94,6 +94,14 @@ bench:
 $(BUILD)/bench: $(wildcard tests/bench/*.[ch]) $(BUILD)/libdeaspice.a
 	@echo "CC $@"
 	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) -Itests/bench $(filter %.c,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) $(LIBS)
+
+# The ready-made parts for circuit simulators; a unit test finds what is checked in and differs.
+netlists: $(BUILD)/make_netlists
+	@$(BUILD)/make_netlists netlists
+
+$(BUILD)/make_netlists: tests/make_netlists.c $(BUILD)/libdeaspice.a
+	@echo "CC $@"
+	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) $^ -o $@ $(LDFLAGS) $(LIBS)
 
 install: all
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/pkgconfig $(DESTDIR)$(PREFIX)/include/deaspice $(DESTDIR)$(PREFIX)/share/man/man1

@@ -1,0 +1,157 @@
+#include "netlist/dialect.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+static const dea_dialect dialects[] = {
+    {
+        .name = "ngspice",
+        .title = "ngspice",
+        .source = {"b", "b"},
+        .equals = {" v=", " i="},
+        .open = "",
+        .close = "",
+        .left = "({",
+        .right = "})",
+        .ln = "ln",
+        .inside = ".",
+        .solver = ".options",
+        .inductor = "",
+        /* every step is as long as tmax only without a control of the error */
+        .transient = "* every step as long as tmax, no control of the error: it falls with the square of tmax\n"
+                     ".options method=trap trtol=1e30 itl4=50 pivtol=1e-60 pivrel=0.3 chgtol=1e-30\n",
+        .ac = "* the network is linear: no operating point\n.options noopac pivtol=1e-60\n",
+        .sweep = ".options itl1=200 itl2=200\n",
+        .save = ".save",
+    },
+    {
+        .name = "ltspice",
+        .title = "LTspice",
+        .source = {"b", "b"},
+        .equals = {" v=", " i="},
+        .open = "",
+        .close = "",
+        .left = "({",
+        .right = "})",
+        .ln = "ln",
+        .inside = ":",
+        .solver = ".options",
+        .inductor = " rser=0", /* else 1 mOhm */
+        .transient = "",
+        .ac = "",
+        .sweep = "",
+        .save = ".save",
+    },
+    {
+        .name = "xyce",
+        .title = "Xyce",
+        .source = {"b", "b"},
+        .equals = {" v=", " i="},
+        .open = "{",
+        .close = "}",
+        .left = "",
+        .right = "",
+        .ln = "ln",
+        .inside = ":",
+        .solver = ".options nonlin-tran",
+        .stepping = ".options timeint",
+        .inductor = "",
+        .transient = "",
+        .ac = "",
+        .sweep = "",
+    },
+    {
+        .name = "pspice",
+        .title = "PSpice",
+        .source = {"e", "g"},
+        .equals = {" value=", " value="},
+        .open = "{",
+        .close = "}",
+        .left = "",
+        .right = "",
+        .ln = "log", /* PSpice calls the natural logarithm log, and has no ln */
+        .inside = ".",
+        .solver = ".options",
+        .inductor = "",
+        .transient = "",
+        .ac = "",
+        .sweep = "",
+    },
+};
+
+enum { DIALECT_COUNT = sizeof dialects / sizeof *dialects };
+
+size_t dea_dialect_count(void)
+{
+    return DIALECT_COUNT;
+}
+
+const dea_dialect *dea_dialect_at(size_t index)
+{
+    return index < DIALECT_COUNT ? &dialects[index] : NULL;
+}
+
+const dea_dialect *dea_dialect_find(const char *name)
+{
+    for (size_t i = 0; name && i < DIALECT_COUNT; i++) {
+        if (strcmp(dialects[i].name, name) == 0) {
+            return &dialects[i];
+        }
+    }
+    return NULL;
+}
+
+void dea_dialect_source_begin(const dea_dialect *dialect, FILE *out, dea_quantity quantity, const char *name, const char *plus,
+                              const char *minus)
+{
+    fprintf(out, "%s%s %s %s%s%s", dialect->source[quantity], name, plus, minus, dialect->equals[quantity], dialect->open);
+}
+
+void dea_dialect_source_end(const dea_dialect *dialect, FILE *out)
+{
+    fprintf(out, "%s\n", dialect->close);
+}
+
+void dea_dialect_parameter(const dea_dialect *dialect, FILE *out, const char *name)
+{
+    fprintf(out, "%s%s%s", dialect->left, name, dialect->right);
+}
+
+void dea_dialect_comment(FILE *out, const char *text)
+{
+    fputs("* ", out);
+    for (size_t i = 0; text && text[i] && i < DEA_COMMENT_LENGTH; i++) {
+        const char c = text[i];
+        fputc(c >= ' ' && c <= '~' && c != '\\' ? c : ' ', out);
+    }
+    fputc('\n', out);
+}
+
+/* Length of the next piece: up to the last place where a line may be broken, behind a blank, `*` or `,`. */
+static size_t piece(const char *text, size_t length)
+{
+    if (length <= DEA_CARD_LENGTH) {
+        return length;
+    }
+    size_t end = DEA_CARD_LENGTH;
+    while (end > 1 && !strchr(" *,", text[end - 1])) {
+        end--;
+    }
+    return end > 1 ? end : length;
+}
+
+void dea_dialect_wrap(FILE *out, const char *text)
+{
+    while (*text) {
+        size_t left = strcspn(text, "\n");
+        const bool comment = *text == '*';
+        do {
+            const size_t length = comment ? left : piece(text, left);
+            fwrite(text, 1, length, out);
+            text += length;
+            left -= length;
+            fputs(left > 0 ? "\n+ " : "\n", out);
+        } while (left > 0);
+        text += *text == '\n';
+    }
+}

@@ -1,0 +1,104 @@
+#include "netlist/export.h"
+
+#include <string.h>
+
+static const dea_analogy analogies[] = {
+    {"mobility", "mobility analogy: v(edge) = velocity [m/s], current = force [N], compliance = inductor, mass = capacitor", 'c',
+     'l', false},
+    {"impedance", "impedance analogy: voltage = force [N], current = velocity [m/s], compliance = capacitor, mass = inductor",
+     'l', 'c', true},
+};
+
+enum { ANALOGIES = sizeof analogies / sizeof *analogies };
+
+size_t dea_analogy_count(void)
+{
+    return ANALOGIES;
+}
+
+const dea_analogy *dea_analogy_at(size_t index)
+{
+    return index < ANALOGIES ? &analogies[index] : NULL;
+}
+
+const dea_analogy *dea_analogy_find(const char *name)
+{
+    for (size_t i = 0; i < ANALOGIES; i++) {
+        if (strcmp(analogies[i].name, name) == 0) {
+            return &analogies[i];
+        }
+    }
+    return NULL;
+}
+
+void dea_export_share(dea_part_text *text)
+{
+    for (int i = 0; i < text->pool->count; i++) {
+        const dea_term *term = &text->pool->terms[i];
+        const bool scaled = term->operation == DEA_MUL && text->pool->terms[term->a].operation == DEA_NUMBER;
+        text->nodal[i] = text->moves[i] && term->operation >= DEA_ADD && !scaled;
+    }
+}
+
+void dea_export_number(FILE *out, double value)
+{
+    dea_part_number(out, value);
+}
+
+void dea_export_parameter(FILE *out, const char *name, double value)
+{
+    fprintf(out, ".param %s=", name);
+    dea_part_number(out, value);
+    fputc('\n', out);
+}
+
+void dea_export_head(const dea_export *export, const char *meaning)
+{
+    const dea_scene *scene = export->scene;
+    dea_dialect_comment(export->out, scene->title && *scene->title ? scene->title : "dielectric elastomer actuator");
+    fprintf(export->out, "* %s, model %s (%s), for %s\n* %s\n", scene->actuator.kind == DEA_DOT ? "dot" : "lens",
+            scene->models[0]->name, scene->models[0]->equation, export->dialect->title, meaning);
+}
+
+static dea_status refuse_models(const dea_scene *scene, dea_error *error)
+{
+    if (scene->model_count > 1) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "a netlist holds one model, the scene has %zu: choose one, --model %s",
+                        scene->model_count, scene->models[0]->name);
+    }
+    if (!scene->models[0]->network) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is not a network: --model lumped is one",
+                        scene->models[0]->name);
+    }
+    return DEA_OK;
+}
+
+static dea_status refuse_runs(const dea_scene *scene, dea_error *error)
+{
+    if (!scene->models[0]->dynamic) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is one of statics alone: --model lumped has a time domain",
+                        scene->models[0]->name);
+    }
+    if (scene->axis_count > 0) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED,
+                        "a netlist holds one run, the scene's study.over asks for %zu: --set study.over={} and a value of %s, "
+                        "such as --set %s=...",
+                        dea_scene_point_count(scene), scene->axes[0].key, scene->axes[0].key);
+    }
+    return DEA_OK;
+}
+
+dea_status dea_export_netlist(dea_export *export, dea_error *error)
+{
+    static dea_status (*const writers[])(dea_export *, dea_error *) = {
+        [DEA_STUDY_SWEEP] = dea_export_sweep,
+        [DEA_STUDY_TRANSIENT] = dea_export_transient,
+        [DEA_STUDY_AC] = dea_export_ac,
+    };
+    export->note[0] = '\0';
+    dea_status status = refuse_models(export->scene, error);
+    if (status == DEA_OK && export->scene->study != DEA_STUDY_SWEEP) {
+        status = refuse_runs(export->scene, error);
+    }
+    return status == DEA_OK ? writers[export->scene->study](export, error) : status;
+}

@@ -1,0 +1,392 @@
+/* Static sweeps in displacement form: v(edge) = displacement, current = force. One subcircuit a line of points; all lines are
+ * solved side by side in one DC sweep over the index of the points on their axis. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/line.h"
+#include "netlist/export.h"
+#include "netlist/part_text.h"
+#include "network/balance.h"
+
+/* Most lines of one netlist, most values of an axis that is not uniform, and most steps from one point to the next. */
+enum { MOST_LINES = 2000, MOST_LIST = 400, MOST_PARTS = 64, NAMES_A_LINE = 6 };
+
+/* Largest change of a displacement from one step to the next, relative to the size of the film: Newton then stays on the branch
+ * of equilibria that is connected to rest. */
+static const double longest_step = 0.01;
+
+typedef struct writer {
+    dea_export *export;
+    FILE *out;
+    const dea_dialect *dialect;
+    size_t lines;    /* written so far */
+    size_t points;   /* of a line */
+    size_t left_out; /* points without equilibrium */
+    FILE *names;     /* of the nodes that hold answers */
+    size_t written;  /* of these */
+    size_t parts;    /* steps from one point to the next, a power of 2 so that no rounding adds up */
+    double length;   /* smallest size of a displacement [m] */
+    double force;    /* smallest size of a force [N] */
+} writer;
+
+/* One line with its network. */
+typedef struct line_text {
+    writer *w;
+    const dea_scene *scene; /* axes at the first point */
+    const dea_axis *axis;   /* NULL: one point */
+    dea_network network;    /* owned */
+    dea_balance balance;    /* owned */
+    dea_part_text text;     /* owned */
+    dea_expr elastic, load;
+    size_t from, to; /* points with an equilibrium, `to` excluded */
+} line_text;
+
+static double symbol_at(const line_text *l, size_t i)
+{
+    return l->axis ? l->axis->values[i] : 0.0;
+}
+
+static bool has_equilibrium(line_text *l, size_t i)
+{
+    double share, fold;
+    const double symbol = symbol_at(l, i);
+    return dea_balance_valid(&l->balance, symbol) && !dea_balance_folds(&l->balance, symbol, &share, &fold);
+}
+
+/* The longest stretch of points that have an equilibrium. */
+static void find_stretch(line_text *l)
+{
+    size_t begin = 0;
+    l->from = l->to = 0;
+    for (size_t i = 0; i <= l->w->points; i++) {
+        if (i < l->w->points && has_equilibrium(l, i)) {
+            continue;
+        }
+        if (i - begin > l->to - l->from) {
+            l->from = begin;
+            l->to = i;
+        }
+        begin = i + 1;
+    }
+    l->w->left_out += l->w->points - (l->to - l->from);
+}
+
+/* The swept scalar moves as the displacement does: both are voltages. */
+static void move_symbol(dea_part_text *text)
+{
+    for (int i = 0; i < text->pool->count; i++) {
+        const dea_term *term = &text->pool->terms[i];
+        text->moves[i] = text->moves[i] || term->operation == DEA_SYMBOL ||
+                         (term->operation >= DEA_ADD && (text->moves[term->a] || text->moves[term->b]));
+    }
+}
+
+static void write_parameter_sum(const line_text *l, const char *sign, const char *name)
+{
+    fputs(sign, l->w->out);
+    dea_dialect_parameter(l->w->dialect, l->w->out, name);
+}
+
+/* The axis as a voltage of the index; a list as a sum of its steps, each of which rises between two indices. */
+static void write_axis(const line_text *l)
+{
+    FILE *out = l->w->out;
+    const dea_axis *axis = l->axis;
+    const size_t last = l->to - 1;
+    fprintf(out, "* index of the point, held inside the points that have an equilibrium, and the value of %s there [%s]\n",
+            axis->key, axis->unit);
+    dea_dialect_source_begin(l->w->dialect, out, DEA_VOLTAGE, "point", "point", "0");
+    fprintf(out, "min(max(v(k),%zu),%zu)", l->from, last);
+    dea_dialect_source_end(l->w->dialect, out);
+    const bool uniform = axis->uniform && axis->count > 1;
+    dea_export_parameter(out, "axis_from", axis->values[uniform ? 0 : l->from]);
+    for (size_t i = l->from + 1; i < l->to && !uniform; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "axis_step%zu", i);
+        dea_export_parameter(out, name, axis->values[i] - axis->values[i - 1]);
+    }
+    if (uniform) {
+        dea_export_parameter(out, "axis_span", axis->values[axis->count - 1] - axis->values[0]);
+    }
+    dea_dialect_source_begin(l->w->dialect, out, DEA_VOLTAGE, "axis", "axis", "0");
+    write_parameter_sum(l, "", "axis_from");
+    if (uniform) {
+        write_parameter_sum(l, "+", "axis_span");
+        fprintf(out, "*v(point)/%zu", axis->count - 1);
+    }
+    for (size_t i = l->from + 1; i < l->to && !uniform; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "axis_step%zu", i);
+        write_parameter_sum(l, "+", name);
+        fprintf(out, "*min(max(v(point)-%zu,0),1)", i - 1);
+    }
+    dea_dialect_source_end(l->w->dialect, out);
+}
+
+static void write_forces(const line_text *l)
+{
+    FILE *out = l->w->out;
+    for (int i = 0; i < l->network.element_count; i++) {
+        fprintf(out, "* %s: %s\n", l->network.elements[i].name, l->network.elements[i].meaning);
+    }
+    fputs("* elastic force of all springs [N], from the edge to the frame\n", out);
+    dea_dialect_source_begin(l->w->dialect, out, DEA_CURRENT, "spring", "edge", "0");
+    dea_part_text_write(&l->text, l->elastic);
+    dea_dialect_source_end(l->w->dialect, out);
+    fputs("* electrostatic force f_dea [N], Eq. 21, onto the edge\n", out);
+    dea_dialect_source_begin(l->w->dialect, out, DEA_CURRENT, "force", "0", "edge");
+    dea_part_text_write(&l->text, l->load);
+    dea_dialect_source_end(l->w->dialect, out);
+}
+
+/* Static displacement at a point of the line, from the model's own equation: where Newton starts. */
+static double displacement_at(const line_text *l, size_t i)
+{
+    dea_scene here = *l->scene;
+    dea_point point;
+    dea_row row = dea_row_failed();
+    if (l->axis) {
+        dea_axis_set(l->axis, &here, symbol_at(l, i));
+    }
+    dea_film_prepare(&here, &point.film);
+    dea_point_place(&here, &point);
+    here.models[0]->solve(&point, 1e-9, &row);
+    return isfinite(row.displacement) ? row.displacement : 0.0;
+}
+
+static void write_guess(const line_text *l, const char *node, int number, double value)
+{
+    FILE *out = l->w->out;
+    fprintf(out, " v(xline%zu%s%s", l->w->lines, l->w->dialect->inside, node);
+    fprintf(out, number >= 0 ? "%d)=" : ")=", number);
+    dea_export_number(out, value);
+}
+
+/* Newton's start of the first point. */
+static dea_status write_start(const line_text *l, dea_error *error)
+{
+    FILE *out = l->w->out;
+    const double u = displacement_at(l, l->from);
+    double *values = malloc(((size_t)l->network.pool.count + 1) * sizeof *values);
+    if (!values) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
+    }
+    dea_pool_values(&l->network.pool, symbol_at(l, l->from), u, values);
+    fprintf(out, ".nodeset v(edge%zu)=", l->w->lines);
+    dea_export_number(out, u);
+    if (l->axis) {
+        write_guess(l, "point", -1, (double)l->from);
+        write_guess(l, "axis", -1, symbol_at(l, l->from));
+    }
+    for (int i = 0; i < l->network.pool.count; i++) {
+        if (l->text.written[i] && l->text.moves[i]) {
+            write_guess(l, "x", i, values[i]);
+        }
+    }
+    fputc('\n', out);
+    free(values);
+    return DEA_OK;
+}
+
+/* Where the line lies on the other axes, and what it leaves out. */
+static void write_place(const line_text *l)
+{
+    FILE *out = l->w->out;
+    const dea_scene *scene = l->scene;
+    fprintf(out, "* line %zu: displacement v(edge%zu) [m]", l->w->lines, l->w->lines);
+    for (size_t i = 0; i < scene->axis_count; i++) {
+        const dea_axis *axis = &scene->axes[i];
+        if (axis != l->axis) {
+            double value;
+            memcpy(&value, (const char *)scene + axis->offset, sizeof value);
+            fprintf(out, ", %s = %.9g %s", axis->key, value, axis->unit);
+        }
+    }
+    fputc('\n', out);
+    if (l->to - l->from < l->w->points) {
+        fprintf(out, "* points %zu to %zu alone: the others have no equilibrium connected to rest, or a gap lies between\n",
+                l->from, l->to - 1);
+    }
+}
+
+static dea_status write_line(line_text *l, dea_error *error)
+{
+    FILE *out = l->w->out;
+    static const char *const symbols[] = {"v(axis)"};
+    if (!dea_part_text_open(&l->text, &l->network.pool, l->w->dialect, out)) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
+    }
+    l->text.node = "v(edge)";
+    l->text.symbols = symbols;
+    move_symbol(&l->text);
+    dea_export_share(&l->text);
+    dea_part_text_use(&l->text, l->elastic);
+    dea_part_text_use(&l->text, l->load);
+    write_place(l);
+    fprintf(out, ".subckt line%zu k edge\n", l->w->lines);
+    dea_part_text_parameters(&l->text);
+    if (l->axis) {
+        write_axis(l);
+    }
+    dea_part_text_nodes(&l->text);
+    write_forces(l);
+    fprintf(out, ".ends\nxline%zu k edge%zu line%zu\n", l->w->lines, l->w->lines, l->w->lines);
+    return write_start(l, error);
+}
+
+static void divide_steps(line_text *l)
+{
+    double before = displacement_at(l, l->from);
+    for (size_t i = l->from + 1; i < l->to; i++) {
+        const double next = displacement_at(l, i);
+        (void)dea_balance_valid(&l->balance, symbol_at(l, i)); /* moves the balance there */
+        while (l->w->parts < MOST_PARTS &&
+               fabs(next - before) > (double)l->w->parts * longest_step * dea_balance_length(&l->balance)) {
+            l->w->parts *= 2;
+        }
+        before = next;
+    }
+}
+
+static void add_scales(line_text *l)
+{
+    const dea_forces f = dea_balance_forces(&l->balance, symbol_at(l, l->from), 0.0);
+    const double length = l->scene->actuator.frame_radius;
+    l->w->length = fmin(l->w->length, length);
+    l->w->force = fmin(l->w->force, fabs(f.elastic_slope) * length);
+}
+
+/* A line without any point that has an equilibrium is left out. */
+static dea_status visit_line(void *user, const dea_scene *scene, const dea_line *line, dea_error *error)
+{
+    writer *w = user;
+    line_text l = {.w = w, .scene = scene, .axis = line->axis};
+    w->lines++;
+    dea_status status = dea_network_build(scene, scene->models[0], line->axis, &l.network, error);
+    if (status == DEA_OK) {
+        l.elastic = dea_network_elastic(&l.network);
+        l.load = dea_network_load(&l.network);
+        status = dea_balance_open(&l.network, &l.balance, error);
+    }
+    if (status == DEA_OK) {
+        find_stretch(&l);
+        if (l.to > l.from) {
+            add_scales(&l);
+            divide_steps(&l);
+            fprintf(w->names, "%sv(edge%zu)", ++w->written % NAMES_A_LINE == 0 ? "\n+ " : " ", w->lines);
+            status = write_line(&l, error);
+        } else {
+            fprintf(w->out, "* line %zu has no point with an equilibrium\n", w->lines);
+        }
+    }
+    dea_part_text_close(&l.text);
+    dea_balance_close(&l.balance);
+    dea_network_free(&l.network);
+    return status;
+}
+
+static void write_analysis(const writer *w, const char *names)
+{
+    FILE *out = w->out;
+    const double tolerance = fmin(1e-8, 0.1 * w->export->scene->accuracy);
+    fprintf(out, "* tolerances of one point\n%s reltol=", w->dialect->solver);
+    dea_export_number(out, tolerance);
+    fputs(" abstol=", out);
+    dea_export_number(out, 1e-18 * (w->dialect->stepping ? fmin(w->force, w->length) : w->force));
+    if (!w->dialect->stepping) {
+        fputs(" vntol=", out);
+        dea_export_number(out, 1e-18 * w->length);
+    }
+    fputc('\n', out);
+    fputs(w->export->dialect->sweep, out);
+    fputs("* the sweep over the index of the points\nvindex k 0 0\n", out);
+    if (w->export->dialect->save) {
+        fprintf(out, "%s%s\n", w->export->dialect->save, names);
+    }
+    fprintf(out, ".print dc%s\n", names);
+    if (w->parts > 1) {
+        fprintf(out, "* every row number n %zu, n = 0, 1, 2 ..., is a point; those between lead from one to the next\n",
+                w->parts);
+    }
+    fprintf(out, ".dc vindex 0 %zu ", w->points - 1);
+    dea_export_number(out, 1.0 / (double)w->parts);
+    fputs("\n.end\n", out);
+}
+
+static dea_status refuse(const dea_export *export, dea_error *error)
+{
+    const dea_scene *scene = export->scene;
+    const size_t points = dea_scene_point_count(scene);
+    size_t longest = 1;
+    for (size_t i = 0; i < scene->axis_count; i++) {
+        const dea_axis *axis = &scene->axes[i];
+        longest = axis->count > longest ? axis->count : longest;
+        if (!axis->uniform && axis->count > MOST_LIST) {
+            return dea_fail(error, DEA_ERROR_UNSUPPORTED,
+                            "the axis %s is a list of %zu values, a netlist holds %d of them: give it as from, to, points",
+                            axis->key, axis->count, MOST_LIST);
+        }
+    }
+    if (points / longest > MOST_LINES) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the sweep has %zu lines of points, a netlist holds %d: sweep fewer axes",
+                        points / longest, MOST_LINES);
+    }
+    if (export->analogy_given && export->analogy->loop) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED,
+                        "a static sweep is written in displacement form, which has no analogies: leave out --analogy");
+    }
+    return DEA_OK;
+}
+
+static dea_status write_lines(writer *w, dea_error *error)
+{
+    const dea_scene *scene = w->export->scene;
+    char *names = NULL;
+    size_t length;
+    w->names = open_memstream(&names, &length);
+    if (!w->names) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
+    }
+    dea_status status = dea_lines_visit(scene, 0, dea_scene_point_count(scene), visit_line, w, error);
+    const bool sound = !ferror(w->names);
+    if ((fclose(w->names) != 0 || !sound) && status == DEA_OK) {
+        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
+    }
+    if (status == DEA_OK && w->written == 0) {
+        status = dea_fail(error, DEA_ERROR_UNSUPPORTED, "no point of the sweep has an equilibrium");
+    }
+    if (status == DEA_OK) {
+        write_analysis(w, names);
+    }
+    free(names);
+    return status;
+}
+
+dea_status dea_export_sweep(dea_export *export, dea_error *error)
+{
+    const dea_scene *scene = export->scene;
+    writer w = {.export = export,
+                .out = export->out,
+                .dialect = export->dialect,
+                .points = 1,
+                .parts = 1,
+                .length = INFINITY,
+                .force = INFINITY};
+    dea_status status = refuse(export, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    for (size_t i = 0; i < scene->axis_count; i++) {
+        w.points = scene->axes[i].count > w.points ? scene->axes[i].count : w.points;
+    }
+    dea_export_head(export, "displacement form: v(edge) = displacement of the disc edge [m], current = force [N]");
+    status = write_lines(&w, error);
+    if (status == DEA_OK && w.left_out > 0) {
+        snprintf(export->note, sizeof export->note,
+                 "%zu points have no equilibrium: there the netlist repeats the nearest point of its line that has one, or has "
+                 "no line",
+                 w.left_out);
+    }
+    return status;
+}

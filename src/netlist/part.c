@@ -1,0 +1,693 @@
+#include "netlist/part.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "netlist/part_text.h"
+#include "network/derivative.h"
+#include "network/formula.h"
+#include "network/network.h"
+
+/* The symbols of a part's network: parameters that the checks of the subcircuit have put into their ranges. */
+enum {
+    RADIUS,
+    COVER,
+    THICK,
+    STRETCH,
+    YEOH1,
+    YEOH2,
+    YEOH3,
+    EPS_R,
+    Y_GIVEN,
+    Y_FREE,
+    RHO,
+    AREAL,
+    VOLTAGE, /* always replaced by a number */
+    SYMBOLS
+};
+
+static const char *const symbol_names[SYMBOLS] = {"radius", "cover",   "thick",  "stretch", "yeoh1", "c2", "c3",
+                                                  "eps_r",  "y_given", "y_free", "rho",     "areal", ""};
+
+typedef struct part {
+    const dea_dialect *dialect;
+    FILE *out;
+    dea_kind kind;
+    bool linear;
+    size_t branches;
+    dea_network network; /* owned */
+    dea_part_text text;  /* owned */
+    /* expressions of the displacement and the symbols, the voltage taken out */
+    dea_expr area, stress;                 /* A, S */
+    dea_expr push, push_slope;             /* phi = (1/2) dC/du [N/V^2] and its slope */
+    dea_expr capacitance, c_rest;          /* C(u), C(0) */
+    dea_expr k_rest;                       /* d(A S)/du at rest [N/m] */
+    dea_expr field;                        /* true field of 1 V */
+    dea_expr mass;                         /* of film and electrodes */
+    dea_expr divide, width;                /* r_a, r - r_a */
+    dea_expr taut[DEA_NETWORK_TENSIONS];   /* > 0 while taut, without voltage */
+    dea_expr loosen[DEA_NETWORK_TENSIONS]; /* what 1 V adds to it; grows with U^2 */
+} part;
+
+/* Models that are parts. */
+typedef struct form {
+    const char *model;
+    const char *ending; /* of the name of the part */
+    const char *meaning;
+    bool modulus; /* takes an operating modulus */
+} form;
+
+static const form *form_of(const dea_model *model)
+{
+    static const form forms[] = {
+        {"lumped", "", "two linear springs and a force, Eqs. 19-23", true},
+        {"lame", "_lame", "Lame's disc and annulus with electrostatic softening", false},
+        {"coverage", "_hyper", "hyperelastic disc and annulus, Eq. 18, quasi-linear relaxation", false},
+    };
+    for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+        if (strcmp(model->name, forms[i].model) == 0) {
+            return &forms[i];
+        }
+    }
+    return NULL;
+}
+
+const char *dea_part_name_of(dea_kind kind, const dea_model *model, char name[DEA_PART_TITLE])
+{
+    const form *of = form_of(model);
+    if (!of) {
+        return NULL;
+    }
+    snprintf(name, DEA_PART_TITLE, "%s%s", kind == DEA_DOT ? "dea_dot" : "dea_lens", of->ending);
+    return name;
+}
+
+/* @p ref with the displacement, or the voltage, replaced by a number; the same term where it holds none. */
+static dea_expr put(dea_pool *pool, dea_expr ref, dea_operation place, double number)
+{
+    const dea_term term = pool->terms[ref]; /* a copy: the pool grows */
+    if (term.operation == place && (place == DEA_NODE || term.a == VOLTAGE)) {
+        return NUM(number);
+    }
+    if (term.operation < DEA_ADD) {
+        return ref;
+    }
+    const dea_expr a = put(pool, term.a, place, number);
+    const dea_expr b = put(pool, term.b, place, number);
+    if (a == term.a && b == term.b) {
+        return ref;
+    }
+    return term.operation == DEA_ADD   ? ADD(a, b)
+           : term.operation == DEA_SUB ? SUB(a, b)
+           : term.operation == DEA_MUL ? MUL(a, b)
+           : term.operation == DEA_DIV ? DIV(a, b)
+                                       : LN(a);
+}
+
+static dea_expr at_volts(dea_pool *pool, dea_expr ref, double volts)
+{
+    return put(pool, ref, DEA_SYMBOL, volts);
+}
+
+static dea_expr at_rest(dea_pool *pool, dea_expr ref)
+{
+    return put(pool, ref, DEA_NODE, 0.0);
+}
+
+static dea_symbols symbols_of(dea_pool *pool, dea_kind kind)
+{
+    dea_expr s[SYMBOLS];
+    for (int i = 0; i < SYMBOLS; i++) {
+        s[i] = dea_expr_symbol(pool, i);
+    }
+    dea_symbols symbols = {.pool = pool,
+                           .kind = kind,
+                           .frame_radius = s[RADIUS],
+                           .coverage = s[COVER],
+                           .film_thickness = s[THICK],
+                           .prestretch = s[STRETCH],
+                           .yeoh = {s[YEOH1], s[YEOH2], s[YEOH3]},
+                           .permittivity = SCALE(DEA_EPSILON_0, s[EPS_R]),
+                           .breakdown = NUM(INFINITY),
+                           .voltage = s[VOLTAGE]};
+    symbols.modulus = ADD(s[Y_GIVEN], MUL(s[Y_FREE], dea_symbols_modulus(&symbols)));
+    return symbols;
+}
+
+/* Rayleigh's mass with Lame's shape: disc pi a^2/2, annulus 2 pi a^2 q/x^2 with x = 1 - B^2 and q = -ln B - x + (1 - B^4)/4; the
+ * film with a = r_a/lambda_pre, its electrode with a = r_a. */
+static dea_expr moving_mass(const dea_symbols *symbols)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_expr one = NUM(1.0);
+    const dea_expr b2 = SQUARE(symbols->coverage);
+    const dea_expr x = SUB(one, b2);
+    const dea_expr q = SUB(SUB(SCALE(0.25, SUB(one, SQUARE(b2))), x), LN(symbols->coverage));
+    const dea_expr square = SQUARE(MUL(symbols->frame_radius, symbols->coverage));
+    const dea_expr disc = SCALE(0.5 * DEA_PI, square);
+    const dea_expr annulus = SCALE(2.0 * DEA_PI, MUL(square, DIV(q, SQUARE(x))));
+    const dea_expr film = DIV(ADD(disc, annulus), SQUARE(symbols->prestretch));
+    return ADD(MUL(MUL(dea_expr_symbol(pool, RHO), symbols->film_thickness), film),
+               MUL(dea_expr_symbol(pool, AREAL), symbols->kind == DEA_DOT ? disc : annulus));
+}
+
+/* All expressions of the part, from the model's network under a symbolic voltage. */
+static dea_status derive(part *p, const dea_model *model, dea_error *error)
+{
+    dea_network *network = &p->network;
+    dea_pool *pool = &network->pool;
+    (void)NUM(0.0);
+    if (pool->exhausted) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is made");
+    }
+    const dea_symbols symbols = symbols_of(pool, p->kind);
+    const dea_status status = dea_network_build_symbols(&symbols, model, network, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    const dea_expr pull = SUB(dea_network_load(network), MUL(dea_network_softening(network), network->edge));
+    p->push = at_volts(pool, pull, 1.0);
+    p->push_slope = dea_expr_slope(pool, p->push);
+    p->area = dea_network_area(network);
+    p->stress = dea_network_stress(network);
+    p->k_rest = at_rest(pool, MUL(p->area, dea_expr_slope(pool, p->stress)));
+    p->capacitance = network->capacitance;
+    p->c_rest = at_rest(pool, p->capacitance);
+    p->field = at_volts(pool, network->field, 1.0);
+    p->mass = moving_mass(&symbols);
+    p->divide = MUL(symbols.frame_radius, symbols.coverage);
+    p->width = dea_symbols_annulus_width(&symbols);
+    for (int i = 0; i < network->tension_count; i++) {
+        p->taut[i] = at_volts(pool, network->tension[i], 0.0);
+        const dea_expr loaded = at_volts(pool, network->tension[i], 1.0);
+        p->loosen[i] = loaded == p->taut[i] ? NUM(0.0) : SUB(loaded, p->taut[i]);
+    }
+    return pool->exhausted ? dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is made") : DEA_OK;
+}
+
+/* A source between two nodes. Its text holds `[name]` for a parameter and `[]` for the next expression. */
+static void source(const part *p, dea_quantity quantity, const char *name, const char *plus, const char *minus,
+                   const char *format, ...)
+{
+    va_list refs;
+    va_start(refs, format);
+    dea_dialect_source_begin(p->dialect, p->out, quantity, name, plus, minus);
+    for (const char *c = format; *c; c++) {
+        if (*c != '[') {
+            fputc(*c, p->out);
+            continue;
+        }
+        const char *end = strchr(c, ']');
+        if (end == c + 1) {
+            dea_part_text_write(&p->text, va_arg(refs, dea_expr));
+        } else {
+            char parameter[DEA_PART_NAME];
+            snprintf(parameter, sizeof parameter, "%.*s", (int)(end - c - 1), c + 1);
+            dea_dialect_parameter(p->dialect, p->out, parameter);
+        }
+        c = end;
+    }
+    va_end(refs);
+    dea_dialect_source_end(p->dialect, p->out);
+}
+
+static void line(const part *p, const char *format, ...) DEA_PRINTF(2, 3);
+
+static void line(const part *p, const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    vfprintf(p->out, format, values);
+    va_end(values);
+    fputc('\n', p->out);
+}
+
+/* A parameter of the subcircuit, the name under which it is used once it is in its range, and that range. */
+typedef struct range {
+    const char *raw, *name;
+    const char *low, *high;
+} range;
+
+static void check(const part *p, const range *r, int *count)
+{
+    line(p, ".param %s={min(max(%s,%s),%s)}", r->name, r->raw, r->low, r->high);
+    line(p, ".param ok%d={ok%d*(1-min(max(abs(%s-(%s))-1e-12*abs(%s),0)*1e30,1))}", *count, *count - 1, r->name, r->raw, r->name);
+    ++*count;
+}
+
+static void check_branches(const part *p, int *count)
+{
+    char g[32], share[32], tau[32], time[32];
+    line(p, ".param left0={1}");
+    for (size_t i = 1; i <= p->branches; i++) {
+        snprintf(g, sizeof g, "g%zu", i);
+        snprintf(share, sizeof share, "part%zu", i);
+        snprintf(tau, sizeof tau, "tau%zu", i);
+        snprintf(time, sizeof time, "relax%zu", i);
+        check(p, &(range){g, share, "0", "1"}, count);
+        check(p, &(range){tau, time, "1e-12", "1e12"}, count);
+        line(p, ".param left%zu={left%zu-g%zu}", i, i - 1, i);
+    }
+    snprintf(g, sizeof g, "left%zu", p->branches);
+    check(p, &(range){g, "g_rest", "1e-9", "1"}, count);
+    for (size_t i = 1; i <= p->branches; i++) {
+        line(p, ".param share%zu={part%zu/g_rest}", i, i);
+    }
+}
+
+/* A lens liquid of fixed volume under a cap of radius R_c: h_0 = a^2/(R_c + sqrt(R_c^2 - a^2)). */
+static void check_optics(const part *p, int *count)
+{
+    line(p, "* optics: radius of the cap at rest, its height [m] and (height/r_a)^2; lens_on is 0 without a focal length");
+    check(p, &(range){"focal_length", "focus", "0", "1e3"}, count);
+    check(p, &(range){"refractive_index", "refract", "1.000001", "10"}, count);
+    line(p, ".param lens_on={min(focus*1e30,1)}");
+    line(p, ".param a_lens={radius*cover}");
+    line(p, ".param bend={lens_on*focus*(refract-1)+(1-lens_on)*2*a_lens}");
+    check(p, &(range){"bend", "cap", "a_lens", "1e9"}, count);
+    line(p, ".param height={a_lens*a_lens/(cap+sqrt((cap-a_lens)*(cap+a_lens)))}");
+    line(p, ".param flat={height*height/(a_lens*a_lens)}");
+}
+
+/* Every number that the network uses is in its range; ok tells whether all were. */
+static void write_checks(const part *p, bool modulus)
+{
+    static const range ranges[] = {
+        {"frame_radius", "radius", "1e-6", "1e3"},
+        {"coverage", "cover", "1e-6", "0.999999"},
+        {"film_thickness", "thick", "1e-9", "1"},
+        {"prestretch", "stretch", "1", "100"},
+        {"c1", "yeoh1", "1", "1e12"},
+        {"permittivity+permittivity_per_stretch*prestretch", "eps_r", "1e-3", "1e9"},
+        {"density", "rho", "0", "1e6"},
+        {"electrode_mass", "areal", "0", "1e6"},
+        {"retardation", "retard", "0", "1e9"},
+        {"leakage_resistance", "r_leak", "0", "1e30"},
+    };
+    int count = 1;
+    line(p, "* parameters put into their ranges; ok is 1 where all were there already, else 0");
+    line(p, ".param ok0={1}");
+    for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++) {
+        check(p, &ranges[i], &count);
+    }
+    if (modulus) {
+        check(p, &(range){"modulus", "y_given", "0", "1e15"}, &count);
+        line(p, ".param y_free={1-min(y_given*1e30,1)}");
+    }
+    check_branches(p, &count);
+    if (p->kind == DEA_LENS) {
+        check_optics(p, &count);
+    }
+    line(p, ".param ok={ok%d}", count - 1);
+}
+
+static void declare(part *p)
+{
+    dea_part_text *text = &p->text;
+    const dea_network *network = &p->network;
+    const dea_expr all[] = {p->area,  p->push, p->capacitance, p->c_rest, p->k_rest,
+                            p->field, p->mass, p->divide,      p->width,  p->linear ? p->push_slope : p->stress};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        dea_part_text_use(text, all[i]);
+    }
+    for (int i = 0; i < network->tension_count; i++) {
+        dea_part_text_use(text, p->taut[i]);
+        dea_part_text_use(text, p->loosen[i]);
+    }
+}
+
+/* Names for what a designer knows by name. */
+static void give_names(part *p)
+{
+    dea_part_text *text = &p->text;
+    text->symbols = symbol_names;
+    text->node = p->linear ? "(1e-6*v(u))" : "(1e-6*v(w))";
+    dea_part_text_name(text, p->divide, "r_a", "radius of the disc edge [m]");
+    dea_part_text_name(text, p->width, "r_ring", "width of the annulus [m]");
+    for (int i = 0; i < p->network.element_count; i++) {
+        const dea_element *element = &p->network.elements[i];
+        char name[DEA_PART_NAME], meaning[96];
+        snprintf(name, sizeof name, "k%s", strchr(element->name, '_'));
+        snprintf(meaning, sizeof meaning, "1/%s: %s", element->name, element->meaning);
+        if (element->role == DEA_ROLE_SPRING) {
+            dea_part_text_name(text, element->value, name, meaning);
+        }
+    }
+    dea_part_text_name(text, p->k_rest, "k_rest", "stiffness of the relaxed film at rest [N/m]");
+    dea_part_text_name(text, p->c_rest, "c_rest", "capacitance of the film at rest [F]");
+    dea_part_text_name(text, p->mass, "m_film", "mass that moves with the edge [kg]");
+    dea_part_text_name(text, p->push, "push", "force on the edge per square of the voltage, (1/2) dC/du [N/V^2], Eq. 21");
+}
+
+/* Numbers of the cards below, beside the network's own. A film without mass and damper keeps 1 ns of damping: its edge would have
+ * no velocity at an edge of the voltage otherwise. */
+static void write_numbers(const part *p)
+{
+    char name[DEA_PART_NAME];
+    line(p, ".param per_um={1e-6/%s}", dea_part_text_parameter(&p->text, p->divide, name));
+    const char *reach = p->linear ? "1e6" : "0.99e6"; /* of the way [um/m] */
+    line(p, ".param u_low={-%s*%s}", reach, dea_part_text_parameter(&p->text, p->divide, name));
+    line(p, ".param u_high={%s*%s}", reach, dea_part_text_parameter(&p->text, p->width, name));
+    line(p, ".param still={max(1-m_film*1e30,0)*max(1-retard*1e30,0)}");
+    line(p, ".param damp={retard+1e-9*still}");
+    line(p, ".param inertia={m_film+1e-24*%s}", dea_part_text_parameter(&p->text, p->k_rest, name));
+    line(p, "* conductance of the leakage [S], 0 without a resistance");
+    line(p, ".param leak={r_leak/(r_leak*r_leak+1e-30)}");
+}
+
+static void write_port(const part *p)
+{
+    line(p, "* film: v(q) = charge/c_rest; the current of a capacitor of c_rest/1000 is a thousandth of d(C U)/dt, so that the");
+    line(p, "* tolerance of currents is one of 1 nA, which the digits of kilovolts can keep in short steps");
+    line(p, ".param c_sense={1e-3*c_rest}");
+    source(p, DEA_VOLTAGE, "charge", "q", "0", "[ok]*v(p,n)*[]/[c_rest]", p->capacitance);
+    line(p, "vsense q plate 0\ncfilm plate 0 {c_sense}\nffilm p n vsense 1e3\ngleak p n p n {leak}");
+    line(p, "* electrostatic force [N] onto the edge, (1/2) U^2 dC/du");
+    source(p, DEA_VOLTAGE, "force", "force", "0", "[ok]*[]*v(p,n)*v(p,n)", p->push);
+    line(p, "gforce 0 edge force 0 1");
+}
+
+static void write_displacement(const part *p)
+{
+    line(p,
+         "* u = displacement of the edge [um], the integral of its velocity; it leaks 1e-9 of itself a second, so that springs");
+    line(p, "* in parallel have an operating point");
+    line(p, "gdisp 0 u edge 0 1e6\ncdisp u 0 1\ngdrift u 0 u 0 1e-9");
+    line(p, "* holds the edge where a parameter is out of its range [N/um]");
+    line(p, ".param hold={1-ok}\ngsafe edge 0 u 0 {hold}");
+    line(p,
+         "* mass that moves with the edge [kg]; a capacitor of a millionth of it, so that the tolerance of currents, 1e-12, is");
+    line(p, "* one of 1e-6 N: the force of inertia is 0 at rest, where a kink of the voltage would ask for steps without end");
+    line(p, "emass m1 0 edge 0 1e-6\nvmass m1 m2 0\ncmass m2 0 {inertia}\nfmass edge 0 vmass 1e6");
+}
+
+static void write_linear_springs(const part *p)
+{
+    char name[DEA_PART_NAME];
+    const char *k = dea_part_text_parameter(&p->text, p->k_rest, name);
+    line(p, "* springs [N/um], damper [N s/m], branches: z relaxes to u with the time of the branch");
+    line(p, ".param k_um={1e-6*%s}\n.param r_damp={damp*%s}", k, k);
+    line(p, "gspring edge 0 u 0 {k_um}\ngdamp edge 0 edge 0 {r_damp}");
+    for (size_t i = 1; i <= p->branches; i++) {
+        line(p, ".param k_um%zu={share%zu*k_um}", i, i);
+        line(p, "grelax%zu 0 z%zu u z%zu 1\ncrelax%zu z%zu 0 {relax%zu}\ngbranch%zu edge 0 u z%zu {k_um%zu}", i, i, i, i, i, i, i,
+             i, i);
+    }
+}
+
+static void write_hyperelastic_springs(const part *p)
+{
+    line(p, "* s = stress of the springs [Pa] on the area A(u); branches: z relaxes to s with the time of the branch");
+    source(p, DEA_VOLTAGE, "stress", "s", "0", "[]", p->stress);
+    line(p, "* damper: v(rate) = tau ds/dt [1e10 Pa], the current of a capacitor of its time");
+    line(p, ".param c_damp={damp+1e-18}\nedamp d 0 s 0 1e-10\nvdamp d follow 0\ncdamp follow 0 {c_damp}\nhdamp rate 0 vdamp 1");
+    fputs("* force of springs, damper and branches [N]\n", p->out);
+    for (size_t i = 1; i <= p->branches; i++) {
+        line(p, "grelax%zu 0 z%zu s z%zu 1\ncrelax%zu z%zu 0 {relax%zu}", i, i, i, i, i, i);
+        line(p, "ebranch%zu b%zu b%zu s z%zu {share%zu}", i, i, i - 1, i, i);
+    }
+    line(p, "ebranch0 b0 0 s 0 1");
+    char text[64];
+    snprintf(text, sizeof text, "[]*(v(b%zu)+1e10*v(rate))", p->branches);
+    source(p, DEA_CURRENT, "spring", "edge", "0", text, p->area);
+}
+
+/* v(bad) and v(slack) rise from 0 to 1 within a millionth of what they watch. */
+static void write_outputs(const part *p)
+{
+    line(p, "* to be read: strain [1], true field [V/um]");
+    line(p, "estrain strain 0 u 0 {per_um}");
+    source(p, DEA_VOLTAGE, "field", "field", "0", "[ok]*1e-6*[]*v(p,n)", p->field);
+    line(p, "* bad = 1: a parameter out of its range, or no stable equilibrium of the relaxed film here (pull-in)");
+    source(p, DEA_VOLTAGE, "outside", "outside", "0", "max(v(u)-[u_high],[u_low]-v(u))");
+    if (p->linear) {
+        source(p, DEA_VOLTAGE, "net", "net", "0", "([]-[]*v(p,n)*v(p,n))/[k_rest]", p->k_rest, p->push_slope);
+        source(p, DEA_VOLTAGE, "bad", "bad", "0", "min(max(max(1-[ok],-1e6*v(net)),max(1e3*v(outside),0)),1)");
+    } else {
+        source(p, DEA_VOLTAGE, "bad", "bad", "0", "min(max(1-[ok],max(1e3*v(outside),0)),1)");
+    }
+    line(p, "* slack = 1: a region lost its tension, the film wrinkles");
+    for (int i = 0; i < p->network.tension_count; i++) {
+        char name[24], node[24], text[64] = "[]+[]*v(p,n)*v(p,n)";
+        snprintf(name, sizeof name, "taut%d", i);
+        snprintf(node, sizeof node, "t%d", i);
+        if (i > 0) {
+            snprintf(text, sizeof text, "min(v(t%d),[]+[]*v(p,n)*v(p,n))", i - 1);
+        }
+        source(p, DEA_VOLTAGE, name, node, "0", text, p->taut[i], p->loosen[i]);
+    }
+    char text[64];
+    snprintf(text, sizeof text, "1-min(max(1e6*v(t%d),0),1)", p->network.tension_count - 1);
+    source(p, DEA_VOLTAGE, "slack", "slack", "0", text);
+}
+
+/* Cap of constant volume: eta = h/h_0 from h (3 a^2 + h^2) = const, f = (a^2 + h^2)/(2 h (n - 1)). */
+static void write_optics(const part *p)
+{
+    line(p, "* eta = height of the liquid's cap over its height at rest; focal = focal length [mm], 0 without optics");
+    source(p, DEA_VOLTAGE, "eta", "eta", "0", "(3+[flat])/(3*(1+v(strain))*(1+v(strain))+[flat]*v(eta)*v(eta))");
+    line(p, ".param f_height={lens_on*1e3*height/(2*flat*(refract-1))}");
+    source(p, DEA_VOLTAGE, "focal", "focal", "0",
+           "[f_height]*((1+v(strain))*(1+v(strain))+[flat]*v(eta)*v(eta))/max(v(eta),1e-3)");
+}
+
+static void write_body(part *p, bool modulus)
+{
+    declare(p);
+    give_names(p);
+    write_checks(p, modulus);
+    dea_part_text_parameters(&p->text);
+    write_numbers(p);
+    write_displacement(p);
+    if (!p->linear) {
+        line(p, "* w = u between stops short of the centre and of the frame [um]: past them is no film");
+        source(p, DEA_VOLTAGE, "clip", "w", "0", "min(max(v(u),[u_low]),[u_high])");
+        line(p, ".param k_stop={1e-3*k_rest}\ngstop edge 0 u w {k_stop}");
+    }
+    dea_part_text_nodes(&p->text);
+    if (p->linear) {
+        write_linear_springs(p);
+    } else {
+        write_hyperelastic_springs(p);
+    }
+    write_port(p);
+    write_outputs(p);
+    if (p->kind == DEA_LENS) {
+        write_optics(p);
+    }
+}
+
+/* Branches that a part has at least. */
+enum { PART_BRANCHES = 3 };
+
+static double or_zero(double value)
+{
+    return isnan(value) ? 0.0 : value;
+}
+
+static void add(dea_part_parameter *list, size_t *count, const char *name, const char *unit, const char *meaning, double value)
+{
+    dea_part_parameter *entry = &list[(*count)++];
+    *entry = (dea_part_parameter){.unit = unit, .meaning = meaning, .value = value};
+    snprintf(entry->name, sizeof entry->name, "%s", name);
+}
+
+static void add_film(const dea_scene *scene, dea_part_parameter *list, size_t *count)
+{
+    const dea_material *material = &scene->material;
+    double yeoh[DEA_YEOH_TERMS];
+    dea_material_long_term(material, yeoh);
+    add(list, count, "c1", "Pa", "first Yeoh constant, long-term", yeoh[0]);
+    add(list, count, "c2", "Pa", "second Yeoh constant, long-term", yeoh[1]);
+    add(list, count, "c3", "Pa", "third Yeoh constant, long-term", yeoh[2]);
+    add(list, count, "permittivity", "1", "relative permittivity at stretch 0", material->permittivity);
+    add(list, count, "permittivity_per_stretch", "1", "its slope over the stretch", material->permittivity_per_stretch);
+    add(list, count, "density", "kg/m^3", "density of the film, 0: no inertia", or_zero(material->density));
+    add(list, count, "electrode_mass", "kg/m^2", "mass per area of the electrodes", or_zero(scene->actuator.electrode_mass));
+    add(list, count, "retardation", "s", "Kelvin-Voigt retardation time, 0: none", or_zero(material->retardation));
+    for (size_t i = 0; i < material->prony_count || i < PART_BRANCHES; i++) {
+        const dea_prony none = {0.0, 1.0};
+        const dea_prony *branch = i < material->prony_count ? &material->prony[i] : &none;
+        char name[32];
+        snprintf(name, sizeof name, "g%zu", i + 1);
+        add(list, count, name, "1", "share of the branch in the instantaneous modulus, 0: none", branch->g);
+        snprintf(name, sizeof name, "tau%zu", i + 1);
+        add(list, count, name, "s", "relaxation time of the branch", branch->tau);
+    }
+}
+
+size_t dea_part_parameters(const dea_scene *scene, const dea_model *model, dea_part_parameter list[DEA_PART_PARAMETERS])
+{
+    const dea_actuator *actuator = &scene->actuator;
+    const double coverage = isnan(actuator->coverage) ? actuator->divide_radius / actuator->frame_radius : actuator->coverage;
+    const bool dot = actuator->kind == DEA_DOT;
+    size_t count = 0;
+    add(list, &count, "frame_radius", "m", "inner radius of the rigid frame, r", actuator->frame_radius);
+    add(list, &count, "coverage", "1", dot ? "electrode radius over frame radius, B" : "lens radius over frame radius, B",
+        coverage);
+    add(list, &count, "film_thickness", "m", "thickness before pre-stretch, H", actuator->film_thickness);
+    add(list, &count, "prestretch", "1", "equi-biaxial pre-stretch", actuator->prestretch);
+    add_film(scene, list, &count);
+    if (form_of(model)->modulus) {
+        const double share = dea_material_long_term_share(&scene->material);
+        add(list, &count, "modulus", "Pa", "operating modulus Y, 0: from the Yeoh constants",
+            share * or_zero(scene->material.modulus));
+    }
+    add(list, &count, "leakage_resistance", "ohm", "of the film, 0: none", or_zero(scene->drive.leakage_resistance));
+    if (!dot) {
+        const double refractive = actuator->refractive_index;
+        add(list, &count, "focal_length", "m", "of the lens at rest, 0: no optics", or_zero(actuator->focal_length));
+        add(list, &count, "refractive_index", "1", "of the lens liquid", isnan(refractive) ? 1.4 : refractive);
+    }
+    return count;
+}
+
+/* `.subckt` with its parameters and defaults, in lines that every simulator takes. */
+static void write_header(const part *p, const char *name, const dea_part_parameter *list, size_t count)
+{
+    fprintf(p->out, ".subckt %s p n edge\n+ params:", name);
+    for (size_t i = 0; i < count; i++) {
+        fprintf(p->out, "%s %s=", i > 0 && i % 4 == 0 ? "\n+" : "", list[i].name);
+        dea_part_number(p->out, list[i].value);
+    }
+    fputc('\n', p->out);
+}
+
+static dea_status write_part(part *p, const dea_scene *defaults, const dea_model *model, dea_error *error)
+{
+    char name[DEA_PART_TITLE];
+    dea_part_parameter list[DEA_PART_PARAMETERS];
+    const dea_status status = derive(p, model, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    if (!dea_part_text_open(&p->text, &p->network.pool, p->dialect, p->out)) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is written");
+    }
+    dea_part_name_of(p->kind, model, name);
+    line(p, "* %s: %s", name, form_of(model)->meaning);
+    write_header(p, name, list, dea_part_parameters(defaults, model, list));
+    write_body(p, form_of(model)->modulus);
+    line(p, ".ends %s", name);
+    return DEA_OK;
+}
+
+dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, const dea_dialect *dialect, FILE *out,
+                          dea_error *error)
+{
+    if (!form_of(model)) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is no circuit part: lumped, lame and coverage are",
+                        model->name);
+    }
+    const size_t branches = defaults->material.prony_count;
+    char *text = NULL;
+    size_t length = 0;
+    part p = {.dialect = dialect,
+              .out = open_memstream(&text, &length),
+              .kind = defaults->actuator.kind,
+              .linear = model->linear != NULL,
+              .branches = branches > PART_BRANCHES ? branches : PART_BRANCHES};
+    if (!p.out) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is written");
+    }
+    dea_status status = write_part(&p, defaults, model, error);
+    const bool whole = !ferror(p.out) && fclose(p.out) == 0;
+    if (status == DEA_OK && !whole) {
+        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is written");
+    }
+    if (status == DEA_OK) {
+        dea_dialect_wrap(out, text);
+    }
+    free(text);
+    dea_part_text_close(&p.text);
+    dea_network_free(&p.network);
+    return status;
+}
+
+void dea_part_write_mechanics(FILE *out)
+{
+    fputs("* dea_spring: a spring between a and b that has an operating point beside the parts; v(x.u) = its stretch [um]\n"
+          ".subckt dea_spring a b\n"
+          "+ params: stiffness=100\n"
+          ".param k_um={1e-6*stiffness}\n"
+          "gdisp 0 u a b 1e6\n"
+          "cdisp u 0 1\n"
+          "gdrift u 0 u 0 1e-9\n"
+          "gspring a b u 0 {k_um}\n"
+          ".ends dea_spring\n"
+          "* dea_lever: v(b) = ratio v(a), force on a = ratio times force on b; ratio = -1 turns the sense of an edge\n"
+          ".subckt dea_lever a b\n"
+          "+ params: ratio=-1\n"
+          "elever turned 0 a 0 {ratio}\n"
+          "vsense turned b 0\n"
+          "flever a 0 vsense {ratio}\n"
+          ".ends dea_lever\n",
+          out);
+}
+
+static void write_preamble(const dea_dialect *dialect, const char *title, FILE *out)
+{
+    dea_dialect_comment(out, title);
+    fprintf(out, "* dielectric elastomer actuators for %s\n", dialect->title);
+    fprintf(
+        out,
+        "* p, n: film. edge: v(edge) = velocity of the disc edge, outward [m/s], current = force [N]; the frame is node 0.\n"
+        "* mass m [kg]: capacitor of m to 0. damper r [N s/m]: resistor of 1/r. spring: dea_spring. all parameters in SI units.\n"
+        "* to be read inside an instance x1, as v(x1%su): u [um], strain [1], force [N], field [V/um], bad, slack [0 or 1]\n",
+        dialect->inside);
+}
+
+dea_status dea_part_of_scene(const dea_scene *scene, const dea_model *model, const dea_dialect *dialect, FILE *out,
+                             dea_error *error)
+{
+    char name[DEA_PART_TITLE];
+    if (dea_part_name_of(scene->actuator.kind, model, name)) { /* else nothing is written */
+        write_preamble(dialect, scene->title, out);
+    }
+    const dea_status status = dea_part_write(scene, model, dialect, out, error);
+    if (status == DEA_OK) {
+        dea_part_write_mechanics(out);
+    }
+    return status;
+}
+
+dea_scene dea_part_paper(dea_kind kind)
+{
+    static char title[] = "";
+    const double none = (double)NAN;
+    dea_scene scene = {
+        .title = title,
+        .actuator = {.kind = kind,
+                     .frame_radius = 0.03,
+                     .coverage = 0.5,
+                     .divide_radius = none,
+                     .film_thickness = 1e-4,
+                     .prestretch = 1.2,
+                     .electrode_mass = none,
+                     .focal_length = none,
+                     .refractive_index = none},
+        .material = *dea_material_find("elastosil-2030"),
+        .drive = {.voltage = none, .series_resistance = none, .leakage_resistance = none},
+    };
+    scene.material.density = none;
+    return scene;
+}
+
+dea_status dea_part_library(const dea_dialect *dialect, FILE *out, dea_error *error)
+{
+    write_preamble(dialect, "library of deaspice parts; the defaults are the film of 100 um in a frame of 30 mm, Elastosil 2030",
+                   out);
+    for (size_t i = 0; i < dea_model_count(); i++) {
+        for (int kind = DEA_DOT; form_of(dea_model_at(i)) && kind <= DEA_LENS; kind++) {
+            const dea_scene scene = dea_part_paper((dea_kind)kind);
+            const dea_status status = dea_part_write(&scene, dea_model_at(i), dialect, out, error);
+            if (status != DEA_OK) {
+                return status;
+            }
+        }
+    }
+    dea_part_write_mechanics(out);
+    return DEA_OK;
+}

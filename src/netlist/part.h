@@ -1,0 +1,52 @@
+/* The actuator as a part for circuit designers: subcircuits with electrical pins p and n and a mechanical pin edge.
+ *
+ *   .subckt dea_dot p n edge params: frame_radius=... coverage=... film_thickness=... prestretch=... c1=... permittivity=... ...
+ *
+ * Mobility analogy: v(edge) is the outward velocity of the disc edge [m/s], the current into the pin the force on it [N]; the
+ * frame is node 0. All parameters are SI numbers, the Yeoh constants long-term ones. Derived numbers come from the model's own
+ * network, with the parameters as its symbols. */
+#ifndef DEA_PART_H
+#define DEA_PART_H
+
+#include <stdio.h>
+
+#include "deaspice/model.h"
+#include "netlist/dialect.h"
+
+enum { DEA_PART_TITLE = 32 };
+
+/* Name of the subcircuit: dea_dot, dea_lens of lumped; ..._lame; ..._hyper of coverage. NULL where the model is no part. */
+const char *dea_part_name_of(dea_kind kind, const dea_model *model, char name[DEA_PART_TITLE]);
+
+/* Writes one subcircuit; its defaults are the numbers of the scene, an axis at its first value. As many Prony branches as the
+ * scene has, but three at least. DEA_ERROR_UNSUPPORTED for a model that is no part. */
+dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, const dea_dialect *dialect, FILE *out,
+                          dea_error *error);
+
+/* Writes the mechanical helpers: dea_spring a b params: stiffness, and dea_lever a b params: ratio. */
+void dea_part_write_mechanics(FILE *out);
+
+/* Writes the part of a scene and the helpers as a library file with the scene's title as a comment. */
+dea_status dea_part_of_scene(const dea_scene *scene, const dea_model *model, const dea_dialect *dialect, FILE *out,
+                             dea_error *error);
+
+/* Writes the library of all parts, with the film of the base paper as defaults. */
+dea_status dea_part_library(const dea_dialect *dialect, FILE *out, dea_error *error);
+
+/* One parameter of a part: what header, symbols and documentation list. */
+typedef struct dea_part_parameter {
+    char name[32];
+    const char *unit; /* SI, "1" without dimension */
+    const char *meaning;
+    double value; /* its default */
+} dea_part_parameter;
+
+enum { DEA_PART_PARAMETERS = 24 + 2 * DEA_PRONY_MAX };
+
+/* The parameters of the part of a scene, in the order of the .subckt card; returns how many there are. */
+size_t dea_part_parameters(const dea_scene *scene, const dea_model *model, dea_part_parameter list[DEA_PART_PARAMETERS]);
+
+/* The scene behind the library's defaults: the film of the base paper, at rest. It owns nothing. */
+dea_scene dea_part_paper(dea_kind kind);
+
+#endif

@@ -1,0 +1,236 @@
+#include "netlist/part_text.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "support/number.h"
+
+void dea_part_number(FILE *out, double value)
+{
+    char text[DEA_NUMBER_LENGTH];
+    int digits = 1;
+    while (digits < 17 && strtod(dea_number_text(text, value, digits), NULL) != value) {
+        digits++;
+    }
+    fputs(dea_number_text(text, value, digits), out);
+}
+
+/* Which terms move, and which of those may become nodes. Newton starts with every node at 0, so a node must be 0 at rest, as
+ * products of the displacement are: 0.37 stands for every symbol. Only terms behind a division are worth one. */
+static void mark_moving(const dea_pool *pool, dea_part_text *text, double *rest)
+{
+    dea_pool_values(pool, 0.37, 0.0, rest);
+    for (int i = 0; i < pool->count; i++) {
+        const dea_term *term = &pool->terms[i];
+        const bool made = term->operation >= DEA_ADD;
+        text->moves[i] = term->operation == DEA_NODE || (made && (text->moves[term->a] || text->moves[term->b]));
+        const bool divides = term->operation == DEA_DIV && text->moves[term->b];
+        text->divides[i] = divides || (made && (text->divides[term->a] || text->divides[term->b]));
+        text->nodal[i] = made && text->moves[i] && text->divides[i] && rest[i] == 0.0;
+    }
+}
+
+bool dea_part_text_open(dea_part_text *text, const dea_pool *pool, const dea_dialect *dialect, FILE *out)
+{
+    const size_t size = (size_t)pool->count + 1;
+    *text = (dea_part_text){.pool = pool, .dialect = dialect, .out = out};
+    text->uses = calloc(size, sizeof *text->uses);
+    text->carded = calloc(size, sizeof *text->carded);
+    text->moves = calloc(size, sizeof *text->moves);
+    text->divides = calloc(size, sizeof *text->divides);
+    text->nodal = calloc(size, sizeof *text->nodal);
+    text->written = calloc(size, sizeof *text->written);
+    double *rest = calloc(size, sizeof *rest);
+    const bool ready =
+        !pool->exhausted && text->uses && text->carded && text->moves && text->divides && text->nodal && text->written && rest;
+    if (ready) {
+        mark_moving(pool, text, rest);
+    }
+    free(rest);
+    return ready;
+}
+
+void dea_part_text_close(dea_part_text *text)
+{
+    free(text->uses);
+    free(text->carded);
+    free(text->moves);
+    free(text->divides);
+    free(text->nodal);
+    free(text->written);
+    *text = (dea_part_text){0};
+}
+
+/* Integers below 1e6 are exact as literals. */
+static bool is_plain(const dea_term *term)
+{
+    return term->operation == DEA_NUMBER && term->number >= 0.0 && term->number < 1e6 && term->number == floor(term->number);
+}
+
+static const dea_part_name *name_of(const dea_part_text *text, dea_expr ref)
+{
+    for (size_t i = 0; i < text->name_count; i++) {
+        if (text->names[i].ref == ref) {
+            return &text->names[i];
+        }
+    }
+    return NULL;
+}
+
+void dea_part_text_name(dea_part_text *text, dea_expr ref, const char *name, const char *meaning)
+{
+    if (text->pool->terms[ref].operation >= DEA_ADD && !name_of(text, ref) && text->name_count < DEA_PART_NAMES) {
+        dea_part_name *entry = &text->names[text->name_count++];
+        entry->ref = ref;
+        snprintf(entry->name, sizeof entry->name, "%s", name);
+        snprintf(entry->meaning, sizeof entry->meaning, "%s", meaning);
+    }
+}
+
+static void use(dea_part_text *text, dea_expr ref, bool in_source)
+{
+    const dea_term *term = &text->pool->terms[ref];
+    const bool moves = text->moves[ref];
+    text->carded[ref] = text->carded[ref] || (in_source && !moves);
+    if (text->uses[ref]++ == 0 && term->operation >= DEA_ADD) {
+        use(text, term->a, moves);
+        if (term->operation != DEA_LN) {
+            use(text, term->b, moves);
+        }
+    }
+}
+
+void dea_part_text_use(dea_part_text *text, dea_expr ref)
+{
+    use(text, ref, true);
+}
+
+const char *dea_part_text_parameter(const dea_part_text *text, dea_expr ref, char name[DEA_PART_NAME])
+{
+    const dea_term *term = &text->pool->terms[ref];
+    const dea_part_name *own = name_of(text, ref);
+    if (is_plain(term)) {
+        snprintf(name, DEA_PART_NAME, "%d", (int)term->number);
+    } else if (term->operation == DEA_SYMBOL) {
+        snprintf(name, DEA_PART_NAME, "%s", text->symbols[term->a]);
+    } else if (own) {
+        snprintf(name, DEA_PART_NAME, "%s", own->name);
+    } else {
+        snprintf(name, DEA_PART_NAME, "p%d", ref);
+    }
+    return name;
+}
+
+static int precedence(const dea_term *term)
+{
+    return term->operation == DEA_ADD || term->operation == DEA_SUB   ? 1
+           : term->operation == DEA_MUL || term->operation == DEA_DIV ? 2
+                                                                      : 3;
+}
+
+/* An expression on its way out: a behavioural source refers to parameters otherwise than a .param card. */
+typedef struct stream {
+    const dea_part_text *text;
+    bool source;
+} stream;
+
+static void write_term(const stream *s, dea_expr ref);
+
+static void write_operand(const stream *s, dea_expr ref, bool brackets)
+{
+    const dea_part_text *t = s->text;
+    const dea_term *term = &t->pool->terms[ref];
+    char name[DEA_PART_NAME];
+    if (t->moves[ref] && t->written[ref]) {
+        fprintf(t->out, "v(x%d)", ref);
+    } else if (term->operation == DEA_NODE) {
+        fputs(t->node, t->out);
+    } else if (is_plain(term)) {
+        fprintf(t->out, "%d", (int)term->number);
+    } else if (s->source && !t->moves[ref]) {
+        dea_dialect_parameter(t->dialect, t->out, dea_part_text_parameter(t, ref, name));
+    } else if (term->operation == DEA_SYMBOL || t->written[ref]) {
+        fputs(dea_part_text_parameter(t, ref, name), t->out);
+    } else if (term->operation == DEA_NUMBER) {
+        fputs(term->number < 0.0 ? "(" : "", t->out);
+        dea_part_number(t->out, term->number);
+        fputs(term->number < 0.0 ? ")" : "", t->out);
+    } else {
+        fputs(brackets ? "(" : "", t->out);
+        write_term(s, ref);
+        fputs(brackets ? ")" : "", t->out);
+    }
+}
+
+/* Writes what a term is made of. */
+static void write_term(const stream *s, dea_expr ref)
+{
+    static const char signs[] = {[DEA_ADD] = '+', [DEA_SUB] = '-', [DEA_MUL] = '*', [DEA_DIV] = '/'};
+    const dea_part_text *t = s->text;
+    const dea_term *term = &t->pool->terms[ref];
+    if (term->operation < DEA_ADD) {
+        write_operand(s, ref, false);
+    } else if (term->operation == DEA_LN) {
+        /* an iterate on its way can leave the range that the solution has */
+        const bool guard = t->moves[ref];
+        fprintf(t->out, "%s(%s", t->dialect->ln, guard ? "max(" : "");
+        write_operand(s, term->a, false);
+        fputs(guard ? ",1e-6))" : ")", t->out);
+    } else {
+        const int mine = precedence(term);
+        const bool strict = term->operation == DEA_SUB || term->operation == DEA_DIV;
+        const int right = precedence(&t->pool->terms[term->b]);
+        write_operand(s, term->a, precedence(&t->pool->terms[term->a]) < mine);
+        fputc(signs[term->operation], t->out);
+        write_operand(s, term->b, right < mine || (right == mine && strict));
+    }
+}
+
+/* Named, shared, or used by a source; numbers and symbols only where a source needs them and they are not names already. */
+static bool gets_card(const dea_part_text *text, dea_expr ref)
+{
+    const dea_term *term = &text->pool->terms[ref];
+    if (text->uses[ref] == 0 || text->moves[ref] || term->operation == DEA_SYMBOL || is_plain(term)) {
+        return false;
+    }
+    return text->carded[ref] || (term->operation >= DEA_ADD && (text->uses[ref] > 1 || name_of(text, ref)));
+}
+
+void dea_part_text_parameters(dea_part_text *text)
+{
+    const stream s = {text, false};
+    for (int i = 0; i < text->pool->count; i++) {
+        if (gets_card(text, i)) {
+            char name[DEA_PART_NAME];
+            const dea_part_name *own = name_of(text, i);
+            if (own) {
+                dea_dialect_comment(text->out, own->meaning);
+            }
+            fprintf(text->out, ".param %s={", dea_part_text_parameter(text, i, name));
+            write_term(&s, i);
+            fputs("}\n", text->out);
+            text->written[i] = true;
+        }
+    }
+}
+
+void dea_part_text_nodes(dea_part_text *text)
+{
+    const stream s = {text, true};
+    for (int i = 0; i < text->pool->count; i++) {
+        if (text->nodal[i] && text->uses[i] > 1) {
+            char name[DEA_PART_NAME];
+            snprintf(name, sizeof name, "x%d", i);
+            dea_dialect_source_begin(text->dialect, text->out, DEA_VOLTAGE, name, name, "0");
+            write_term(&s, i);
+            dea_dialect_source_end(text->dialect, text->out);
+            text->written[i] = true;
+        }
+    }
+}
+
+void dea_part_text_write(const dea_part_text *text, dea_expr ref)
+{
+    const stream s = {text, true};
+    write_operand(&s, ref, precedence(&text->pool->terms[ref]) < 2);
+}

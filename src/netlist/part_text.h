@@ -1,0 +1,55 @@
+/* Expressions of a network whose numbers stay symbols, as text of a subcircuit: what depends on the parameters alone becomes
+ * `.param` cards, what depends on the displacement is written into behavioural sources. */
+#ifndef DEA_PART_TEXT_H
+#define DEA_PART_TEXT_H
+
+#include "netlist/dialect.h"
+#include "network/expression.h"
+
+enum { DEA_PART_NAME = 24, DEA_PART_NAMES = 48 };
+
+/* A term that has a name and a meaning of its own. */
+typedef struct dea_part_name {
+    dea_expr ref;
+    char name[DEA_PART_NAME];
+    char meaning[96];
+} dea_part_name;
+
+typedef struct dea_part_text {
+    const dea_pool *pool;
+    const dea_dialect *dialect;
+    FILE *out;
+    const char *const *symbols; /* names of the parameters behind the pool's symbols */
+    const char *node;           /* what stands for the displacement [m], a factor */
+    dea_part_name names[DEA_PART_NAMES];
+    size_t name_count;
+    int *uses;     /* owned: how often a term is written */
+    bool *carded;  /* owned: a source refers to it, so that it needs a .param card */
+    bool *moves;   /* owned: depends on the displacement */
+    bool *divides; /* owned: holds a quotient by something that moves */
+    bool *nodal;   /* owned: becomes a node where it is shared */
+    bool *written; /* owned: has its .param card or its node */
+} dea_part_text;
+
+/* Starts a text; the pool must not grow any more. False without memory. End it with dea_part_text_close() in either case. */
+bool dea_part_text_open(dea_part_text *text, const dea_pool *pool, const dea_dialect *dialect, FILE *out);
+void dea_part_text_close(dea_part_text *text);
+
+/* Names a term that depends on the parameters alone. */
+void dea_part_text_name(dea_part_text *text, dea_expr ref, const char *name, const char *meaning);
+/* Declares that a source will write the expression, as a whole or as a number on a card of its own. */
+void dea_part_text_use(dea_part_text *text, dea_expr ref);
+
+/* The cards that the declared expressions need: .param, then nodes of shared moving terms. */
+void dea_part_text_parameters(dea_part_text *text);
+void dea_part_text_nodes(dea_part_text *text);
+
+/* Writes an expression inside a behavioural source, as a factor: in brackets where it is a sum. */
+void dea_part_text_write(const dea_part_text *text, dea_expr ref);
+/* Name of the .param of a declared term that does not move; a plain number is its own name. */
+const char *dea_part_text_parameter(const dea_part_text *text, dea_expr ref, char name[DEA_PART_NAME]);
+
+/* A number with as few digits as give it back. */
+void dea_part_number(FILE *out, double value);
+
+#endif

@@ -162,6 +162,21 @@ static bool set_branches(dea_arguments *arguments, const char *value)
     return true;
 }
 
+static bool set_as(dea_arguments *arguments, const char *value)
+{
+    return set_text(&arguments->as, "as", value);
+}
+
+static bool set_dialect(dea_arguments *arguments, const char *value)
+{
+    return set_text(&arguments->dialect, "dialect", value);
+}
+
+static bool set_analogy(dea_arguments *arguments, const char *value)
+{
+    return set_text(&arguments->analogy, "analogy", value);
+}
+
 static bool add_operand(dea_arguments *arguments, const char *path, dea_given_mode mode)
 {
     arguments->operands[arguments->operand_count++] = (dea_operand){path, mode};
@@ -195,6 +210,9 @@ static const option_entry entries[] = {
     {"ramp", 0, true, DEA_TAKES_FIT, set_ramp},
     {"branches", 0, true, DEA_TAKES_FIT, set_branches},
     {"relative", 0, false, DEA_TAKES_FIT, set_relative},
+    {"as", 0, true, DEA_TAKES_EXPORT, set_as},
+    {"dialect", 0, true, DEA_TAKES_EXPORT, set_dialect},
+    {"analogy", 0, true, DEA_TAKES_EXPORT, set_analogy},
     {"help", 'h', false, 0, NULL},
     {"version", 'V', false, 0, NULL},
 };

@@ -1,0 +1,297 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "netlist/export.h"
+#include "netlist/part.h"
+#include "netlist/symbol.h"
+#include "output/atomic.h"
+#include "program/program.h"
+
+enum { MOST_NAMES = 8, PATH_ROOM = 4096 };
+
+/* A kind of export. */
+typedef struct kind {
+    const char *name;
+    const char *dialect; /* the only one, NULL: any */
+    const char *ending;  /* of the symbol's file, which names a library of the same name and the ending .lib; NULL: one file */
+    dea_status (*write)(dea_export *export, const char *library, dea_error *error);
+} kind;
+
+static dea_status write_netlist(dea_export *export, const char *library, dea_error *error)
+{
+    (void)library;
+    return dea_export_netlist(export, error);
+}
+
+static dea_status write_part(dea_export *export, const char *library, dea_error *error)
+{
+    (void)library;
+    return dea_part_of_scene(export->scene, export->scene->models[0], export->dialect, export->out, error);
+}
+
+static dea_status part_symbol(const dea_export *export, dea_symbol *symbol, dea_error *error)
+{
+    const dea_model *model = export->scene->models[0];
+    return dea_symbol_of_part(export->scene, model, symbol)
+               ? DEA_OK
+               : dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is no part", model->name);
+}
+
+static dea_status write_kicad(dea_export *export, const char *library, dea_error *error)
+{
+    dea_symbol symbol;
+    const dea_symbol spring = dea_symbol_spring();
+    const dea_symbol lever = dea_symbol_lever();
+    const dea_status status = part_symbol(export, &symbol, error);
+    if (status == DEA_OK) {
+        dea_symbol_kicad_begin(export->out);
+        dea_symbol_kicad(export->out, &symbol, library);
+        dea_symbol_kicad(export->out, &spring, library);
+        dea_symbol_kicad(export->out, &lever, library);
+        dea_symbol_kicad_end(export->out);
+    }
+    return status;
+}
+
+static dea_status write_ltspice(dea_export *export, const char *library, dea_error *error)
+{
+    dea_symbol symbol;
+    const dea_status status = part_symbol(export, &symbol, error);
+    if (status == DEA_OK) {
+        dea_symbol_ltspice(export->out, &symbol, library);
+    }
+    return status;
+}
+
+static const kind kinds[] = {
+    {"netlist", NULL, NULL, write_netlist},
+    {"subckt", NULL, NULL, write_part},
+    {"kicad", "ngspice", ".kicad_sym", write_kicad},
+    {"ltspice", "ltspice", ".asy", write_ltspice},
+};
+
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+/* A file in memory on its way to its target. */
+typedef struct sheet {
+    dea_atomic file;
+    char *text; /* owned */
+    size_t length;
+} sheet;
+
+/* Fills a sheet by @p write and puts it beside its target. */
+static dea_status fill_sheet(sheet *s, dea_status (*write)(dea_export *, const char *, dea_error *), dea_export *export,
+                             const char *path, const char *library, dea_error *error)
+{
+    export->out = open_memstream(&s->text, &s->length);
+    if (!export->out) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+    }
+    dea_status status = write(export, library, error);
+    const bool sound = !ferror(export->out);
+    if ((fclose(export->out) != 0 || !sound) && status == DEA_OK) {
+        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+    }
+    if (status == DEA_OK) {
+        status = dea_atomic_open(&s->file, path, error);
+    }
+    return status == DEA_OK ? dea_atomic_write(&s->file, s->text, s->length, error) : status;
+}
+
+static dea_status close_sheet(sheet *s, dea_status status, dea_error *error)
+{
+    const dea_status closed =
+        s->file.target ? dea_atomic_close(&s->file, status == DEA_OK, status == DEA_OK ? error : NULL) : DEA_OK;
+    free(s->text);
+    return status == DEA_OK ? closed : status;
+}
+
+/* Path of the library beside a symbol. The symbol names it, so its name holds nothing that could end a string there. */
+static dea_status library_path(const kind *as, const char *path, char library[PATH_ROOM], dea_error *error)
+{
+    const char *slash = path ? strrchr(path, '/') : NULL;
+    const char *name = slash ? slash + 1 : path;
+    const size_t length = path ? strlen(path) : 0;
+    const size_t ending = strlen(as->ending);
+    if (length <= ending || length >= PATH_ROOM - 8 || strcmp(path + length - ending, as->ending) != 0) {
+        return dea_fail(error, DEA_ERROR_USAGE, "--as %s needs -o NAME%s; the library NAME.lib goes beside it", as->name,
+                        as->ending);
+    }
+    if (name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-")] != '\0') {
+        return dea_fail(error, DEA_ERROR_USAGE,
+                        "the name of the file goes into the symbol: letters, digits, \".\", \"_\" and \"-\" "
+                        "alone");
+    }
+    snprintf(library, PATH_ROOM, "%.*s.lib", (int)(length - ending), path);
+    return DEA_OK;
+}
+
+/* A symbol and its library: both or none, unless the disk fails in between. */
+static dea_status write_symbol(const kind *as, dea_export *export, const char *path, dea_error *error)
+{
+    char library[PATH_ROOM];
+    sheet symbol = {.text = NULL};
+    sheet part = {.text = NULL};
+    dea_status status = library_path(as, path, library, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    const char *slash = strrchr(library, '/');
+    status = fill_sheet(&part, write_part, export, library, NULL, error);
+    if (status == DEA_OK) {
+        status = fill_sheet(&symbol, as->write, export, path, slash ? slash + 1 : library, error);
+    }
+    status = close_sheet(&part, status, error);
+    return close_sheet(&symbol, status, error);
+}
+
+static dea_status write_one(const kind *as, dea_export *export, const char *path, dea_error *error)
+{
+    sheet s = {.text = NULL};
+    const dea_status status = fill_sheet(&s, as->write, export, path ? path : "-", NULL, error);
+    return close_sheet(&s, status, error);
+}
+
+static const kind *choose_kind(const char *name)
+{
+    const char *names[KINDS];
+    for (size_t i = 0; i < KINDS; i++) {
+        names[i] = kinds[i].name;
+        if (strcmp(names[i], name) == 0) {
+            return &kinds[i];
+        }
+    }
+    dea_complain_unknown("kind of export", name, names, KINDS);
+    return NULL;
+}
+
+static const dea_dialect *choose_dialect(const char *name)
+{
+    const char *names[MOST_NAMES];
+    size_t count = 0;
+    const dea_dialect *dialect = dea_dialect_find(name);
+    for (; count < MOST_NAMES && dea_dialect_at(count); count++) {
+        names[count] = dea_dialect_at(count)->name;
+    }
+    if (!dialect) {
+        dea_complain_unknown("dialect", name, names, count);
+    }
+    return dialect;
+}
+
+static const dea_analogy *choose_analogy(const char *name)
+{
+    const char *names[MOST_NAMES];
+    size_t count = 0;
+    const dea_analogy *analogy = dea_analogy_find(name);
+    for (; count < MOST_NAMES && dea_analogy_at(count); count++) {
+        names[count] = dea_analogy_at(count)->name;
+    }
+    if (!analogy) {
+        dea_complain_unknown("analogy", name, names, count);
+    }
+    return analogy;
+}
+
+/* Parts know one analogy, symbols one dialect. */
+static bool complain_mismatch(const dea_arguments *arguments, const kind *as)
+{
+    if (as->dialect && arguments->dialect && strcmp(as->dialect, arguments->dialect) != 0) {
+        dea_complain("--as %s is of the dialect %s: leave out --dialect", as->name, as->dialect);
+        return true;
+    }
+    if (as->write != write_netlist && arguments->analogy && dea_analogy_find(arguments->analogy)->loop) {
+        dea_complain("a part has a mechanical pin of the mobility analogy: --analogy goes with --as netlist");
+        return true;
+    }
+    return false;
+}
+
+static bool is_one_model(const dea_scene *scene)
+{
+    if (scene->model_count > 1) {
+        dea_complain("an export holds one model, the scene has %zu: choose one, --model %s", scene->model_count,
+                     scene->models[0]->name);
+    }
+    return scene->model_count == 1;
+}
+
+static dea_exit write_scene(const dea_arguments *arguments, const kind *as, dea_export *export)
+{
+    dea_error error = {0};
+    const dea_status status =
+        as->ending ? write_symbol(as, export, arguments->output, &error) : write_one(as, export, arguments->output, &error);
+    if (status != DEA_OK) {
+        return dea_complain_error(&error);
+    }
+    if (export->note[0] && !arguments->quiet) {
+        dea_complain("note: %s", export->note);
+    }
+    return DEA_EXIT_DONE;
+}
+
+static dea_exit run(const dea_arguments *arguments)
+{
+    dea_scene scene;
+    dea_exit outcome = DEA_EXIT_USAGE;
+    if (!arguments->as) {
+        dea_complain("export needs --as netlist, subckt, kicad or ltspice; see deaspice export --help");
+        return DEA_EXIT_USAGE;
+    }
+    const kind *as = choose_kind(arguments->as);
+    const char *dialect = arguments->dialect ? arguments->dialect : as && as->dialect ? as->dialect : "ngspice";
+    dea_export export = {
+        .scene = &scene,
+        .dialect = as ? choose_dialect(dialect) : NULL,
+        .analogy = as ? choose_analogy(arguments->analogy ? arguments->analogy : "mobility") : NULL,
+        .analogy_given = arguments->analogy != NULL,
+    };
+    if (!as || !export.dialect || !export.analogy || complain_mismatch(arguments, as) ||
+        !dea_scene_open(arguments, arguments->operands[0].path, &scene, &outcome)) {
+        return outcome;
+    }
+    dea_signals_catch();
+    if (is_one_model(&scene)) {
+        outcome = write_scene(arguments, as, &export);
+    }
+    dea_scene_free(&scene);
+    return outcome;
+}
+
+const dea_command dea_command_export = {
+    .name = "export",
+    .summary = "a scene as netlist, subcircuit or symbol for circuit simulators",
+    .help = "Usage: deaspice export --as KIND [OPTION]... SCENE\n"
+            "\n"
+            "Writes a scene for another tool. SCENE is a YAML file, - is standard input.\n"
+            "\n"
+            "      --as KIND         netlist: the whole study, one model and one run, as a file\n"
+            "                        that the simulator runs as it is (ngspice -b FILE);\n"
+            "                        subckt: the actuator as a part with electrical pins p, n and a\n"
+            "                        mechanical pin edge; kicad, ltspice: its symbol, -o NAME.kicad_sym\n"
+            "                        or NAME.asy, and the library NAME.lib\n"
+            "      --dialect D       ngspice (default), ltspice, xyce or pspice\n"
+            "      --analogy A       mobility (default): velocity is a voltage, force a current;\n"
+            "                        impedance: force is a voltage, velocity a current\n"
+            "  -o, --output FILE     write to FILE, - is standard output (default)\n"
+            "      --model M         model instead of the scene's\n"
+            "      --set KEY=VALUE   change a value of the scene, e.g. actuator.prestretch=1.3;\n"
+            "                        may be repeated\n"
+            "  -q, --quiet           no notes\n"
+            "  -h, --help            this text\n"
+            "  -V, --version         the version\n"
+            "\n"
+            "The time step of a transient follows from the accuracy of the scene; a comment of\n"
+            "the netlist tells where to change it.\n"
+            "Exit status: 0 done, 1 the file was not written, 2 usage, a bad scene, or one that\n"
+            "no netlist can hold.\n"
+            "\n"
+            "Examples:\n"
+            "  deaspice export --as netlist dot.yaml -o dot.cir && ngspice -b -r dot.raw dot.cir\n"
+            "  deaspice export --as netlist --dialect ltspice --analogy impedance dot.yaml -o dot.cir\n"
+            "  deaspice export --as kicad dot.yaml -o dot.kicad_sym\n",
+    .takes = DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_QUIET | DEA_TAKES_EXPORT,
+    .least = 1,
+    .most = 1,
+    .run = run,
+};

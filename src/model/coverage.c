@@ -26,17 +26,35 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
                  taut);
 }
 
-/* int_0^1 (1 + e t)^4/(1 + s t) dt by the rule: in closed form it takes a logarithm and loses all digits as B nears 1. */
-static dea_expr mean_push(dea_pool *pool, dea_expr s, dea_expr e)
+/* s int_0^1 (1 + e t)^4/(1 + s t) dt with e = -B s/(1 - B), by quadrature: right for all B, as long as |s| is no more than some
+ * 0.6. */
+static dea_expr push_by_rule(const dea_symbols *symbols, dea_expr s)
 {
+    dea_pool *pool = symbols->pool;
     const dea_expr one = NUM(1.0);
+    const dea_expr e = dea_symbols_annulus_strain(symbols);
     dea_expr sum = NUM(0.0);
     for (int i = 0; i < DEA_GAUSS_POINTS; i++) {
         const double t = dea_gauss_place(i);
         const dea_expr fourth = SQUARE(SQUARE(ADD(one, SCALE(t, e))));
         sum = ADD(sum, SCALE(dea_gauss_weight(i), DIV(fourth, ADD(one, SCALE(t, s)))));
     }
-    return sum;
+    return MUL(s, sum);
+}
+
+/* The same in closed form, int_1^x (1 - B x)^4/x dx/(1 - B)^4 with x = 1 + s: right for all s, but its terms cancel as B nears 1.
+ */
+static dea_expr push_by_logarithm(const dea_symbols *symbols, dea_expr s)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_expr b = symbols->coverage;
+    const dea_expr b2 = SQUARE(b);
+    const dea_expr second = MUL(s, ADD(NUM(2.0), s));                       /* x^2 - 1 */
+    const dea_expr third = MUL(s, ADD(NUM(3.0), MUL(s, ADD(NUM(3.0), s)))); /* x^3 - 1 */
+    const dea_expr fourth = MUL(second, ADD(NUM(2.0), second));             /* x^4 - 1 */
+    const dea_expr odd = MUL(b, ADD(SCALE(4.0, s), SCALE(4.0 / 3.0, MUL(b2, third))));
+    const dea_expr even = MUL(b2, ADD(SCALE(3.0, second), SCALE(0.25, MUL(b2, fourth))));
+    return DIV(SUB(ADD(LN(ADD(NUM(1.0), s)), even), odd), SQUARE(SQUARE(SUB(NUM(1.0), b))));
 }
 
 /* Dot: C = C_0 lambda_a^4. Lens: C = C_0 + int 2 F/U^2 du because the equi-biaxial annulus is not the true area, with
@@ -50,8 +68,9 @@ static dea_expr capacitance(const dea_symbols *symbols, dea_expr strain)
     }
     const dea_expr radius = MUL(symbols->coverage, symbols->frame_radius);
     const dea_expr front = MUL(symbols->permittivity, DIV(SQUARE(MUL(radius, symbols->prestretch)), symbols->film_thickness));
-    const dea_expr mean = mean_push(pool, strain, dea_symbols_annulus_strain(symbols));
-    return SUB(rest, MUL(SCALE(4.0 * DEA_PI, front), MUL(strain, mean)));
+    const bool wide = dea_expr_constant(pool, symbols->coverage) < 0.9; /* false too where the coverage is a symbol */
+    const dea_expr push = wide ? push_by_logarithm(symbols, strain) : push_by_rule(symbols, strain);
+    return SUB(rest, MUL(SCALE(4.0 * DEA_PI, front), push));
 }
 
 /* Edge equation of physics.md, section 5: A(lambda_a) times the stress differences to the pre-stretch, as two springs and a

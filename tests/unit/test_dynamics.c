@@ -32,6 +32,31 @@ static void force_is_half_the_slope_of_capacitance(void **state)
     }
 }
 
+/* At every coverage and at large strains too: C - C_0 is the integral of 2 phi, here by Simpson's rule. */
+static void capacitance_of_a_lens_is_the_integral_of_its_force(void **state)
+{
+    (void)state;
+    static const double coverage[] = {1e-3, 0.3, 0.899, 0.901, 0.999};
+    for (size_t k = 0; k < sizeof coverage / sizeof *coverage; k++) {
+        const dea_scene scene = paper_scene(DEA_LENS, 1.2, coverage[k], 4500.0);
+        const double most = fmin(0.5, (1.0 - coverage[k]) / coverage[k]); /* annulus at most twice as wide */
+        dea_dynamics dynamics;
+        open_dynamics(&scene, "coverage", &dynamics);
+        const double u = -most * dynamics.radius;
+        const dea_edge edge = dea_dynamics_edge(&dynamics, u), rest = dea_dynamics_edge(&dynamics, 0.0);
+        double sum = 0.0;
+        for (int i = 0; i < 1000; i++) {
+            const double h = u / 1000.0;
+            sum += h / 3.0 *
+                   (dea_dynamics_edge(&dynamics, h * i).push + 4.0 * dea_dynamics_edge(&dynamics, h * (i + 0.5)).push +
+                    dea_dynamics_edge(&dynamics, h * (i + 1)).push);
+        }
+        assert_relative(edge.capacitance - rest.capacitance, sum, 1e-10);
+        assert_relative(edge.capacitance_slope, 2.0 * edge.push, 1e-10);
+        dea_dynamics_close(&dynamics);
+    }
+}
+
 static void capacitance_at_rest_is_252_pF(void **state)
 {
     (void)state;
@@ -281,6 +306,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(force_is_half_the_slope_of_capacitance),
+        cmocka_unit_test(capacitance_of_a_lens_is_the_integral_of_its_force),
         cmocka_unit_test(capacitance_at_rest_is_252_pF),
         cmocka_unit_test(static_answer_balances_the_moving_network),
         cmocka_unit_test(linear_coefficients_are_those_of_the_network),

@@ -27,7 +27,8 @@ typedef struct dea_engine {
     dea_status (*sweep)(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count, dea_row *rows,
                         dea_error *error);
     /** Runs one transient: fills the samples of the layout, and the summary. All axes of @p scene are at their place. A run that
-     * ends early (pull_in, failed) is no failure of this call: the rows tell. NULL: the engine has no time domain. */
+     * ends early (pull_in, failed) is no failure of this call: the rows tell, and where they are failed the message of @p error
+     * says why. NULL: the engine has no time domain. */
     dea_status (*transient)(void *session, const dea_scene *scene, const dea_model *model, dea_sample *samples,
                             dea_summary *summary, dea_error *error);
     /** Computes one frequency response: fills the rows of the layout. NULL: the engine has none. */

@@ -152,6 +152,17 @@ static void log_failure(const dea_plan *plan, const dea_span *span, const dea_at
     }
 }
 
+void dea_attempt_remark(const dea_attempt *attempt, const dea_plan *plan, const dea_span *span, const char *why,
+                        dea_damage *damage)
+{
+    if (why[0] == '\0')
+        return;
+    char place[256];
+    const size_t first = span->first + attempt->next;
+    point_place(plan->scene, first, place, sizeof place);
+    dea_plan_log(plan, damage, "%s, %s, point %zu%s: %s", plan->engine->name, span->model->name, first, place, why);
+}
+
 static char *point_at(const dea_plan *plan, void *points, size_t index)
 {
     return (char *)points + index * plan->layout.point_size;
@@ -184,9 +195,13 @@ static dea_status run_point(const dea_plan *plan, void *session, const dea_model
 dea_status dea_plan_solve(const dea_plan *plan, void *session, const dea_model *model, size_t first, size_t count, void *points,
                           dea_error *error)
 {
-    if (plan->scene->study == DEA_STUDY_SWEEP)
-        return plan->engine->sweep(session, plan->scene, model, first, count, points, error);
     dea_status status = DEA_OK;
+    if (plan->scene->study == DEA_STUDY_SWEEP) {
+        status = plan->engine->sweep(session, plan->scene, model, first, count, points, error);
+        if (status == DEA_OK)
+            error->message[0] = '\0';
+        return status;
+    }
     for (size_t i = 0; i < count && status == DEA_OK; i++)
         status = run_point(plan, session, model, first + i, point_at(plan, points, i), error);
     return status;

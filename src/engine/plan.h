@@ -59,6 +59,9 @@ void dea_attempt_solved(dea_attempt *attempt, dea_damage *damage);
  * failed and tells the log. */
 void dea_attempt_failed(dea_attempt *attempt, const dea_plan *plan, const dea_span *span, void *points, const char *why,
                         dea_damage *damage);
+/** Tells the log why rows of the range next ... end - 1, which was solved, are `failed`; nothing where @p why is empty. */
+void dea_attempt_remark(const dea_attempt *attempt, const dea_plan *plan, const dea_span *span, const char *why,
+                        dea_damage *damage);
 /** True when the engine is past hope: nothing more is tried, the remaining rows are failed. */
 bool dea_damage_hopeless(const dea_damage *damage);
 /** Makes all rows of @p count points failed. */

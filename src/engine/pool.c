@@ -254,16 +254,17 @@ static dea_status worker_reported(dea_pool *pool, dea_worker *worker, dea_error 
     dea_status status;
     if (!dea_worker_receive(worker, &status))
         return worker_lost(pool, worker, DEA_ERROR_ENGINE, NULL, error);
+    char why[DEA_ERROR_LENGTH]; /* a copy: the worker's memory may change at any time */
+    size_t length = strnlen(worker->error->message, sizeof why - 1);
+    memcpy(why, worker->error->message, length);
+    why[length] = '\0';
     if (status != DEA_OK) {
-        char why[DEA_ERROR_LENGTH];
-        size_t length = strnlen(worker->error->message, sizeof why - 1);
-        memcpy(why, worker->error->message, length);
-        why[length] = '\0';
         return worker_lost(pool, worker, status, length > 0 ? why : dea_status_text(status), error);
     }
     if (worker->state == DEA_WORKER_BUSY) {
         dea_slot *slot = &pool->slots[worker->slot];
         slot->busy = false;
+        dea_attempt_remark(&slot->attempt, pool->plan, &slot->span, why, &pool->damage);
         dea_attempt_solved(&slot->attempt, &pool->damage);
     }
     worker->state = DEA_WORKER_IDLE;

@@ -42,6 +42,7 @@ static dea_status solve_block(const dea_plan *plan, const dea_span *span, void *
         dea_status status = dea_plan_solve(plan, *session, span->model, span->first + attempt.next, attempt.end - attempt.next,
                                            points + attempt.next * plan->layout.point_size, &reason);
         if (status == DEA_OK) {
+            dea_attempt_remark(&attempt, plan, span, reason.message, damage);
             dea_attempt_solved(&attempt, damage);
             continue;
         }

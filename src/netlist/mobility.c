@@ -47,6 +47,12 @@ void dea_mobility_close(dea_mobility *mobility)
     }
 }
 
+void dea_mobility_displace(dea_mobility *mobility)
+{
+    mobility->displaced = true;
+    mobility->stiffness = (double)NAN;
+}
+
 static bool is_linear(const dea_mobility *mobility)
 {
     return !isnan(mobility->stiffness);
@@ -59,6 +65,12 @@ typedef struct writer {
     dea_expression_text text;
     FILE *out;
 } writer;
+
+/* The node onto which forces act: in the displacement form the balance of forces stands at the displacement itself. */
+static const char *force_node(const writer *w)
+{
+    return w->mobility->displaced ? "disp" : "edge";
+}
 
 /* One `.param name=value`. */
 static void parameter(FILE *out, const char *name, double value)
@@ -89,12 +101,14 @@ static void write_springs(const writer *w)
         fputs("lspring edge 0 {n_spring} ic={f_start}\n", out);
         return;
     }
-    fputs("* displacement [m], the integral of the edge velocity\n", out);
-    parameter(out, "u_start", w->piece->start.u);
-    fputs("gdisp 0 disp edge 0 1\ncdisp disp 0 1 ic={u_start}\n", out);
+    if (!w->mobility->displaced) {
+        fputs("* displacement [m], the integral of the edge velocity\n", out);
+        parameter(out, "u_start", w->piece->start.u);
+        fputs("gdisp 0 disp edge 0 1\ncdisp disp 0 1 ic={u_start}\n", out);
+    }
     fputs("* stress of the relaxed springs [Pa] and their force [N], Eq. 18\nbstress stress 0 v=", out);
     dea_expression_text_write(&w->text, w->mobility->stress);
-    fputs("\nbspring edge 0 i=", out);
+    fprintf(out, "\nbspring %s 0 i=", force_node(w));
     dea_expression_text_factor(&w->text, w->mobility->area);
     fputs("*v(stress)\n", out);
 }
@@ -131,7 +145,7 @@ static void write_stress_branches(const writer *w)
         fprintf(w->out, "gbranch%zu 0 z%zu stress z%zu 1\ncbranch%zu z%zu 0 {tau%zu} ic={z_start%zu}\n", n, n, n, n, n, n, n);
     }
     if (w->dynamics->branch_count > 0) {
-        fputs("* force of the branches [N]\nbbranches edge 0 i=", w->out);
+        fprintf(w->out, "* force of the branches [N]\nbbranches %s 0 i=", force_node(w));
         dea_expression_text_factor(&w->text, w->mobility->area);
         for (size_t i = 1; i <= w->dynamics->branch_count; i++) {
             fprintf(w->out, "%s{share%zu}*(v(stress)-v(z%zu))", i == 1 ? "*(" : "+", i, i);
@@ -221,7 +235,7 @@ static void write_port(const writer *w)
         dea_expression_text_write(&w->text, w->mobility->network.capacitance);
         fputs(")\n", out);
     }
-    fputs("* electrostatic force phi U^2 = U^2/2 dC/du [N], Eq. 21, onto the edge\nbforce 0 edge i=", out);
+    fprintf(out, "* electrostatic force phi U^2 = U^2/2 dC/du [N], Eq. 21, onto the edge\nbforce 0 %s i=", force_node(w));
     dea_expression_text_factor(&w->text, w->mobility->push);
     fputs("*v(film)*v(film)\n", out);
 }
@@ -255,7 +269,9 @@ static void write_start(writer *w)
         start_node(out, "plate", voltage);
         start_node(out, "charge", start->charge / w->mobility->rest);
     }
-    start_node(out, "edge", start->v);
+    if (!w->mobility->displaced) {
+        start_node(out, "edge", start->v);
+    }
     dea_expression_text_start(&w->text, 0.0, start->u);
     if (!is_linear(w->mobility)) {
         start_node(out, "disp", start->u);
@@ -278,7 +294,8 @@ static void write_analysis(const writer *w)
     const dea_mobility_vectors vectors = dea_mobility_vectors_of(w->mobility);
     const double speed = p->scale / p->step;
     /* rounding of the velocity: of that of a ring, or where no mass holds it, of differences of u over a step */
-    const double noise = p->mass > 0.0 ? 1e-14 * sqrt(p->force * p->scale / p->mass) : 1e-11 * speed;
+    const double ring = p->mass > 0.0 ? 1e-14 * sqrt(p->force * p->scale / p->mass) : 1e-11 * speed;
+    const double noise = w->mobility->displaced ? 0.0 : ring;
     fputs(".options method=trap trtol=1e30 itl4=50 pivtol=1e-60 pivrel=0.3 reltol=1e-7 vntol=", w->out);
     dea_netlist_number(w->out, 1e-11 * fmin(speed, p->scale) + noise);
     fputs(" abstol=", w->out);
@@ -325,7 +342,10 @@ static void declare(writer *w)
 
 static void write_piece(writer *w)
 {
-    fputs("* moving dielectric elastomer actuator: v(edge) = velocity of the disc edge [m/s], current = force [N]\n", w->out);
+    fputs(w->mobility->displaced
+              ? "* moving dielectric elastomer actuator: v(disp) = displacement of the disc edge [m], current = force [N]\n"
+              : "* moving dielectric elastomer actuator: v(edge) = velocity of the disc edge [m/s], current = force [N]\n",
+          w->out);
     declare(w);
     dea_expression_text_parameters(&w->text);
     write_port(w);
@@ -385,7 +405,9 @@ dea_mobility_vectors dea_mobility_vectors_of(const dea_mobility *mobility)
     dea_mobility_vectors vectors = {.count = 0};
     add_vector(&vectors, "time", 0);
     add_vector(&vectors, linear ? "lspring#branch" : "disp", 0);
-    add_vector(&vectors, "edge", 0);
+    if (!mobility->displaced) {
+        add_vector(&vectors, "edge", 0);
+    }
     for (size_t i = 1; i <= mobility->dynamics->branch_count; i++) {
         add_vector(&vectors, linear ? "lbranch%#branch" : "z%", i);
     }
@@ -400,13 +422,15 @@ dea_mobility_state dea_mobility_read(const dea_mobility *mobility, const double 
     const dea_dynamics *d = mobility->dynamics;
     const double k = mobility->stiffness;
     const double first = columns[1][index];
-    dea_mobility_state state = {.u = is_linear(mobility) ? first / k : first, .v = columns[2][index]};
+    const size_t next = mobility->displaced ? 2 : 3;
+    dea_mobility_state state = {.u = is_linear(mobility) ? first / k : first};
+    state.v = mobility->displaced ? 0.0 : columns[2][index];
     for (size_t i = 0; i < d->branch_count; i++) {
-        const double value = columns[3 + i][index];
+        const double value = columns[next + i][index];
         state.z[i] = is_linear(mobility) ? first - value / d->branches[i].share : value;
     }
     if (d->series > 0.0) {
-        state.charge = mobility->rest * columns[3 + d->branch_count][index];
+        state.charge = mobility->rest * columns[next + d->branch_count][index];
     }
     return state;
 }

@@ -13,6 +13,7 @@ typedef struct dea_mobility {
     dea_expr resistance;          /* tau_KV A S' [N s/m], where there is a damper */
     double stiffness;             /* of all linear springs [N/m]; NAN where the springs are hyperelastic */
     double rest;                  /* capacitance of the film at rest [F] */
+    bool displaced;               /* set by dea_mobility_displace() */
 } dea_mobility;
 
 /* States of the network: what one piece of a run hands to the next. */
@@ -58,6 +59,10 @@ typedef struct dea_mobility_vectors {
 /* Builds what the netlists are written from; the caller ends it with dea_mobility_close(), also after a failure. */
 dea_status dea_mobility_open(const dea_scene *scene, const dea_dynamics *dynamics, dea_mobility *mobility, dea_error *error);
 void dea_mobility_close(dea_mobility *mobility);
+
+/* Transients of a film without mass and damper in the displacement form from here on: nothing holds its velocity, a difference of
+ * displacements over a step that drowns in rounding where steps are short. */
+void dea_mobility_displace(dea_mobility *mobility);
 
 /* Netlist of one piece of a transient; on DEA_OK the caller frees *text. */
 dea_status dea_mobility_write(const dea_mobility *mobility, const dea_mobility_piece *piece, char **text, dea_error *error);

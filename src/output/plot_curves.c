@@ -179,11 +179,13 @@ static void write_frame(const sheet *page, FILE *script)
     dea_label_axis(page->axis, &page->across, label);
     fputs("set xlabel ", script);
     dea_gnuplot_text(script, label);
+    const double first = page->axis->values[dea_thinning_index(&page->plot->across, page->order[0])];
+    const double end = page->axis->values[dea_thinning_index(&page->plot->across, page->order[last])];
+    const double pad = end > first ? 0.0 : first != 0.0 ? 0.1 * fabs(first) : 1.0; /* an axis may repeat one value */
     fputs("\nset xrange [", script);
-    dea_gnuplot_number(script, page->across.factor * page->axis->values[dea_thinning_index(&page->plot->across, page->order[0])]);
+    dea_gnuplot_number(script, page->across.factor * (first - pad));
     fputc(':', script);
-    dea_gnuplot_number(script,
-                       page->across.factor * page->axis->values[dea_thinning_index(&page->plot->across, page->order[last])]);
+    dea_gnuplot_number(script, page->across.factor * (end + pad));
     fprintf(script, "]\n%s", axis_logarithmic(page) ? "set logscale x\nset format x '%g'\n" : "");
 }
 

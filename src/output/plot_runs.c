@@ -136,7 +136,7 @@ static bool compose_pair(sheet *page, size_t magnitude, size_t phase, const char
     if (!upper) {
         return false;
     }
-    upper->logarithmic = true;
+    upper->logarithmic = dea_runs_largest(page->runs, upper->quantity) > 0.0; /* without a bias nothing moves */
     snprintf(upper->label, sizeof upper->label, "%s [%s]", words, unit);
     panel *lower = panel_add(page, phase);
     if (lower) {

@@ -320,6 +320,49 @@ static void rows_before_a_pull_in_are_kept(void **state)
     free(o.point);
 }
 
+/* Nothing holds the velocity of a film without mass and damper; steps of the first moment are far shorter than any of its times.
+ */
+static void film_without_mass_and_damper_rests_behind_its_resistance(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        dea_scene scene = protocol("coverage");
+        scene.actuator.kind = i == 0 ? DEA_LENS : DEA_DOT;
+        scene.actuator.frame_radius = 0.35e-3;
+        scene.actuator.coverage = 0.958;
+        scene.drive.waveform =
+            (dea_waveform){.kind = DEA_WAVE_STEP, .step = {.off = (double)NAN, .voltage = 675.0}, .period = (double)NAN};
+        scene.drive.series_resistance = 1e11;
+        scene.material.prony_count = 1;
+        scene.material.prony[0] = (dea_prony){.g = 0.45, .tau = 0.8};
+        scene.transient = (dea_transient){.until = 26.0, .every = 2.6, .from_bias = true};
+        scene.accuracy = 1e-4;
+        check_run(&scene, &scene, "ida", scene.accuracy, i);
+        outcome o = run(&scene, "ngspice");
+        assert_int_equal(sample_of(&o, dea_layout_of(&scene).rows - 1).state, DEA_STATE_OK);
+        free(o.point);
+    }
+}
+
+/* A mass of microscopic size behind a strong damper settles in 1e-13 s. */
+static void mass_that_a_damper_outweighs_costs_nothing(void **state)
+{
+    (void)state;
+    dea_scene scene = protocol("lumped");
+    scene.actuator.frame_radius = 1.4e-4;
+    scene.material.density = 1180.0;
+    scene.material.retardation = 0.004;
+    scene.drive.waveform = (dea_waveform){
+        .kind = DEA_WAVE_STEP, .step = {.on = 0.01, .off = 0.05, .voltage = 4500.0, .rise = 1e-7}, .period = (double)NAN};
+    scene.transient = (dea_transient){.until = 0.1, .every = 1e-3};
+    scene.accuracy = 1e-4;
+    check_run(&scene, &scene, "direct", 0.0, 0);
+    outcome o = run(&scene, "ngspice");
+    assert_int_equal(sample_of(&o, 100).state, DEA_STATE_OK);
+    assert_true(summary_of(&scene, &o).resonance > 1e4);
+    free(o.point);
+}
+
 static void transients_beyond_its_rule_are_refused_by_name(void **state)
 {
     (void)state;
@@ -528,6 +571,8 @@ int main(void)
         cmocka_unit_test(creep_is_right_over_a_day),
         cmocka_unit_test(film_that_starts_in_its_equilibrium_stays_there),
         cmocka_unit_test(rows_before_a_pull_in_are_kept),
+        cmocka_unit_test(film_without_mass_and_damper_rests_behind_its_resistance),
+        cmocka_unit_test(mass_that_a_damper_outweighs_costs_nothing),
         cmocka_unit_test(transients_beyond_its_rule_are_refused_by_name),
         cmocka_unit_test(ring_too_long_for_its_accuracy_fails_and_says_so),
         cmocka_unit_test(error_falls_with_the_square_of_the_step),

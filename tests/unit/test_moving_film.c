@@ -234,6 +234,44 @@ static void a_stiff_film_charges_through_its_resistance(void **state)
     assert_true(last.summary.residual <= 10.0 * scene.accuracy);
 }
 
+/* u goes with U^2, which stays a ten-thousandth of the source's: the answer is small, its digits are not. */
+static void a_film_that_hardly_charges_keeps_its_digits(void **state)
+{
+    (void)state;
+    dea_scene scene = moving_scene("lumped", DEA_DOT, 0.02, 0.0);
+    dea_point point;
+    dea_linear linear;
+    dea_film_prepare(&scene, &point.film);
+    dea_point_place(&scene, &point);
+    scene.models[0]->linear(&point, &linear);
+    const double time = 200.0;
+    scene.drive.series_resistance = time / linear.capacitance[0];
+    const double full = static_displacement(&scene);
+    fly(&scene);
+    assert_int_equal(good_rows(&last), last.count);
+    const double most = full * pow(expm1(-scene.transient.until / time), 2.0);
+    for (size_t i = 0; i < last.count; i++) {
+        const double wanted = full * pow(expm1(-last.samples[i].time / time), 2.0);
+        assert_near(last.samples[i].displacement, wanted, scene.accuracy * most);
+    }
+}
+
+static void a_ring_of_too_many_steps_says_so(void **state)
+{
+    (void)state;
+    dea_scene scene = moving_scene("coverage", DEA_LENS, 1e5, 0.0);
+    const dea_engine *engine = dea_engine_find("ida");
+    dea_error error = {0};
+    void *session = NULL;
+    scene.material.density = 1080.0;
+    assert_int_equal(engine->begin(&session, &error), DEA_OK);
+    assert_int_equal(engine->transient(session, &scene, scene.models[0], last.samples, &last.summary, &error), DEA_OK);
+    engine->end(session);
+    last.count = dea_layout_of(&scene).rows;
+    assert_int_equal(last.samples[last.count - 1].state, DEA_STATE_FAILED);
+    assert_non_null(strstr(error.message, "steps"));
+}
+
 /* A film without mass and branches follows its voltage through the equilibria, up to the fold. */
 static void a_film_that_pulls_in_keeps_the_rows_before(void **state)
 {
@@ -403,6 +441,8 @@ int main(void)
         cmocka_unit_test(a_tiny_mass_changes_nothing),
         cmocka_unit_test(one_branch_creeps_as_its_closed_form),
         cmocka_unit_test(a_stiff_film_charges_through_its_resistance),
+        cmocka_unit_test(a_film_that_hardly_charges_keeps_its_digits),
+        cmocka_unit_test(a_ring_of_too_many_steps_says_so),
         cmocka_unit_test(a_film_that_pulls_in_keeps_the_rows_before),
         cmocka_unit_test(an_edge_shows_behind_its_row),
         cmocka_unit_test(a_film_at_its_bias_stays_there),

@@ -15,11 +15,15 @@
 /* Error test failures of one step after which a run is given up: a step that outgrew its stability is far too long. */
 enum { MOST_FAILS = 30 };
 
+/* Steps that tell how many more will be. */
+static const double enough = 20000.0;
+
 enum { WORK, DISSIPATED, BRANCH, ENERGIES };
 
 typedef struct explicit_run {
     dea_flight *flight; /* borrowed */
     double energy;      /* size of energies [J] */
+    long before;        /* steps of the run before this one */
     N_Vector w;         /* owned, as all below: unknowns, then energies */
     N_Vector tolerance;
     void *ark;
@@ -96,6 +100,18 @@ static bool begin(explicit_run *run)
            DEA_ARK(SVtolerances)(run->ark, flight->tolerance, run->tolerance) == ARK_SUCCESS;
 }
 
+/* True where the ring will take more steps than there are, told from those so far; they get longer as it decays. */
+static bool endless(const explicit_run *run, double to, double time)
+{
+    dea_flight *flight = run->flight;
+    const double steps = (double)(flight->steps - run->before);
+    if (steps < enough) {
+        return false;
+    }
+    const double rest = fmin(to - time, 3.0 / flight->ring->decay);
+    return !dea_flight_affords(flight, 0.7 * steps * rest / time);
+}
+
 /* Steps to the next sample, or to the end if that is nearer. */
 static dea_state advance(explicit_run *run, double to, double *time)
 {
@@ -109,9 +125,9 @@ static dea_state advance(explicit_run *run, double to, double *time)
         code = code == ARK_SUCCESS ? DEA_ARK(Evolve)(run->ark, stop, run->w, time, ARK_ONE_STEP) : code;
         if (code < 0) {
             const bool gone = code == ARK_REPTD_RHSFUNC_ERR || code == ARK_FIRST_RHSFUNC_ERR || code == ARK_UNREC_RHSFUNC_ERR;
-            return gone ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
+            return gone ? DEA_STATE_PULL_IN : dea_flight_broke(flight, "ARKODE", code, *time);
         }
-        if (!dea_flight_step(flight, *time, N_VGetArrayPointer(run->w))) {
+        if (!dea_flight_step(flight, *time, N_VGetArrayPointer(run->w)) || endless(run, to, *time)) {
             return DEA_STATE_FAILED;
         }
     }
@@ -134,7 +150,8 @@ static void close_energies(const explicit_run *run, double time)
 dea_state dea_flight_explicit(dea_flight *flight, double to)
 {
     const dea_motion *motion = &flight->motion;
-    explicit_run run = {.flight = flight, .energy = motion->stiffness * motion->size[0] * motion->size[0]};
+    explicit_run run = {
+        .flight = flight, .before = flight->steps, .energy = motion->stiffness * motion->size[0] * motion->size[0]};
     dea_state state = begin(&run) ? DEA_STATE_OK : DEA_STATE_FAILED;
     double time = 0.0;
     while (state == DEA_STATE_OK && time < to) {

@@ -2,9 +2,13 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* Steps of one run after which it is given up. */
-enum { MOST_STEPS = 2000000 };
+/* Steps of all runs after which they are given up: about half a minute. */
+enum { MOST_STEPS = 3000000 };
+
+/* Share of its size below which an unknown needs a smaller one. */
+static const double small = 0.03;
 
 dea_status dea_flight_open(SUNContext context, const dea_scene *scene, dea_dynamics *dynamics, const dea_signal *signal,
                            dea_flight *flight, dea_error *error)
@@ -44,6 +48,37 @@ bool dea_flight_record(dea_flight *flight, double time, const double *y)
     return true;
 }
 
+static void reach(dea_flight *flight)
+{
+    for (int i = 0; i < flight->motion.count; i++) {
+        flight->reach[i] = fmax(flight->reach[i], fabs(flight->y[i]));
+    }
+}
+
+/* Sizes of unknowns that reached no more than @p most of them; what is below the tolerance of that run says little. */
+static bool shrink(double *size, int count, double most, double tolerance)
+{
+    if (!(most > 0.0) || most >= small) {
+        return false;
+    }
+    for (int i = 0; i < count; i++) {
+        size[i] *= fmax(most, 10.0 * tolerance);
+    }
+    return true;
+}
+
+bool dea_flight_fit(dea_flight *flight)
+{
+    dea_motion *motion = &flight->motion;
+    const int mechanical = motion->q >= 0 ? motion->q : motion->count;
+    double most = 0.0;
+    for (int i = 0; i < mechanical; i++) {
+        most = fmax(most, flight->reach[i]);
+    }
+    const bool shrinks = shrink(motion->size, mechanical, most, flight->tolerance);
+    return (motion->q >= 0 && shrink(motion->size + motion->q, 1, flight->reach[motion->q], flight->tolerance)) || shrinks;
+}
+
 bool dea_flight_step(dea_flight *flight, double time, const double *w)
 {
     dea_trace *trace = flight->trace;
@@ -53,7 +88,32 @@ bool dea_flight_step(dea_flight *flight, double time, const double *w)
         trace->largest_u = fmax(trace->largest_u, fabs(at.u));
         trace->largest_v = fmax(trace->largest_v, fabs(at.v));
     }
-    return ++flight->steps <= MOST_STEPS;
+    reach(flight);
+    flight->steps++;
+    if (++flight->spent > MOST_STEPS) {
+        dea_fail(&flight->why, DEA_ERROR_ENGINE, "at a tolerance of %.1g, %ld steps of SUNDIALS take the run to %g s",
+                 flight->tolerance, flight->steps, at.time);
+        return false;
+    }
+    return true;
+}
+
+bool dea_flight_affords(dea_flight *flight, double steps)
+{
+    const double left = (double)(MOST_STEPS - flight->spent);
+    if (steps <= left) {
+        return true;
+    }
+    dea_fail(&flight->why, DEA_ERROR_ENGINE, "the ring takes %.2g more steps of SUNDIALS at a tolerance of %.1g, %.2g are left",
+             steps, flight->tolerance, left);
+    return false;
+}
+
+dea_state dea_flight_broke(dea_flight *flight, const char *solver, int code, double time)
+{
+    dea_fail(&flight->why, DEA_ERROR_ENGINE, "at a tolerance of %.1g, %s stopped at %g s with its error %d", flight->tolerance,
+             solver, flight->motion.segment->from + time, code);
+    return DEA_STATE_FAILED;
 }
 
 /* An algebraic u at the begin of a segment. */
@@ -119,6 +179,8 @@ void dea_flight_run(dea_flight *flight, double tolerance, dea_trace *trace, dea_
         trace->end = DEA_STATE_PULL_IN;
         return;
     }
+    memset(flight->reach, 0, sizeof flight->reach);
+    reach(flight);
     const dea_moment first = dea_motion_moment(&flight->motion, 0.0, flight->y);
     dea_motion_branches(&flight->motion, flight->y, first_z);
     for (size_t i = 0; trace->end == DEA_STATE_OK && i < flight->signal->count; i++) {

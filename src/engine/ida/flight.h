@@ -25,11 +25,14 @@ typedef struct dea_flight {
     dea_integrator integrator; /* owned */
     N_Vector between;          /* owned: w between two steps */
     size_t rows;
+    long spent;    /* steps of all runs */
+    dea_error why; /* what the last run that failed was about, "" before */
     /* of one run */
     double tolerance;
     dea_trace *trace;
     dea_audit *audit; /* NULL: not wanted */
     double y[DEA_MOTION_MOST];
+    double reach[DEA_MOTION_MOST]; /* largest of each unknown on the way */
     long steps;
 } dea_flight;
 
@@ -44,12 +47,21 @@ dea_status dea_flight_integrator(SUNContext context, dea_flight *flight, dea_err
 /* Runs; with a summary, fills its energies. */
 void dea_flight_run(dea_flight *flight, double tolerance, dea_trace *trace, dea_summary *summary);
 
+/* Fits the sizes of the unknowns, which tolerances refer to, to what the last run reached: a film behind a large resistance, or
+ * one too heavy or viscous to follow, gets nowhere near its equilibrium. True where one had to shrink. */
+bool dea_flight_fit(dea_flight *flight);
+
 /* Time of the next sample [s], infinite behind the last. */
 double dea_flight_next_sample(const dea_flight *flight);
 /* Keeps the state at a time of the segment as the next sample; false where the film has left its frame. */
 bool dea_flight_record(dea_flight *flight, double time, const double *y);
-/* Takes w of the end of a step as the state; false past the most steps of a run. */
+/* True where so many steps are left. */
+bool dea_flight_affords(dea_flight *flight, double steps);
+/* Takes w of the end of a step as the state; false past the most steps. */
 bool dea_flight_step(dea_flight *flight, double time, const double *w);
+
+/* `failed`, because a solver ended with an error code at a time of the segment. */
+dea_state dea_flight_broke(dea_flight *flight, const char *solver, int code, double time);
 
 /* The segment from a time on to its end, by IDA; what happened. */
 dea_state dea_flight_implicit(dea_flight *flight, double from);

@@ -228,7 +228,7 @@ dea_state dea_flight_implicit(dea_flight *flight, double from)
         code = IDASolve(m->ida, width, &time, m->y, m->yp, IDA_ONE_STEP);
         if (code < 0) {
             const bool gone = code == IDA_REP_RES_ERR || dea_motion_firmness(&flight->motion, time, flight->y) < soft;
-            return gone ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
+            return gone ? DEA_STATE_PULL_IN : dea_flight_broke(flight, "IDA", code, time);
         }
         if (!dea_flight_step(flight, time, N_VGetArrayPointer(m->y))) {
             return DEA_STATE_FAILED;

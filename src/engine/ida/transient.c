@@ -5,7 +5,7 @@
 
 #include "engine/ida/flight.h"
 
-enum { MOST_RUNS = 8 };
+enum { MOST_RUNS = 8, MOST_FITS = 4 };
 
 /* The error of a run falls at least with this power of its tolerance; of what that promises a multiple is taken. */
 static const double order = 0.8;
@@ -64,6 +64,9 @@ static bool refine(dea_flight *flight, double accuracy, dea_trace traces[2], dea
     double tolerance = first_tolerance(flight, accuracy);
     double share = first_share;
     dea_flight_run(flight, tolerance, &traces[1], NULL);
+    for (int i = 0; i < MOST_FITS && dea_flight_fit(flight); i++) {
+        dea_flight_run(flight, tolerance, &traces[1], NULL);
+    }
     for (int i = 0; i < MOST_RUNS && tolerance > 1.5 * least_tolerance; i++) {
         const dea_trace coarse = traces[1];
         traces[1] = traces[0];
@@ -75,6 +78,7 @@ static bool refine(dea_flight *flight, double accuracy, dea_trace traces[2], dea
         const double shrinks = pow(share, order);
         const double gap = difference(flight, &traces[0], &traces[1]);
         const bool failed = traces[1].end == DEA_STATE_FAILED;
+
         const bool comparable = failed || traces[0].count == traces[1].count;
         summary->error = fmax(gap * fmin(doubt, safety * shrinks), fmax(10.0 * tolerance, 0.1 * accuracy));
         if ((comparable && summary->error <= accuracy) || failed) {
@@ -105,6 +109,17 @@ static void fill(const dea_flight *flight, const dea_trace *trace, dea_sample *s
     }
 }
 
+static void explain(const dea_flight *flight, const dea_summary *summary, dea_error *error)
+{
+    if (flight->why.message[0] != '\0') {
+        dea_fail(error, DEA_ERROR_ENGINE, "%s", flight->why.message);
+    } else {
+        dea_fail(error, DEA_ERROR_ENGINE,
+                 "%ld steps of SUNDIALS at a tolerance of %.1g leave an error of %.1g, the scene wants %g", flight->steps,
+                 flight->tolerance, summary->error, flight->scene->accuracy);
+    }
+}
+
 static dea_status fly(dea_flight *flight, dea_sample *samples, dea_summary *summary, dea_error *error)
 {
     dea_trace traces[2] = {{0}, {0}};
@@ -113,7 +128,11 @@ static dea_status fly(dea_flight *flight, dea_sample *samples, dea_summary *summ
     const bool room = traces[0].moments && traces[1].moments;
     if (room) {
         const double mass = flight->motion.dynamics->mass;
-        if (!refine(flight, flight->scene->accuracy, traces, summary)) {
+        const bool reached = refine(flight, flight->scene->accuracy, traces, summary);
+        if (!reached || traces[1].end == DEA_STATE_FAILED) {
+            explain(flight, summary, error);
+        }
+        if (!reached) {
             traces[1].count = 0;
             traces[1].end = DEA_STATE_FAILED;
         }

@@ -16,17 +16,19 @@
 enum { LOG_SIZE = 3000, LINE_SIZE = 160 };
 
 struct dea_ngspice {
-    char log[LOG_SIZE];   /* first lines of what the library said since the last run, repeats left out */
-    char last[LINE_SIZE]; /* last line of the log */
-    bool complained;      /* a line of the log names an error */
-    bool lost;            /* the library asked to be detached */
-    bool loaded;          /* a circuit is loaded */
+    char log[LOG_SIZE];        /* first lines of what the library said since the last run, repeats left out */
+    char last[LINE_SIZE];      /* last line of the log */
+    char complaint[LINE_SIZE]; /* first line that names an error, without its end */
+    bool complained;           /* a line of the log names an error */
+    bool lost;                 /* the library asked to be detached */
+    bool loaded;               /* a circuit is loaded */
 };
 
 /* Words of a line that names a failure; texts differ from version to version. */
 static bool names_failure(const char *line)
 {
-    static const char *const words[] = {"error", "singular", "aborted", "failed", "unusual", "resistance to low", "cannot"};
+    static const char *const words[] = {"error",   "singular",          "aborted", "failed",
+                                        "unusual", "resistance to low", "cannot",  "too small"};
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
         const size_t length = strlen(words[i]);
         for (const char *at = line; *at; at++) {
@@ -45,6 +47,9 @@ static int on_line(char *text, int id, void *user)
     const char *line = from_stderr || strncmp(text, "stdout ", 7) == 0 ? text + 7 : text;
     (void)id;
     if (from_stderr && names_failure(line)) {
+        if (!library->complained) {
+            snprintf(library->complaint, LINE_SIZE, "%.*s", (int)strcspn(line, "\r\n"), line);
+        }
         library->complained = true;
     }
     if (from_stderr && strncmp(line, library->last, LINE_SIZE - 1) != 0) {
@@ -133,6 +138,11 @@ dea_status dea_ngspice_open(dea_ngspice **library, dea_error *error)
     return DEA_OK;
 }
 
+const char *dea_ngspice_complaint(const dea_ngspice *library)
+{
+    return library->complaint;
+}
+
 void dea_ngspice_close(dea_ngspice *library)
 {
     free(library);
@@ -140,7 +150,7 @@ void dea_ngspice_close(dea_ngspice *library)
 
 static void clear_log(dea_ngspice *library)
 {
-    library->log[0] = library->last[0] = '\0';
+    library->log[0] = library->last[0] = library->complaint[0] = '\0';
     library->complained = false;
 }
 

@@ -34,6 +34,8 @@ dea_status dea_ngspice_run_all(dea_ngspice *library, const char *netlist, const 
 /* The same for one real vector. */
 dea_status dea_ngspice_run(dea_ngspice *library, const char *netlist, const char *vector, dea_ngspice_result *result,
                            dea_error *error);
+/* What the library said about a failure of the last run, "" where it said nothing. */
+const char *dea_ngspice_complaint(const dea_ngspice *library);
 void dea_ngspice_table_free(dea_ngspice_table *table);
 
 #endif

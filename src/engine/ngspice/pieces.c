@@ -224,3 +224,12 @@ dea_status dea_pieces_cut(const dea_signal *signal, const dea_pace *pace, double
     }
     return DEA_OK;
 }
+
+double dea_pieces_ringing(const dea_pieces *pieces)
+{
+    double time = 0.0;
+    for (size_t i = 0; i < pieces->count; i++) {
+        time += pieces->pieces[i].rings ? pieces->pieces[i].to - pieces->pieces[i].from : 0.0;
+    }
+    return time;
+}

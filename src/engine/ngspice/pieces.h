@@ -48,4 +48,7 @@ dea_matching dea_matching_of(dea_dynamics *dynamics, double u, double voltage, d
 dea_status dea_pieces_cut(const dea_signal *signal, const dea_pace *pace, double accuracy, bool quiet, dea_pieces *pieces,
                           dea_error *error);
 
+/* Time in which the ring lives [s]. */
+double dea_pieces_ringing(const dea_pieces *pieces);
+
 #endif

@@ -232,6 +232,20 @@ static bool is_possible(const runner *r, const node *n)
     return inside && (d->mass > 0.0 || dea_dynamics_stiffness(d, u, n->moment.voltage, false) > 0.0);
 }
 
+/* Why the run ends: the film has lost its stability there or will find no equilibrium, or another reason. */
+static dea_state verdict(const runner *r)
+{
+    dea_dynamics *d = r->route->dynamics;
+    const dea_segment *segment = &r->route->signal->segments[r->segment];
+    const double rest = dea_dynamics_stiffness(d, 0.0, 0.0, false);
+    const double here = dea_dynamics_stiffness(d, r->last.moment.u, r->last.moment.voltage, false);
+    double u;
+    const double most = fmin(r->route->voltage, fmax(fabs(segment->start), fabs(segment->end)));
+    const double voltage = d->series > 0.0 ? fmax(most, fabs(r->last.moment.voltage)) : most;
+    const bool lost = here < 1e-3 * rest || !dea_dynamics_equilibrium(d, voltage, &u);
+    return lost ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
+}
+
 /* Takes one more point; false where the film has left what it can do. */
 static bool advance(runner *r, double time, const dea_mobility_state *state)
 {
@@ -239,7 +253,8 @@ static bool advance(runner *r, double time, const dea_mobility_state *state)
     node n = node_at(r, time, state);
     correct(r, time - r->last.moment.time, &n);
     if (!is_possible(r, &n)) {
-        r->track->end = DEA_STATE_PULL_IN;
+        /* a mass can carry the film out; without one Newton's method may have found a root of no film */
+        r->track->end = r->route->dynamics->mass > 0.0 ? DEA_STATE_PULL_IN : verdict(r);
         return false;
     }
     add_step(r, &n);
@@ -287,18 +302,6 @@ static void set_piece(runner *r, dea_mobility_piece *piece, double to, double st
                                   .mass = r->match.mass,
                                   .conductance = r->match.resistance,
                                   .start = scaled(r->last.state, 1.0 / r->speed)};
-}
-
-/* Why the library stopped: the film has lost its stability there or will find no equilibrium, or another reason. */
-static dea_state verdict(const runner *r)
-{
-    dea_dynamics *d = r->route->dynamics;
-    const dea_segment *segment = &r->route->signal->segments[r->segment];
-    const double rest = dea_dynamics_stiffness(d, 0.0, 0.0, false);
-    const double here = dea_dynamics_stiffness(d, r->last.moment.u, r->last.moment.voltage, false);
-    double u;
-    const bool lost = here < 1e-3 * rest || !dea_dynamics_equilibrium(d, fmax(fabs(segment->start), fabs(segment->end)), &u);
-    return lost ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
 }
 
 /* The points of one netlist. */

@@ -30,8 +30,10 @@ typedef struct dea_route {
     const dea_signal *signal;
     const dea_pieces *pieces;
     size_t samples;
-    double scale; /* size of a displacement [m] */
-    double omega; /* of the ring [rad/s], 0: none */
+    double voltage;   /* most that the film sees [V] */
+    double scale;     /* size of a displacement [m] */
+    double omega;     /* of the ring [rad/s], 0: none */
+    double resonance; /* first resonance of the film at rest [Hz], NAN without mass */
 } dea_route;
 
 /* Runs the pieces with @p fineness times their steps; the caller frees track->points, also after a failure. A run that ends early

@@ -7,15 +7,19 @@
 #include "engine/ngspice/moving.h"
 #include "engine/ngspice/track.h"
 
-/* Most time steps of the finest run, and most runs. */
-static const double most_points = 4e6;
-enum { MOST_LEVELS = 14 };
+/* Most work that all runs may take, in time steps of a linear network: about half a minute. Other steps and a netlist take so
+ * much of that. Most runs, and those after which a failure is one. */
+static const double most_work = 5e6;
+static const double nonlinear_step = 5.0;
+static const double netlist = 1000.0;
+enum { MOST_LEVELS = 14, STUBBORN = 5 };
 
 typedef struct levels {
     dea_track coarse, fine; /* the last two runs */
     dea_track before;       /* extrapolated from the two before: points only */
     size_t runs;
-    double error; /* of the answer */
+    double error;    /* of the answer */
+    double residual; /* of its energies */
 } levels;
 
 /* y + (y - coarse)/3. */
@@ -108,8 +112,7 @@ static void fill_summary(const dea_route *route, const levels *l, dea_summary *s
     last.voltage = dea_route_voltage(route, last.source, stop.u, stop.charge);
     dea_audit_close(&audit, d, &l->fine.first, l->fine.start.z, &last, stop.z, summary);
     summary->error = l->error;
-    summary->resonance =
-        d->mass > 0.0 ? sqrt(dea_dynamics_stiffness(d, 0.0, 0.0, false) / d->mass) / (2.0 * DEA_PI) : (double)NAN;
+    summary->resonance = route->resonance;
 }
 
 /* From measured errors: three runs from there on mostly do. */
@@ -118,36 +121,96 @@ static double first_fineness(const dea_scene *scene)
     return fmin(1.0, pow(scene->accuracy / 1e-5, 0.3));
 }
 
-static dea_status refine(const dea_route *route, levels *l, dea_summary *summary, dea_error *error)
+/* Work of a run, in steps of a linear network. */
+static double work_of(const dea_route *route, double fineness)
+{
+    const double step = route->dynamics->linear ? 1.0 : nonlinear_step;
+    return step * route->pieces->points / fineness + netlist * (double)route->pieces->count;
+}
+
+/* Runs that are wanted at least, each finer by 2: two to compare, then as many as a fourth order takes from here. */
+static double least_runs(const levels *l, double wanted)
+{
+    if (l->runs < 3) {
+        return l->runs == 1 ? 2.0 : 1.0;
+    }
+    return isfinite(l->error) ? fmax(1.0, ceil(log(l->error / wanted) / log(16.0))) : 1.0;
+}
+
+/* Refuses runs that would take too long: number l->runs is next, of that fineness. */
+static dea_status afford(const dea_route *route, const levels *l, double fineness, double spent, dea_error *error)
 {
     const double wanted = route->scene->accuracy;
+    const double runs = least_runs(l, wanted);
+    const double rest = work_of(route, fineness) * (exp2(runs) - 1.0);
+    const double steps = route->pieces->points / fineness * exp2(runs - 1.0);
+    if (spent + rest <= most_work && l->runs <= MOST_LEVELS) {
+        return DEA_OK;
+    }
+    if (l->runs > 2 && l->error <= wanted) {
+        return dea_fail(
+            error, DEA_ERROR_ENGINE,
+            "%.2g time steps of ngspice leave the balance of energies open by %.1g, at most %g is wanted, which takes "
+            "%.2g steps or more",
+            route->pieces->points / fineness / 2.0, l->residual, 10.0 * wanted, steps);
+    }
+    if (l->runs > 2) {
+        return dea_fail(error, DEA_ERROR_ENGINE,
+                        "%.2g time steps of ngspice leave an error of %.1g, the scene wants %g, which takes %.2g steps or more",
+                        route->pieces->points / fineness / 2.0, l->error, wanted, steps);
+    }
+    const double periods = route->omega * dea_pieces_ringing(route->pieces) / (2.0 * DEA_PI);
+    if (periods > 1000.0) {
+        return dea_fail(error, DEA_ERROR_ENGINE,
+                        "the film rings for %.2g periods, which takes %.2g time steps of ngspice or more", periods, steps);
+    }
+    return dea_fail(error, DEA_ERROR_ENGINE, "the run takes %.2g time steps of ngspice in %zu pieces or more", steps,
+                    route->pieces->count);
+}
+
+/* One more run, twice as fine as the last; true in *done where the answer is good enough. */
+static dea_status refine_once(const dea_route *route, levels *l, double fineness, dea_summary *summary, bool *done,
+                              dea_error *error)
+{
+    const double wanted = route->scene->accuracy;
+    free(l->coarse.points);
+    l->coarse = l->fine;
+    l->fine = (dea_track){0};
+    const dea_status status = dea_track_run(route, fineness, &l->fine, error);
+    if (status == DEA_OK && l->runs > 1) {
+        judge(l);
+        fill_summary(route, l, summary);
+        l->residual = summary->residual;
+        const bool settled = l->fine.end != DEA_STATE_FAILED || l->runs >= STUBBORN;
+        const bool closed = l->fine.end != DEA_STATE_OK || summary->residual <= 10.0 * wanted;
+        *done = l->error <= wanted && settled && closed;
+    }
+    return status;
+}
+
+static dea_status refine(const dea_route *route, levels *l, dea_summary *summary, dea_error *error)
+{
     double fineness = first_fineness(route->scene);
+    double spent = 0.0;
+    bool done = false;
+    dea_status status = DEA_OK;
     l->before.points = malloc(route->samples * sizeof *l->before.points);
     if (!l->before.points) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for the samples of a run");
     }
-    for (l->runs = 1; l->runs <= MOST_LEVELS && route->pieces->points / fineness <= most_points; l->runs++) {
-        free(l->coarse.points);
-        l->coarse = l->fine;
-        l->fine = (dea_track){0};
-        const dea_status status = dea_track_run(route, fineness, &l->fine, error);
-        if (status != DEA_OK) {
-            return status;
+    for (l->runs = 1; status == DEA_OK && !done; l->runs++) {
+        status = afford(route, l, fineness, spent, error);
+        if (status == DEA_OK) {
+            status = refine_once(route, l, fineness, summary, &done, error);
         }
-        if (l->runs > 1) {
-            judge(l);
-            fill_summary(route, l, summary);
-            if (l->error <= wanted && (l->fine.end != DEA_STATE_OK || summary->residual <= 10.0 * wanted)) {
-                return DEA_OK;
-            }
-        }
+        spent += work_of(route, fineness);
         fineness *= 0.5;
     }
-    if (l->runs < 3) {
-        return dea_fail(error, DEA_ERROR_ENGINE, "the run needs more than %g time steps of ngspice", most_points);
+    if (status == DEA_OK && l->fine.end == DEA_STATE_FAILED) {
+        const char *complaint = dea_ngspice_complaint(route->library);
+        dea_fail(error, DEA_ERROR_ENGINE, "ngspice stopped at %g s%s%s", l->fine.last.time, complaint[0] ? ": " : "", complaint);
     }
-    return dea_fail(error, DEA_ERROR_ENGINE, "%g time steps of ngspice leave an error of %.1g, the scene wants %g", most_points,
-                    l->error, wanted);
+    return status;
 }
 
 /* The moment of a sample. */
@@ -195,6 +258,52 @@ static dea_pace pace_of_run(dea_dynamics *d, const dea_signal *signal)
     return pace;
 }
 
+/* Largest voltage that the film can see: behind a series resistance no more than the charge that gets there allows. */
+static double film_voltage(dea_dynamics *d, const dea_transient *transient, const dea_signal *signal)
+{
+    if (!(d->series > 0.0)) {
+        return signal->largest;
+    }
+    double area = 0.0; /* of |U| over time [V s] */
+    const double first = transient->from_bias ? fabs(signal->segments[0].start) : 0.0;
+    for (size_t i = 0; i < signal->count; i++) {
+        const dea_segment *s = &signal->segments[i];
+        area += (s->to - s->from) * (s->sine ? signal->largest : fmax(fabs(s->start), fabs(s->end)));
+    }
+    return fmin(signal->largest, first + area / (d->series * dea_dynamics_edge(d, 0.0).capacitance));
+}
+
+/* A displacement that is large for this run: the film may be too viscous or too heavy to follow within it [m]. */
+static double scale_of(dea_dynamics *d, const dea_transient *transient, double voltage)
+{
+    const double still = dea_dynamics_scale(d, voltage);
+    const double time = transient->until;
+    double share = 1.0;
+    if (transient->from_bias) {
+        return still;
+    }
+    if (d->retardation > 0.0) {
+        share = fmin(share, time / d->retardation);
+    }
+    if (d->mass > 0.0) {
+        share = fmin(share, 0.5 * time * time * dea_dynamics_stiffness(d, 0.0, 0.0, false) / d->mass);
+    }
+    return share * still;
+}
+
+/* A damper so strong that the mass only matters for a moment m/r behind an edge, and then to m K/r^2 of the displacement. */
+static bool is_weightless(dea_dynamics *d, double accuracy)
+{
+    const dea_edge e = dea_dynamics_edge(d, 0.0);
+    const double resistance = e.area * d->retardation * e.stress_slope;
+    return d->mass * dea_dynamics_stiffness(d, 0.0, 0.0, false) <= 1e-3 * accuracy * resistance * resistance;
+}
+
+static double resonance_of(dea_dynamics *d)
+{
+    return d->mass > 0.0 ? sqrt(dea_dynamics_stiffness(d, 0.0, 0.0, false) / d->mass) / (2.0 * DEA_PI) : (double)NAN;
+}
+
 static dea_status run_on(dea_route *route, dea_sample *samples, dea_summary *summary, dea_error *error)
 {
     const dea_transient *transient = &route->scene->transient;
@@ -205,7 +314,8 @@ static dea_status run_on(dea_route *route, dea_sample *samples, dea_summary *sum
     dea_status status = dea_pieces_cut(route->signal, &pace, route->scene->accuracy, quiet, &pieces, error);
     route->pieces = &pieces;
     route->omega = pace.omega;
-    route->scale = dea_dynamics_scale(route->dynamics, route->signal->largest);
+    route->voltage = film_voltage(route->dynamics, transient, route->signal);
+    route->scale = scale_of(route->dynamics, transient, route->voltage);
     if (status == DEA_OK) {
         status = refine(route, &l, summary, error);
     }
@@ -225,14 +335,22 @@ dea_status dea_ngspice_transient(dea_ngspice *library, const dea_scene *scene, c
     dea_dynamics dynamics;
     dea_mobility mobility = {0};
     dea_signal signal = {0};
+    double resonance = (double)NAN;
     dea_status status = dea_dynamics_open(scene, model, &dynamics, error);
     if (status == DEA_OK) {
+        resonance = resonance_of(&dynamics);
+        if (is_weightless(&dynamics, scene->accuracy)) {
+            dynamics.mass = 0.0;
+        }
         status = dea_mobility_open(scene, &dynamics, &mobility, error);
     }
     if (status == DEA_OK) {
         status = dea_signal_open(scene, &signal, error);
     }
     if (status == DEA_OK) {
+        if (!(dynamics.mass > 0.0) && !(dynamics.retardation > 0.0)) {
+            dea_mobility_displace(&mobility);
+        }
         dea_dynamics slow = dynamics; /* borrows what the other owns */
         slow.mass = 0.0;
         slow.retardation = dynamics.mass > 0.0 ? 0.0 : dynamics.retardation;
@@ -242,6 +360,7 @@ dea_status dea_ngspice_transient(dea_ngspice *library, const dea_scene *scene, c
                            .dynamics = &dynamics,
                            .mobility = &mobility,
                            .signal = &signal,
+                           .resonance = resonance,
                            .samples = dea_layout_of(scene).rows};
         status = run_on(&route, samples, summary, error);
     }

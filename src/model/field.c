@@ -10,13 +10,15 @@
 
 #include "model/film_balance.h"
 
-enum { GBS_COLUMNS = 7, most_steps = 2000 };
+enum { GBS_COLUMNS = 7 };
 
-/* Longest step in x: the extrapolation error per step is then below 1e-13 of D, which falls as R^-2 in a linear film. Close to
- * the loss of ellipticity it falls faster, and the step shrinks with its rate. Where less than 1e-6 is wanted of the result, the
- * step shrinks with the 14th root, as the order has it, so that the result can be compared with itself on a finer mesh. */
+/* Longest step in x: the extrapolation error per step is then below 1e-13 of D, but for a film close to the loss of ellipticity,
+ * where the step is halved until the last column of the extrapolation changes little. Where less than 1e-6 is wanted of the
+ * result, the step shrinks with the 14th root, as the order has it, so that the result can be compared with itself on a finer
+ * mesh. */
 static const double longest_step = 0.35;
-static const double usual_rate = 3.0; /* of D over x, up to which the longest step will do */
+static const double shortest_step = 1e-3; /* of the longest: there the film ends */
+static const double little = 1e-11;       /* of D */
 
 static double step_for(double accuracy)
 {
@@ -76,17 +78,12 @@ static radial_state midpoint(const membrane *m, radial_state start, radial_state
     return (radial_state){0.5 * (before.d + now.d + h * f.d), 0.5 * (before.e + now.e + h * f.e)};
 }
 
-/* Length of the next of equal steps that cover @p rest. */
-static double step_from(const membrane *m, radial_state s, radial_state slope, double rest)
-{
-    const double rate = fabs(slope.d) / fmax(fabs(s.d), DBL_MIN);
-    return rest / ceil(rest / (m->step * fmin(1.0, usual_rate / rate)));
-}
-
-/* One step: midpoint rules with 2, 4, ... 14 substeps, extrapolated in h^2 (Neville). */
-static radial_state advance(const membrane *m, radial_state start, radial_state slope, double step)
+/* One step: midpoint rules with 2, 4, ... 14 substeps, extrapolated in h^2 (Neville). False: the step is too long. */
+static bool advance(const membrane *m, radial_state start, double step, radial_state *end)
 {
     radial_state row[GBS_COLUMNS];
+    const radial_state slope = slope_at(m, start);
+    double change = 0.0;
     for (int k = 0; k < GBS_COLUMNS; k++) {
         radial_state value = midpoint(m, start, slope, step, 2 * (k + 1));
         for (int j = 1; j <= k; j++) {
@@ -94,12 +91,14 @@ static radial_state advance(const membrane *m, radial_state start, radial_state 
             const double weight = 1.0 / (ratio * ratio - 1.0);
             const radial_state last = row[j - 1];
             row[j - 1] = value;
+            change = weight * fabs(value.d - last.d);
             value.d += weight * (value.d - last.d);
             value.e += weight * (value.e - last.e);
         }
         row[k] = value;
     }
-    return row[GBS_COLUMNS - 1];
+    *end = row[GBS_COLUMNS - 1];
+    return change <= little * fabs(start.d);
 }
 
 /* p1(l - d, l) - p1(l, l), factored in d. */
@@ -167,20 +166,26 @@ static double miss_at_frame(const membrane *m, double edge, extremes *x)
         *x = (extremes){disc, lens ? (l - s.d) * l : l * l, lens ? (l - s.d) * l * l : l * l * l};
         note(m, s, x);
     }
-    double rest = m->length;
-    for (int i = 0; rest > 0.0; i++) {
-        const radial_state slope = slope_at(m, s);
-        const double step = step_from(m, s, slope, rest);
-        if (!isfinite(slope.d) || i == most_steps) {
+    const double longest = m->length / ceil(m->length / m->step);
+    double step = longest;
+    for (double rest = m->length; rest > 0.0;) {
+        const double now = fmin(step, rest);
+        radial_state next;
+        if (!isfinite(s.d) || step < shortest_step * longest) {
             return NAN;
         }
-        s = advance(m, s, slope, step);
-        rest = step < rest ? rest - step : 0.0;
+        if (!advance(m, s, now, &next)) {
+            step = 0.5 * now;
+            continue;
+        }
+        s = next;
+        rest = now < rest * (1.0 - 1e-12) ? rest - now : 0.0;
+        step = fmin(longest, 2.0 * step);
         if (x) {
             note(m, s, x);
         }
     }
-    return isfinite(s.d) ? s.e : NAN;
+    return s.e;
 }
 
 /* The same problem under a share of the load. */

@@ -621,6 +621,26 @@ static void membrane_stays_on_the_branch_from_rest(void **state)
     }
 }
 
+/* Strains of a softening film in which the radial stiffness behind the edge has fallen to a tenth, by SciPy's DOP853 over the
+ * radius; at the next voltage it is gone, and what lies past it is another film. */
+static void field_holds_its_digits_up_to_the_loss_of_ellipticity(void **state)
+{
+    (void)state;
+    static const struct {
+        double coverage, voltage, strain;
+    } last[] = {{0.1, 4000.0, -0.0619592244578}, {0.3, 3500.0, -0.0496512075795}, {0.6, 3000.0, -0.0341166805967}};
+    for (size_t i = 0; i < 3; i++) {
+        dea_scene scene = paper_scene(DEA_LENS, 1.2, last[i].coverage, last[i].voltage);
+        scene.material.yeoh[1] = -60000.0;
+        scene.material.yeoh[2] = 8000.0;
+        assert_relative(solve_direct(&scene, "field").strain, last[i].strain, 1e-10);
+        for (double voltage = last[i].voltage + 500.0; voltage <= 9000.0; voltage += 500.0) {
+            scene.drive.voltage = voltage;
+            assert_state(solve_direct(&scene, "field"), DEA_STATE_PULL_IN);
+        }
+    }
+}
+
 static void field_agrees_with_itself_on_a_finer_mesh(void **state)
 {
     (void)state;
@@ -689,6 +709,7 @@ int main(void)
         cmocka_unit_test(field_agrees_with_runge_kutta_over_the_radius),
         cmocka_unit_test(slack_film_far_past_its_tension_still_balances),
         cmocka_unit_test(membrane_stays_on_the_branch_from_rest),
+        cmocka_unit_test(field_holds_its_digits_up_to_the_loss_of_ellipticity),
         cmocka_unit_test(field_agrees_with_itself_on_a_finer_mesh),
         cmocka_unit_test(every_model_says_which_actuators_it_can_do),
     };

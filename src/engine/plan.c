@@ -174,6 +174,16 @@ void dea_plan_fail(const dea_plan *plan, void *points, size_t count)
         dea_layout_fail(plan->scene, &plan->layout, point_at(plan, points, i));
 }
 
+/* A transient whose energies do not add up says so, where the engine itself has said nothing. */
+static void doubt_balance(const dea_scene *scene, const dea_summary *summary, dea_error *error)
+{
+    if (summary->residual > 10.0 * scene->accuracy && error->message[0] == '\0')
+        dea_fail(
+            error, DEA_OK,
+            "its energy balance is off by %.2g, more than ten times the accuracy: current and energies are not to be trusted",
+            summary->residual);
+}
+
 /* One transient or frequency response. */
 static dea_status run_point(const dea_plan *plan, void *session, const dea_model *model, size_t point, void *result,
                             dea_error *error)
@@ -189,6 +199,8 @@ static dea_status run_point(const dea_plan *plan, void *session, const dea_model
         dea_layout_fail(plan->scene, &plan->layout, result);
         return DEA_OK;
     }
+    if (status == DEA_OK && here.study == DEA_STUDY_TRANSIENT)
+        doubt_balance(&here, dea_layout_summary(&plan->layout, result), error);
     return status;
 }
 

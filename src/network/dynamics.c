@@ -49,6 +49,35 @@ static void set_port(const dea_drive *drive, dea_dynamics *d)
     d->conductance = isnan(drive->leakage_resistance) ? 0.0 : 1.0 / drive->leakage_resistance;
 }
 
+/* The shortest time in which the source voltage changes [s]. */
+static double shortest_change(const dea_scene *scene)
+{
+    const dea_waveform *wave = &scene->drive.waveform;
+    double shortest = scene->transient.every;
+    if (scene->study == DEA_STUDY_AC) {
+        return 1.0 / (2.0 * DEA_PI * scene->ac.to);
+    }
+    if (wave->kind == DEA_WAVE_STEP && wave->step.rise > 0.0) {
+        shortest = fmin(shortest, wave->step.rise);
+    } else if (wave->kind == DEA_WAVE_SINE) {
+        shortest = fmin(shortest, 1.0 / (2.0 * DEA_PI * wave->sine.frequency));
+    }
+    for (size_t i = 1; wave->kind == DEA_WAVE_POINTS && i < wave->point_count; i++) {
+        shortest = fmin(shortest, wave->times[i] - wave->times[i - 1]);
+    }
+    return shortest;
+}
+
+/* A series resistance over which the film charges much faster than the voltage changes moves nothing: the film follows with a
+ * delay of R_s C. */
+static void drop_series(const dea_scene *scene, dea_dynamics *d)
+{
+    const double delay = d->series * dea_dynamics_edge(d, 0.0).capacitance;
+    if (delay <= 0.3 * scene->accuracy * shortest_change(scene)) {
+        d->series = 0.0;
+    }
+}
+
 /* The functions of u under 1 V, so that the force is phi. */
 static dea_status compile(dea_network *network, dea_dynamics *d, dea_error *error)
 {
@@ -104,6 +133,7 @@ dea_status dea_dynamics_open(const dea_scene *scene, const dea_model *model, dea
     d->radius = d->point.coverage * d->point.frame_radius;
     d->mass = dea_point_mass(scene, &d->point);
     d->retardation = isnan(scene->material.retardation) ? 0.0 : scene->material.retardation;
+    drop_series(scene, d);
     if (!isnan(d->focal_length) && !(d->focal_length * (d->refractive_index - 1.0) >= d->radius)) {
         return dea_fail(error, DEA_ERROR_USAGE,
                         "the cap of the lens cannot have so short a focal length: its radius of curvature, "

@@ -74,6 +74,12 @@ static void refuse_rows(const response *r, size_t count)
     }
 }
 
+static bool sample_at_bias(const response *r, dea_sample *sample)
+{
+    const dea_moment moment = {.source = r->scene->ac.bias, .voltage = r->bias.voltage, .u = r->bias.u};
+    return dea_dynamics_sample(r->dynamics, &moment, sample);
+}
+
 /* The last frequency is the end of the band, which need not lie on the grid of the others. */
 static dea_status run_bands(response *r, dea_error *error)
 {
@@ -82,7 +88,7 @@ static dea_status run_bands(response *r, dea_error *error)
     dea_sample at_bias;
     r->bias.voltage = r->scene->ac.bias / (1.0 + d->series * d->conductance);
     if (!dea_dynamics_equilibrium(d, r->bias.voltage, &r->bias.u) ||
-        !(dea_dynamics_stiffness(d, r->bias.u, r->bias.voltage, true) > 0.0)) {
+        !(dea_dynamics_stiffness(d, r->bias.u, r->bias.voltage, true) > 0.0) || !sample_at_bias(r, &at_bias)) {
         refuse_rows(r, count);
         return DEA_OK;
     }
@@ -93,8 +99,6 @@ static dea_status run_bands(response *r, dea_error *error)
     if (status == DEA_OK) {
         status = run_band(r, count - 1, 1, error);
     }
-    const dea_moment moment = {.source = r->scene->ac.bias, .voltage = r->bias.voltage, .u = r->bias.u};
-    (void)dea_dynamics_sample(d, &moment, &at_bias);
     name_states(r, count, at_bias.state);
     return status;
 }

@@ -86,7 +86,7 @@ $(BUILD)/fuzz/scene_fuzz: tests/fuzz/scene_fuzz.c $(LIBRARY_SOURCES)
 	@echo "CC $@"
 	@clang $(filter-out -MMD -MP,$(ALL_CFLAGS)) -O1 -g -fsanitize=fuzzer,address,undefined -DDEA_AXIS_VALUES_MAX=100000 $^ -o $@ $(LIBS)
 
-# Speed and error side by side, against the goals and against other programs where they are installed. Takes 2 to 3 minutes.
+# Speed and error side by side, against the goals and against other programs where they are installed. Takes 3 to 4 minutes.
 bench:
 	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/bench
 	@$(BUILD)/bench $(BUILD)/deaspice tests/peers

@@ -11,11 +11,6 @@ static const dea_analogy analogies[] = {
 
 enum { ANALOGIES = sizeof analogies / sizeof *analogies };
 
-size_t dea_analogy_count(void)
-{
-    return ANALOGIES;
-}
-
 const dea_analogy *dea_analogy_at(size_t index)
 {
     return index < ANALOGIES ? &analogies[index] : NULL;

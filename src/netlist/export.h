@@ -17,7 +17,6 @@ typedef struct dea_analogy {
     bool loop;           /* elements are links of a loop; else they lie between edge and frame */
 } dea_analogy;
 
-size_t dea_analogy_count(void);
 /* Analogy number @p index, the default first, NULL past the end; by name, NULL if there is none. */
 const dea_analogy *dea_analogy_at(size_t index);
 const dea_analogy *dea_analogy_find(const char *name);

@@ -156,13 +156,3 @@ void dea_expression_text_start(dea_expression_text *text, double symbol, double 
         }
     }
 }
-
-bool dea_expression_text_has_nodes(const dea_expression_text *text)
-{
-    for (int i = 0; i < text->pool->count; i++) {
-        if (has_node(text, i)) {
-            return true;
-        }
-    }
-    return false;
-}

@@ -30,8 +30,6 @@ void dea_expression_text_parameters(const dea_expression_text *text);
 void dea_expression_text_nodes(const dea_expression_text *text);
 /* ` v(x7)=0.5` for every shared node: their values at symbol 0 and node 0, for .nodeset or .ic. Zeros would be divided by. */
 void dea_expression_text_start(dea_expression_text *text, double symbol, double node);
-/* True where the expressions have a shared node. */
-bool dea_expression_text_has_nodes(const dea_expression_text *text);
 
 /* Writes the expression; as a factor: in brackets where it is a sum. */
 void dea_expression_text_write(const dea_expression_text *text, dea_expr ref);

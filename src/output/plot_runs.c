@@ -166,7 +166,7 @@ static void compose_response(sheet *page)
 static void write_trace(const sheet *page, FILE *script, size_t run, size_t number)
 {
     const panel *part = &page->panels[number];
-    const dea_trace *trace = &page->runs->runs[run].traces[part->quantity];
+    const dea_plot_trace *trace = &page->runs->runs[run].traces[part->quantity];
     fprintf(script, "$run%zu_%zu << END\n", run, number);
     for (size_t i = 0; i < trace->count; i++) {
         dea_gnuplot_number(script, trace->x[i] * page->across);
@@ -247,7 +247,7 @@ static void panel_range(const sheet *page, const panel *part, double *low, doubl
     *low = part->zero ? 0.0 : (double)INFINITY;
     *high = -*low;
     for (size_t run = 0; run < page->runs->count; run++) {
-        const dea_trace *trace = &page->runs->runs[run].traces[part->quantity];
+        const dea_plot_trace *trace = &page->runs->runs[run].traces[part->quantity];
         for (size_t i = 0; i < trace->count; i++) {
             *low = isfinite(trace->y[i]) ? fmin(*low, trace->y[i] * part->factor) : *low;
             *high = isfinite(trace->y[i]) ? fmax(*high, trace->y[i] * part->factor) : *high;

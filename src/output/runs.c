@@ -51,12 +51,12 @@ dea_status dea_runs_open(const dea_scene *scene, dea_runs *runs, dea_error *erro
     }
     double *next = runs->room;
     for (size_t i = 0; i < runs->count * runs->quantity_count; i++, next += 2 * most) {
-        runs->runs[i / runs->quantity_count].traces[i % runs->quantity_count] = (dea_trace){next, next + most, 0};
+        runs->runs[i / runs->quantity_count].traces[i % runs->quantity_count] = (dea_plot_trace){next, next + most, 0};
     }
     return DEA_OK;
 }
 
-static void trace_add(dea_trace *trace, double x, double y)
+static void trace_add(dea_plot_trace *trace, double x, double y)
 {
     trace->x[trace->count] = x;
     trace->y[trace->count++] = y;
@@ -64,7 +64,7 @@ static void trace_add(dea_trace *trace, double x, double y)
 
 /* Keeps a quantity. Angles follow their predecessor: whole turns are added where they leap by more than half a turn, which the
  * answer of a film without losses does at its resonance. */
-static void trace_take(const dea_runs *runs, dea_trace *trace, const void *point, size_t column, double turn)
+static void trace_take(const dea_runs *runs, dea_plot_trace *trace, const void *point, size_t column, double turn)
 {
     const size_t rows = runs->layout.rows;
     const size_t stride = rows <= DEA_RUNS_POINTS ? 1 : (2 * rows - 1) / DEA_RUNS_POINTS + 1;
@@ -148,7 +148,7 @@ double dea_runs_largest(const dea_runs *runs, size_t quantity)
 {
     double largest = 0.0;
     for (size_t i = 0; i < runs->count; i++) {
-        const dea_trace *trace = &runs->runs[i].traces[quantity];
+        const dea_plot_trace *trace = &runs->runs[i].traces[quantity];
         for (size_t k = 0; k < trace->count; k++) {
             largest = isfinite(trace->y[k]) ? fmax(largest, fabs(trace->y[k])) : largest;
         }

@@ -10,10 +10,10 @@
 enum { DEA_RUNS_QUANTITIES = 4, DEA_RUNS_POINTS = 2000, DEA_SPOTS = 32 };
 
 /* A curve: kept points, NAN where it is broken. */
-typedef struct dea_trace {
+typedef struct dea_plot_trace {
     double *x, *y; /* DEA_RUNS_POINTS values each at most */
     size_t count;
-} dea_trace;
+} dea_plot_trace;
 
 /* A mark on the first quantity. */
 typedef struct dea_spot {
@@ -22,7 +22,7 @@ typedef struct dea_spot {
 } dea_spot;
 
 typedef struct dea_run {
-    dea_trace traces[DEA_RUNS_QUANTITIES];
+    dea_plot_trace traces[DEA_RUNS_QUANTITIES];
     dea_spot spots[DEA_SPOTS];
     size_t spot_count;
 } dea_run;

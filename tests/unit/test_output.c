@@ -770,7 +770,7 @@ static void long_runs_make_small_pictures(void **state)
 }
 
 /* The curve of quantity @p quantity that a picture keeps of @p count samples. */
-static dea_trace *trace_make(const dea_scene *scene, dea_runs *runs, size_t quantity, const void *point)
+static dea_plot_trace *trace_make(const dea_scene *scene, dea_runs *runs, size_t quantity, const void *point)
 {
     dea_error error = {0};
     assert_int_equal(dea_runs_open(scene, runs, &error), DEA_OK);
@@ -794,7 +794,7 @@ static void thinned_curve_keeps_every_peak(void **state)
         samples[peaks[i]].strain = i % 2 ? -0.5 : 0.5;
     }
     dea_runs runs;
-    const dea_trace *trace = trace_make(&scene, &runs, 0, point);
+    const dea_plot_trace *trace = trace_make(&scene, &runs, 0, point);
     assert_in_range(trace->count, 1000, 2000);
     for (size_t i = 0; i < 6; i++) {
         size_t found = 0;
@@ -822,7 +822,7 @@ static void curve_ends_where_the_film_pulls_in(void **state)
         samples[i].state = held ? DEA_STATE_OK : DEA_STATE_PULL_IN;
     }
     dea_runs runs;
-    const dea_trace *trace = trace_make(&scene, &runs, 0, point);
+    const dea_plot_trace *trace = trace_make(&scene, &runs, 0, point);
     double last = 0.0;
     for (size_t i = 0; i < trace->count; i++) {
         last = isfinite(trace->y[i]) ? trace->x[i] : last;
@@ -847,7 +847,7 @@ static void phase_is_drawn_without_jumps(void **state)
         ((dea_response *)(void *)point)[i].displacement_phase = remainder(-20.0 * (double)i, 360.0);
     }
     dea_runs runs;
-    const dea_trace *trace = trace_make(&scene, &runs, 1, point);
+    const dea_plot_trace *trace = trace_make(&scene, &runs, 1, point);
     assert_int_equal(trace->count, 31);
     for (size_t i = 0; i < trace->count; i++) {
         assert_true(fabs(trace->y[i] + 20.0 * (double)i) < 1e-9);

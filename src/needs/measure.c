@@ -68,7 +68,7 @@ static double difference(const judge *j, double least, double from)
 {
     double u = 0.0, charge = 0.0, peak = least, charge_peak = 0.0;
     size_t near = 0;
-    for (size_t i = 1; i < j->layout.rows; i++) {
+    for (size_t i = 0; i < j->layout.rows; i++) {
         const dea_sample *a = &j->with[i], *b = &j->without[i];
         near = dea_signal_find(&j->signal, near, a->time);
         peak = fmax(peak, fabs(a->displacement));

@@ -41,7 +41,7 @@ static size_t sample_at(const dea_scene *scene, size_t rows, double time)
 static bool place_probes(dea_surrogate *s)
 {
     const size_t rows = dea_layout_of(s->scene).rows;
-    size_t first = 1; /* the first sample is the start */
+    size_t first = 0; /* sees a jump at the start */
     for (size_t i = 0; i < s->signal.count; i++) {
         const dea_segment *segment = &s->signal.segments[i];
         const size_t last = sample_at(s->scene, rows, segment->to);

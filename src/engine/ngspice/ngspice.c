@@ -224,6 +224,7 @@ const dea_engine dea_engine_ngspice = {
     .patience = 0.004,
     .run_patience = 120.0,
     .block = 5000,
+    .library = dea_ngspice_name,
     .refuses = refuses,
     .begin = begin,
     .sweep = sweep,

@@ -518,7 +518,10 @@ dea_status dea_journal_read(const dea_journal_study *study, const char *path, de
     struct stat about;
     opened->named = true;
     opened->fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    dea_status status = opened->fd >= 0 && fstat(opened->fd, &about) == 0 ? DEA_OK : fail_io(error, "read", path);
+    dea_status status = DEA_OK;
+    if (opened->fd < 0 || fstat(opened->fd, &about) != 0) {
+        status = dea_fail(error, DEA_ERROR_USAGE, "cannot read %s: %s", path, strerror(errno));
+    }
     if (status == DEA_OK && !S_ISREG(about.st_mode)) {
         status = dea_fail(error, DEA_ERROR_USAGE, "%s is no regular file", path);
     }

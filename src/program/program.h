@@ -25,8 +25,8 @@ typedef enum dea_takes {
     DEA_TAKES_JOBS = 1 << 5,
     DEA_TAKES_QUIET = 1 << 6,
     DEA_TAKES_TOLERANCE = 1 << 7,
-    DEA_TAKES_FIT = 1 << 8,   /**< --uniaxial, --equibiaxial, --terms, --relaxation, --ramp, --branches, --relative */
-    DEA_TAKES_EXPORT = 1 << 9, /**< --as, --dialect, --analogy */
+    DEA_TAKES_FIT = 1 << 8,     /**< --uniaxial, --equibiaxial, --terms, --relaxation, --ramp, --branches, --relative */
+    DEA_TAKES_EXPORT = 1 << 9,  /**< --as, --dialect, --analogy */
     DEA_TAKES_JOURNAL = 1 << 10 /**< --shard, --resume */
 } dea_takes;
 

@@ -119,8 +119,8 @@ void dea_ngspice_name(char *text, size_t size)
 {
     Dl_info place = {0};
     void *function;
-    int (*const start)(SendChar *, SendStat *, ControlledExit *, SendData *, SendInitData *, BGThreadRunning *,
-                       void *) = ngSpice_Init;
+    int (*const start)(SendChar *, SendStat *, ControlledExit *, SendData *, SendInitData *, BGThreadRunning *, void *) =
+        ngSpice_Init;
     memcpy(&function, &start, sizeof function);
     char *path = dladdr(function, &place) != 0 ? realpath(place.dli_fname, NULL) : NULL;
     const char *slash = path ? strrchr(path, '/') : NULL;

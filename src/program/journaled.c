@@ -16,6 +16,7 @@ typedef struct recorder {
     char *path; /* of the journal, owned; NULL: it has no name of its own */
     dea_journal *journal;
     size_t total, taken; /* points of the shard, and of those that were in the journal */
+    size_t computed;     /* points that came since */
     dea_audience audience;
 } recorder;
 
@@ -27,7 +28,8 @@ static bool recorder_wanted(void *user, size_t block)
 
 static dea_status recorder_points(void *user, size_t first, const void *points, size_t count, dea_error *error)
 {
-    const recorder *run = user;
+    recorder *run = user;
+    run->computed += count;
     return dea_journal_append(run->journal, first, points, count, error);
 }
 
@@ -192,7 +194,7 @@ static void tell_share(const recorder *run)
         return;
     }
     if (run->arguments->resume) {
-        fprintf(stderr, "%zu %s taken over, %zu computed\n", run->taken, noun(run), run->total - run->taken);
+        fprintf(stderr, "%zu %s taken over, %zu computed\n", run->taken, noun(run), run->computed);
     }
     if (run->shard.count > 1 && points.count > 0) {
         fprintf(stderr, "shard %zu/%zu, %s %zu to %zu of %zu: ", run->shard.number, run->shard.count, noun(run), points.first,

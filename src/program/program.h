@@ -25,9 +25,10 @@ typedef enum dea_takes {
     DEA_TAKES_JOBS = 1 << 5,
     DEA_TAKES_QUIET = 1 << 6,
     DEA_TAKES_TOLERANCE = 1 << 7,
-    DEA_TAKES_FIT = 1 << 8,    /**< --uniaxial, --equibiaxial, --terms, --relaxation, --ramp, --branches, --relative */
-    DEA_TAKES_EXPORT = 1 << 9, /**< --as, --dialect, --analogy */
-    DEA_TAKES_FULL = 1 << 10
+    DEA_TAKES_FIT = 1 << 8,      /**< --uniaxial, --equibiaxial, --terms, --relaxation, --ramp, --branches, --relative */
+    DEA_TAKES_EXPORT = 1 << 9,   /**< --as, --dialect, --analogy */
+    DEA_TAKES_JOURNAL = 1 << 10, /**< --shard, --resume */
+    DEA_TAKES_FULL = 1 << 11
 } dea_takes;
 
 /** Mode of a data file as the command line gives it. */
@@ -60,6 +61,8 @@ typedef struct dea_arguments {
     const char *as;         /**< NULL: not given */
     const char *dialect;    /**< NULL: not given */
     const char *analogy;    /**< NULL: not given */
+    size_t shard, shards;   /**< --shard shard/shards, 1 <= shard <= shards; 0: not given */
+    bool resume;
     dea_operand *operands;
     size_t operand_count;
 } dea_arguments;
@@ -75,6 +78,7 @@ typedef struct dea_command {
 } dea_command;
 
 extern const dea_command dea_command_run;
+extern const dea_command dea_command_merge;
 extern const dea_command dea_command_check;
 extern const dea_command dea_command_export;
 extern const dea_command dea_command_fit;

@@ -105,6 +105,9 @@ dea_status dea_units_enter(const dea_units *units, const dea_scene *scene, dea_s
     enter_wave(units, &inside->drive.waveform);
     inside->transient.until *= units->time;
     inside->transient.every *= units->time;
+    inside->ac.from /= units->time;
+    inside->ac.to /= units->time;
+    inside->ac.bias *= units->voltage;
     return inside->drive.waveform.kind == DEA_WAVE_POINTS ? enter_points(units, &inside->drive.waveform, error) : DEA_OK;
 }
 
@@ -125,6 +128,13 @@ void dea_units_return_sample(const dea_units *units, dea_sample *sample)
     sample->current /= charge(units) / units->time;
     sample->charge /= charge(units);
     sample->focal_length /= units->length;
+}
+
+void dea_units_return_response(const dea_units *units, dea_response *row)
+{
+    row->frequency *= units->time;
+    row->displacement /= units->length / units->voltage;
+    row->impedance /= resistance(units);
 }
 
 void dea_units_return_summary(const dea_units *units, dea_summary *summary)

@@ -1,5 +1,6 @@
-/* The units of a transient: powers of two in which displacement, stress, force, voltage and the film's own time are of size 1.
- * Tolerances and least values of the library then mean the same for an actuator of any size, and powers of two cost no digit. */
+/* The units of a study in time or frequency: powers of two in which displacement, stress, force, voltage and a time are of
+ * size 1. Tolerances and least values of the library then mean the same for an actuator of any size, and powers of two cost no
+ * digit. */
 #ifndef DEA_NGSPICE_UNITS_H
 #define DEA_NGSPICE_UNITS_H
 
@@ -14,7 +15,7 @@ typedef struct dea_units {
     double time;
 } dea_units;
 
-/* Sizes of a run that become 1. */
+/* Sizes of a study that become 1. */
 typedef struct dea_sizes {
     double displacement; /* [m] */
     double voltage;      /* [V], 0: none */
@@ -23,13 +24,14 @@ typedef struct dea_sizes {
 
 dea_units dea_units_of(dea_dynamics *dynamics, const dea_sizes *sizes);
 
-/* The scene of a transient in these units. It borrows all but the points of its waveform: the caller frees what dea_units_leave()
+/* The scene in these units. It borrows all but the points of its waveform: the caller frees what dea_units_leave()
  * is given. DEA_ERROR_MEMORY. */
 dea_status dea_units_enter(const dea_units *units, const dea_scene *scene, dea_scene *inside, dea_error *error);
 void dea_units_leave(dea_scene *inside);
 
-/* A row and the summary of the run back to SI. */
+/* Rows and summary back to SI. */
 void dea_units_return_sample(const dea_units *units, dea_sample *sample);
+void dea_units_return_response(const dea_units *units, dea_response *row);
 void dea_units_return_summary(const dea_units *units, dea_summary *summary);
 
 #endif

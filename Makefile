@@ -24,12 +24,13 @@ LIBRARY_OBJECTS := $(LIBRARY_SOURCES:%.c=$(BUILD)/%.o)
 PROGRAM_OBJECTS := $(PROGRAM_SOURCES:%.c=$(BUILD)/%.o)
 UNIT_SOURCES    := $(sort $(wildcard tests/unit/test_*.c))
 UNIT_PROGRAMS   := $(UNIT_SOURCES:tests/unit/%.c=$(BUILD)/tests/%)
+STABILITY_PARTS := $(patsubst %.c,$(BUILD)/%.o,$(filter-out %/main.c,$(sort $(wildcard tests/stability/*.c))) tests/bench/measure.c tests/bench/reference.c)
 
 JOBS     ?= $(shell nproc 2>/dev/null || echo 1)
 SANITIZE := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 
 .DELETE_ON_ERROR:
-.PHONY: all unit demo check test asan fuzz clang bench netlists examples-agree asan-run install uninstall clean packages packages-check
+.PHONY: all unit demo check test asan fuzz clang bench stability netlists examples-agree asan-run install uninstall clean packages packages-check
 
 all: $(BUILD)/deaspice $(BUILD)/libdeaspice.so
 
@@ -95,6 +96,21 @@ $(BUILD)/bench: $(wildcard tests/bench/*.[ch]) $(BUILD)/libdeaspice.a
 	@echo "CC $@"
 	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) -Itests/bench $(filter %.c,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) $(LIBS)
 
+# Orders, conditioning, freedom of units, other compilers and flags, as Markdown. Takes 2 to 3 minutes after the builds.
+CLANG := $(shell command -v clang 2>/dev/null)
+stability:
+	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/stability
+	@$(MAKE) --no-print-directory -j$(JOBS) BUILD=$(BUILD)/o0 CFLAGS=-O0 $(BUILD)/o0/deaspice
+	@$(MAKE) --no-print-directory -j$(JOBS) BUILD=$(BUILD)/o3 CFLAGS=-O3 $(BUILD)/o3/deaspice
+	@$(MAKE) --no-print-directory -j$(JOBS) BUILD=$(BUILD)/fma CFLAGS="-O2 -march=native -ffp-contract=fast" $(BUILD)/fma/deaspice
+	@$(if $(CLANG),$(MAKE) --no-print-directory -j$(JOBS) BUILD=$(BUILD)/clang CC=clang CFLAGS="-O1 -Werror" $(BUILD)/clang/deaspice)
+	@$(BUILD)/stability examples "gcc -O2=$(BUILD)/deaspice" "-O0=$(BUILD)/o0/deaspice" "-O3=$(BUILD)/o3/deaspice" \
+	"-O2 -march=native -ffp-contract=fast=$(BUILD)/fma/deaspice" $(if $(CLANG),"clang -O1=$(BUILD)/clang/deaspice")
+
+$(BUILD)/stability: $(STABILITY_PARTS) $(BUILD)/tests/stability/main.o $(BUILD)/libdeaspice.a
+	@echo "LD $@"
+	@$(CC) $(CFLAGS) $(LDFLAGS) $^ -o $@ $(LIBS)
+
 # The ready-made parts for circuit simulators; a unit test finds what is checked in and differs.
 netlists: $(BUILD)/make_netlists
 	@$(BUILD)/make_netlists netlists
@@ -143,7 +159,9 @@ $(BUILD)/deaspice: $(PROGRAM_OBJECTS) $(BUILD)/libdeaspice.a
 $(BUILD)/tests/%: tests/unit/%.c $(BUILD)/libdeaspice.a Makefile
 	@mkdir -p $(@D)
 	@echo "CC $@"
-	@$(CC) $(ALL_CFLAGS) -Itests/unit $< $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) -lcmocka $(LIBS)
+	@$(CC) $(ALL_CFLAGS) -Itests/unit $< $(filter %.o,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) -lcmocka $(LIBS)
+
+$(BUILD)/tests/test_stability: $(STABILITY_PARTS)
 
 unit: $(UNIT_PROGRAMS)
 

@@ -1,12 +1,11 @@
 /* Orders of convergence: error against the step, the tolerance or the accuracy that a method is given. */
 #include "stability.h"
 
+#include "../bench/bench.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "engine/ida/flight.h"
 #include "engine/ngspice/track.h"
@@ -171,24 +170,12 @@ static dea_status lay_route(ngspice_job *job, dea_error *error)
 }
 
 /* In a child, which the library changes. */
-static void run_ngspice(ngspice_job *job)
+static void run_in_child(void *argument)
 {
-    int ended = 1;
     dea_error error = {0};
-    ngspice_job *shared = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (shared == MAP_FAILED) {
-        stability_give_up("no shared memory");
+    if (lay_route(argument, &error) != DEA_OK) {
+        bench_give_up("ngspice: %s", error.message);
     }
-    *shared = *job;
-    const pid_t child = fork();
-    if (child == 0) {
-        _exit(lay_route(shared, &error) == DEA_OK ? 0 : 1);
-    }
-    if (child < 0 || waitpid(child, &ended, 0) != child || ended != 0) {
-        stability_give_up("ngspice does not run: %s", error.message);
-    }
-    *job = *shared;
-    munmap(shared, sizeof *shared);
 }
 
 static stability_order measure_ngspice(const stability_case *which, bool extrapolated)
@@ -196,11 +183,14 @@ static stability_order measure_ngspice(const stability_case *which, bool extrapo
     dea_scene scene = stability_scene(which->scene);
     const bool linear = scene.models[0]->linear != NULL;
     double *exact = reference(&scene, linear ? "direct" : "ida", linear ? 1e-12 : 1e-9);
-    ngspice_job job = {.scene = &scene, .exact = exact};
-    run_ngspice(&job);
+    ngspice_job *job = bench_shared(sizeof *job);
+    *job = (ngspice_job){.scene = &scene, .exact = exact};
+    if (!bench_fork(run_in_child, job)) {
+        bench_give_up("ngspice does not run: %s", which->name);
+    }
     free(exact);
     dea_scene_free(&scene);
-    return order_of(which, extrapolated ? &job.extrapolated : &job.plain);
+    return order_of(which, extrapolated ? &job->extrapolated : &job->plain);
 }
 
 static stability_order measure_plain(const stability_case *which)
@@ -221,11 +211,11 @@ static double *fly(dea_flight *flight, double tolerance)
     dea_trace trace = {.moments = malloc(rows * sizeof *trace.moments)};
     double *u = malloc(rows * sizeof *u);
     if (!trace.moments || !u) {
-        stability_give_up("out of memory");
+        bench_give_up("out of memory");
     }
     dea_flight_run(flight, tolerance, &trace, NULL);
     if (trace.end != DEA_STATE_OK || trace.count != rows) {
-        stability_give_up("a run of SUNDIALS ended early: %s", flight->why.message);
+        bench_give_up("a run of SUNDIALS ended early: %s", flight->why.message);
     }
     for (size_t i = 0; i < rows; i++) {
         u[i] = trace.moments[i].u;
@@ -259,7 +249,7 @@ static stability_order measure_flight(const stability_case *which)
     status = status == DEA_OK ? dea_signal_open(&scene, &signal, &error) : status;
     status = status == DEA_OK ? dea_flight_open(context, &scene, &dynamics, &signal, &flight, &error) : status;
     if (status != DEA_OK) {
-        stability_give_up("%s", error.message);
+        bench_give_up("%s", error.message);
     }
     double *exact = scene.models[0]->linear ? reference(&scene, "direct", 1e-12) : fly(&flight, 1e-13);
     const stability_order order = run_flights(which, &flight, exact);
@@ -346,6 +336,29 @@ static const stability_case cases[] = {
      "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.001, film_thickness: 100 um, prestretch: 1.2}\n"
      "material: {" FILM "}\ndrive: {voltage: 4 kV}\nstudy: {sweep: {}}\nmodel: field\n"},
 };
+
+double stability_rounding(const char *model, dea_kind kind)
+{
+    dea_scene scene = stability_scene(SWEEP "model: lumped\n");
+    double worst = 0.0;
+    scene.actuator.kind = kind;
+    for (int i = 0; i < 500; i++) {
+        dea_point point;
+        dea_row row;
+        scene.actuator.coverage = 0.05 + 0.9 * (i % 10) / 9.0;
+        scene.actuator.prestretch = 1.05 + 0.05 * (i / 10 % 10);
+        scene.drive.voltage = pow(10.0, 2.0 + 0.4 * (i / 100));
+        dea_film_prepare(&scene, &point.film);
+        dea_point_place(&scene, &point);
+        dea_model_find(model)->solve(&point, 1e-12, &row);
+        if (row.state != DEA_STATE_PULL_IN) {
+            const long double exact = bench_strain(model, &point);
+            worst = fmax(worst, (double)fabsl((row.strain - exact) / exact));
+        }
+    }
+    dea_scene_free(&scene);
+    return worst;
+}
 
 size_t stability_case_count(void)
 {

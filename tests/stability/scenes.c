@@ -1,28 +1,19 @@
 #include "stability.h"
 
+#include "../bench/bench.h"
+
 #include <math.h>
-#include <stdarg.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-void stability_give_up(const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    vfprintf(stderr, format, arguments);
-    va_end(arguments);
-    fputc('\n', stderr);
-    exit(1);
-}
 
 dea_scene stability_scene(const char *text)
 {
     dea_scene scene;
     dea_error error = {0};
     if (dea_scene_parse(text, strlen(text), "stability", ".", NULL, 0, NULL, &scene, &error) != DEA_OK) {
-        stability_give_up("%s", error.message);
+        bench_give_up("%s", error.message);
     }
     return scene;
 }
@@ -74,7 +65,7 @@ static double factor_of(const stability_units *u, const char *unit)
             return list[i].factor;
         }
     }
-    stability_give_up("no factor for the unit %s", unit);
+    bench_give_up("no factor for the unit %s", unit);
 }
 
 static void scale_material(dea_material *material, const stability_units *u)
@@ -158,7 +149,7 @@ stability_answer stability_run(const dea_scene *scene, const char *engine)
     answer.points = calloc(dea_scene_point_count(scene), dea_layout_of(scene).point_size);
     const dea_run_options options = {.jobs = 1, .points = take, .log = keep_log, .user = &answer};
     if (!answer.points || dea_study_run(scene, dea_engine_find(engine), &options, &error) != DEA_OK) {
-        stability_give_up("%s: %s", engine, error.message);
+        bench_give_up("%s: %s", engine, error.message);
     }
     return answer;
 }

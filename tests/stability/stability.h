@@ -4,9 +4,6 @@
 
 #include "deaspice/engine.h"
 
-/* Ends the program with a message. */
-_Noreturn void stability_give_up(const char *format, ...) DEA_PRINTF(1, 2);
-
 /* Factors of a similarity transform: it leaves every strain as it is. */
 typedef struct stability_units {
     const char *name;
@@ -44,11 +41,14 @@ typedef struct stability_subject {
 
 size_t stability_subject_count(void);
 const stability_subject *stability_subject_at(size_t index);
-/* Transforms; exact ones have powers of two as factors, so that rounding itself is similar. */
-size_t stability_units_count(bool exact);
-const stability_units *stability_units_at(bool exact, size_t index);
-/* Largest difference that a transform makes to the subject's answer, and the share of estimated errors, scaled over not. */
-double stability_similarity(const stability_subject *subject, const stability_units *units);
+/* Largest difference that a transform makes to the subject's answer: out of the first @p most of those with powers of two as
+ * factors, by which rounding itself is similar, or of others. */
+typedef struct stability_change {
+    double largest;
+    const stability_units *worst; /* NULL: none makes any */
+} stability_change;
+
+stability_change stability_similarity(const stability_subject *subject, bool powers_of_two, size_t most);
 
 /* What a method is given: the width of its steps, a tolerance of one step, the accuracy of the scene; or the steps that it took,
  * whose width is 1 over their number. */
@@ -73,7 +73,33 @@ typedef struct stability_order {
     double largest, least; /* errors of the first and the last run, relative */
 } stability_order;
 
+/* Largest error of the strain of a closed form, against the same equations in extended precision. */
+double stability_rounding(const char *model, dea_kind kind);
+
 size_t stability_case_count(void);
 stability_order stability_order_of(size_t index);
+
+/* Condition numbers (2-norm) of the matrices of a time step, before and after scaling; infinite where rounding cannot tell them
+ * from singular ones. */
+typedef struct stability_condition {
+    const char *name;
+    double network, network_scaled; /* of the network in the mobility analogy: in SI, in the units of the run */
+    double network_best;            /* with all rows and columns scaled: no choice of units gives less by much */
+    double ida, ida_scaled;         /* of IDA's Jacobian: in SI, in unknowns of size 1 */
+} stability_condition;
+
+size_t stability_condition_count(void);
+stability_condition stability_condition_of(size_t index);
+
+/* What the numbers of one program differ by from those of the first. */
+typedef struct stability_difference_found {
+    double largest; /* of any column over its peak; infinite where rows or states differ */
+    char where[64]; /* the example */
+    size_t examples;
+} stability_difference_found;
+
+/* Runs all scenes of a folder by every program that the engine can do; @p found: one for each program. */
+void stability_compare_programs(const char *const *programs, size_t count, const char *folder, const char *engine,
+                                stability_difference_found *found);
 
 #endif

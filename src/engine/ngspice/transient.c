@@ -383,8 +383,7 @@ static double own_time(dea_dynamics *d, const dea_scene *scene)
     return d->retardation > 0.0 ? d->retardation : scene->transient.until;
 }
 
-/* Units that suit the scene. */
-static dea_status find_units(const dea_scene *scene, const dea_model *model, dea_units *units, dea_error *error)
+dea_status dea_ngspice_units(const dea_scene *scene, const dea_model *model, dea_units *units, dea_error *error)
 {
     dea_dynamics dynamics;
     dea_signal signal = {0};
@@ -409,7 +408,7 @@ dea_status dea_ngspice_transient(dea_ngspice *library, const dea_scene *scene, c
 {
     dea_units units;
     dea_scene inside;
-    dea_status status = find_units(scene, model, &units, error);
+    dea_status status = dea_ngspice_units(scene, model, &units, error);
     if (status == DEA_OK) {
         status = dea_units_enter(&units, scene, &inside, error);
     }

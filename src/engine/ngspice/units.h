@@ -23,6 +23,8 @@ typedef struct dea_sizes {
 } dea_sizes;
 
 dea_units dea_units_of(dea_dynamics *dynamics, const dea_sizes *sizes);
+/* Those that suit a transient. */
+dea_status dea_ngspice_units(const dea_scene *scene, const dea_model *model, dea_units *units, dea_error *error);
 
 /* The scene in these units. It borrows all but the points of its waveform: the caller frees what dea_units_leave()
  * is given. DEA_ERROR_MEMORY. */

@@ -10,8 +10,8 @@
 #include <stdlib.h>
 
 #include "engine/ida/motion.h"
+#include "engine/ngspice/moving.h"
 #include "engine/ngspice/pieces.h"
-#include "engine/ngspice/units.h"
 
 #define SILICONE "yeoh: {C1: 178426 Pa, C2: -6023 Pa, C3: 4234 Pa}, permittivity: 2.8, density: 1080 kg/m^3"
 #define DOT(frame, film)                                                                                                         \

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 
 #include "engine/ngspice/moving.h"
-#include "engine/ngspice/units.h"
 #include "netlist/mobility.h"
 
 /* Magnitude and phase [deg], -180 < phase <= 180. */

@@ -6,7 +6,6 @@
 
 #include "engine/ngspice/moving.h"
 #include "engine/ngspice/track.h"
-#include "engine/ngspice/units.h"
 
 /* Most work that all runs may take, in time steps of a linear network: about half a minute. Other steps and a netlist take so
  * much of that. Most runs, and those after which a failure is one. */
@@ -417,9 +416,12 @@ dea_status dea_ngspice_transient(dea_ngspice *library, const dea_scene *scene, c
     }
     status = run_inside(library, &inside, model, units.time, samples, summary, error);
     dea_units_leave(&inside);
-    for (size_t i = 0; status == DEA_OK && i < dea_layout_of(scene).rows; i++) {
+    if (status != DEA_OK) {
+        return status;
+    }
+    for (size_t i = 0; i < dea_layout_of(scene).rows; i++) {
         dea_units_return_sample(&units, &samples[i]);
     }
     dea_units_return_summary(&units, summary);
-    return status;
+    return DEA_OK;
 }

@@ -22,12 +22,11 @@ typedef struct dea_sizes {
     double time;         /* [s] */
 } dea_sizes;
 
+/* Units in which these sizes, and the force that goes with them, are 1. */
 dea_units dea_units_of(dea_dynamics *dynamics, const dea_sizes *sizes);
-/* Those that suit a transient. */
-dea_status dea_ngspice_units(const dea_scene *scene, const dea_model *model, dea_units *units, dea_error *error);
 
-/* The scene in these units. It borrows all but the points of its waveform: the caller frees what dea_units_leave()
- * is given. DEA_ERROR_MEMORY. */
+/* The scene in these units. It borrows all but the points of its waveform; on DEA_OK the caller ends it with dea_units_leave().
+ * DEA_ERROR_MEMORY. */
 dea_status dea_units_enter(const dea_units *units, const dea_scene *scene, dea_scene *inside, dea_error *error);
 void dea_units_leave(dea_scene *inside);
 

@@ -325,15 +325,28 @@ bool dea_dynamics_follow(dea_dynamics *dynamics, double voltage, const double *z
     return true;
 }
 
-double dea_dynamics_velocity(dea_dynamics *dynamics, double u, double voltage, double slope, const double *z)
+/* K v = 2 phi U U' + A sum c_i (S - z_i)/tau_i, U' = slope - reaction v. */
+static double velocity(dea_dynamics *d, double u, double voltage, double slope, double reaction, const double *z)
 {
     double stiffness;
-    const double force = imbalance(dynamics, u, voltage, z, &stiffness);
-    const dea_edge e = dea_dynamics_edge(dynamics, u);
-    if (dynamics->retardation > 0.0) {
-        return -force / (e.area * dynamics->retardation * e.stress_slope);
+    const double force = imbalance(d, u, voltage, z, &stiffness);
+    const dea_edge e = dea_dynamics_edge(d, u);
+    if (d->retardation > 0.0) {
+        return -force / (e.area * d->retardation * e.stress_slope);
     }
-    return (2.0 * e.push * voltage * slope + e.area * branch_loss(dynamics, e.stress, z)) / stiffness;
+    const double push = 2.0 * e.push * voltage;
+    return (push * slope + e.area * branch_loss(d, e.stress, z)) / (stiffness + push * reaction);
+}
+
+double dea_dynamics_velocity(dea_dynamics *dynamics, double u, double voltage, double slope, const double *z)
+{
+    return velocity(dynamics, u, voltage, slope, 0.0, z);
+}
+
+double dea_dynamics_velocity_charged(dea_dynamics *dynamics, double u, double voltage, double slope, const double *z)
+{
+    const dea_edge e = dea_dynamics_edge(dynamics, u);
+    return velocity(dynamics, u, voltage, slope, voltage * e.capacitance_slope / e.capacitance, z);
 }
 
 dea_sample dea_sample_refused(double time, double voltage, dea_state state)

@@ -31,7 +31,7 @@ enum {
     RAW_PIECE = 512, /* most bytes that go to the buffer at once: a line, or a row */
     RAW_TITLE = 240, /* room for the scene's title, and for what tells the run */
     RAW_TRACES = DEA_LAYOUT_COLUMNS + 2,
-    DATE_ROOM = 32
+    DATE_ROOM = 64
 };
 
 /* Where the number of a vector comes from. */

@@ -103,8 +103,8 @@ static dea_status run_bands(response *r, dea_error *error)
     return status;
 }
 
-dea_status dea_ngspice_ac(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_response *rows,
-                          dea_error *error)
+static dea_status run_inside(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_response *rows,
+                             dea_error *error)
 {
     dea_dynamics dynamics;
     dea_status status = dea_dynamics_open(scene, model, &dynamics, error);
@@ -113,5 +113,40 @@ dea_status dea_ngspice_ac(dea_ngspice *library, const dea_scene *scene, const de
         status = run_bands(&r, error);
     }
     dea_dynamics_close(&dynamics);
+    return status;
+}
+
+/* Units that suit the scene; its time is that of the middle of the band. */
+static dea_status find_units(const dea_scene *scene, const dea_model *model, dea_units *units, dea_error *error)
+{
+    dea_dynamics dynamics;
+    const dea_status status = dea_dynamics_open(scene, model, &dynamics, error);
+    if (status == DEA_OK) {
+        const dea_sizes sizes = {.displacement = dea_dynamics_scale(&dynamics, scene->ac.bias),
+                                 .voltage = fabs(scene->ac.bias),
+                                 .time = 1.0 / sqrt(scene->ac.from * scene->ac.to)};
+        *units = dea_units_of(&dynamics, &sizes);
+    }
+    dea_dynamics_close(&dynamics);
+    return status;
+}
+
+dea_status dea_ngspice_ac(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_response *rows,
+                          dea_error *error)
+{
+    dea_units units;
+    dea_scene inside;
+    dea_status status = find_units(scene, model, &units, error);
+    if (status == DEA_OK) {
+        status = dea_units_enter(&units, scene, &inside, error);
+    }
+    if (status != DEA_OK) {
+        return status;
+    }
+    status = run_inside(library, &inside, model, rows, error);
+    dea_units_leave(&inside);
+    for (size_t i = 0; status == DEA_OK && i < dea_layout_of(scene).rows; i++) {
+        dea_units_return_response(&units, &rows[i]);
+    }
     return status;
 }

@@ -53,16 +53,14 @@ static double acceleration(const dea_dynamics *d, const dea_edge *e, const node 
 }
 
 /* Velocity of a film without mass, or of one whose ring has died away: what is left of that would count too much over a long
- * step. Behind a series resistance the slope of U = q/C(u) depends on it, and it on that slope: both are linear in the other. */
+ * step. */
 static void set_velocity(dea_dynamics *d, const dea_edge *e, node *n)
 {
     dea_moment *m = &n->moment;
     if (d->series > 0.0) {
-        const double still = dea_dynamics_velocity(d, m->u, m->voltage, 0.0, n->state.z);
-        const double per_slope = dea_dynamics_velocity(d, m->u, m->voltage, 1.0, n->state.z) - still;
-        const double reaction = e->capacitance_slope * m->voltage / e->capacitance;
-        m->v = (still + per_slope * n->current / e->capacitance) / (1.0 + per_slope * reaction);
-        m->slope = n->current / e->capacitance - reaction * m->v;
+        const double slope = n->current / e->capacitance;
+        m->v = dea_dynamics_velocity_charged(d, m->u, m->voltage, slope, n->state.z);
+        m->slope = slope - e->capacitance_slope * m->voltage / e->capacitance * m->v;
     } else {
         m->v = dea_dynamics_velocity(d, m->u, m->voltage, m->slope, n->state.z);
     }

@@ -29,7 +29,7 @@ JOBS     ?= $(shell nproc 2>/dev/null || echo 1)
 SANITIZE := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 
 .DELETE_ON_ERROR:
-.PHONY: all unit demo check test asan fuzz clang bench netlists examples-agree asan-run install uninstall clean packages packages-check
+.PHONY: all unit demo check test asan fuzz clang bench promises netlists examples-agree asan-run install uninstall clean packages packages-check
 
 all: $(BUILD)/deaspice $(BUILD)/libdeaspice.so
 
@@ -94,6 +94,19 @@ bench:
 $(BUILD)/bench: $(wildcard tests/bench/*.[ch]) $(BUILD)/libdeaspice.a
 	@echo "CC $@"
 	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) -Itests/bench $(filter %.c,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) $(LIBS)
+
+# Random scenes by all engines and accuracies against truths found another way: broken promises of accuracy. About 15 minutes;
+# SCENES=n, SEED=s for others.
+SCENES ?= 500
+SEED   ?= 1
+promises:
+	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/promises
+	@$(BUILD)/promises --scenes $(SCENES) --seed $(SEED)
+
+PROMISES := $(filter-out tests/promises/main.c,$(sort $(wildcard tests/promises/*.c)))
+$(BUILD)/promises: tests/promises/main.c $(PROMISES) tests/promises/promises.h $(wildcard tests/unit/*.h) $(BUILD)/libdeaspice.a
+	@echo "CC $@"
+	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) -Itests/unit $(filter %.c,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) -lcmocka $(LIBS)
 
 # The ready-made parts for circuit simulators; a unit test finds what is checked in and differs.
 netlists: $(BUILD)/make_netlists

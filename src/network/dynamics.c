@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 
+#include "drive/signal.h"
 #include "support/gauss.h"
 
 enum { AREA, STRESS, PUSH, CAPACITANCE, OUTPUTS };
@@ -49,33 +50,69 @@ static void set_port(const dea_drive *drive, dea_dynamics *d)
     d->conductance = isnan(drive->leakage_resistance) ? 0.0 : 1.0 / drive->leakage_resistance;
 }
 
-/* The shortest time in which the source voltage changes [s]. */
-static double shortest_change(const dea_scene *scene)
+/* Part of the accuracy that leaving out a series resistance may take. */
+static const double spared = 0.1;
+
+/* True where a sample lies so close behind a jump of the source voltage that it sees the film charge within @p delay [s]; as the
+ * first one does where the film starts at rest. */
+static bool sees_charging(const dea_scene *scene, const dea_signal *signal, double delay)
 {
-    const dea_waveform *wave = &scene->drive.waveform;
+    const double every = scene->transient.every;
+    const double wait = delay * log(1.0 / (spared * scene->accuracy));
+    bool seen = !scene->transient.from_bias && signal->segments[0].start != 0.0;
+    for (size_t i = 1; i < signal->count && !seen; i++) {
+        const double from = signal->segments[i].from;
+        const bool jumps = signal->segments[i].start != signal->segments[i - 1].end;
+        seen = jumps && (floor(from / every) + 1.0) * every - from < wait;
+    }
+    return seen;
+}
+
+/* The shortest time in which the source voltage changes [s]. */
+static double shortest_change(const dea_scene *scene, const dea_signal *signal)
+{
     double shortest = scene->transient.every;
-    if (scene->study == DEA_STUDY_AC) {
-        return 1.0 / (2.0 * DEA_PI * scene->ac.to);
-    }
-    if (wave->kind == DEA_WAVE_STEP && wave->step.rise > 0.0) {
-        shortest = fmin(shortest, wave->step.rise);
-    } else if (wave->kind == DEA_WAVE_SINE) {
-        shortest = fmin(shortest, 1.0 / (2.0 * DEA_PI * wave->sine.frequency));
-    }
-    for (size_t i = 1; wave->kind == DEA_WAVE_POINTS && i < wave->point_count; i++) {
-        shortest = fmin(shortest, wave->times[i] - wave->times[i - 1]);
+    for (size_t i = 0; i < signal->count; i++) {
+        const dea_segment *s = &signal->segments[i];
+        if (s->sine) {
+            shortest = fmin(shortest, 1.0 / (2.0 * DEA_PI * signal->sine.frequency));
+        } else if (s->start != s->end) {
+            shortest = fmin(shortest, s->to - s->from);
+        }
     }
     return shortest;
 }
 
-/* A series resistance over which the film charges much faster than the voltage changes moves nothing: the film follows with a
- * delay of R_s C. */
-static void drop_series(const dea_scene *scene, dea_dynamics *d)
+/* What a moving film draws through R_s acts as a damper of 4 phi^2 U^2 R_s: how much of a ring it takes away within the run, or
+ * its share of the film's own damper. */
+static double electric_damping(const dea_scene *scene, const dea_dynamics *d, const dea_edge *e, double voltage)
 {
-    const double delay = d->series * dea_dynamics_edge(d, 0.0).capacitance;
-    if (delay <= 0.3 * scene->accuracy * shortest_change(scene)) {
+    const double damper = 4.0 * e->push * e->push * voltage * voltage * d->series;
+    const double own = e->area * d->retardation * e->stress_slope;
+    if (d->mass > 0.0) {
+        return damper * scene->transient.until / (2.0 * d->mass);
+    }
+    return own > 0.0 ? damper / own : 0.0;
+}
+
+/* A series resistance over which the film charges much faster than the voltage and the film change moves nothing: the film
+ * follows with a delay of R_s C. */
+static dea_status drop_series(const dea_scene *scene, dea_dynamics *d, dea_error *error)
+{
+    dea_signal signal;
+    const dea_edge rest = dea_dynamics_edge(d, 0.0);
+    const double delay = d->series * rest.capacitance;
+    const double little = spared * scene->accuracy;
+    if (!(d->series > 0.0) || scene->study != DEA_STUDY_TRANSIENT) {
+        return DEA_OK; /* a frequency response costs no more with it, and its resonance tells of the least damping */
+    }
+    const dea_status status = dea_signal_open(scene, &signal, error);
+    if (status == DEA_OK && delay <= little * shortest_change(scene, &signal) && d->series * d->conductance <= little &&
+        electric_damping(scene, d, &rest, signal.largest) <= little && !sees_charging(scene, &signal, delay)) {
         d->series = 0.0;
     }
+    dea_signal_close(&signal);
+    return status;
 }
 
 /* The functions of u under 1 V, so that the force is phi. */
@@ -133,14 +170,13 @@ dea_status dea_dynamics_open(const dea_scene *scene, const dea_model *model, dea
     d->radius = d->point.coverage * d->point.frame_radius;
     d->mass = dea_point_mass(scene, &d->point);
     d->retardation = isnan(scene->material.retardation) ? 0.0 : scene->material.retardation;
-    drop_series(scene, d);
     if (!isnan(d->focal_length) && !(d->focal_length * (d->refractive_index - 1.0) >= d->radius)) {
         return dea_fail(error, DEA_ERROR_USAGE,
                         "the cap of the lens cannot have so short a focal length: its radius of curvature, "
                         "%g m, is less than the lens radius, %g m",
                         d->focal_length * (d->refractive_index - 1.0), d->radius);
     }
-    return DEA_OK;
+    return drop_series(scene, d, error);
 }
 
 void dea_dynamics_close(dea_dynamics *dynamics)
@@ -242,16 +278,27 @@ static bool newton(dea_dynamics *d, double voltage, const double *z, double want
     return last <= 1e-12 * longest;
 }
 
+/* Square of the voltage that holds u, with the branches where they are [V^2]. */
+static double holding_square(dea_dynamics *d, double u, const double *z)
+{
+    const dea_edge e = dea_dynamics_edge(d, u);
+    const double square = e.area * (e.stress + branch_stress(d, e.stress, z)) / e.push;
+    return square > 0.0 ? square : 0.0;
+}
+
+/* The load grows from what holds u now: under the full one a film that stiffens later on need not be stable here. */
 bool dea_dynamics_follow(dea_dynamics *dynamics, double voltage, const double *z, double *u)
 {
     double slope;
-    const double start = imbalance(dynamics, *u, voltage, z, &slope);
-    double at = 0.0; /* share of the imbalance that is taken off */
+    const double before = holding_square(dynamics, *u, z);
+    const double start = imbalance(dynamics, *u, sqrt(before), z, &slope);
+    double at = 0.0; /* share of the change of the load that is made */
     double step = 1.0;
     while (at < 1.0) {
         const double next = fmin(1.0, at + step);
+        const double square = before + next * (voltage * voltage - before);
         double guess = *u;
-        if (newton(dynamics, voltage, z, (1.0 - next) * start, &guess)) {
+        if (newton(dynamics, next < 1.0 ? sqrt(square) : voltage, z, (1.0 - next) * start, &guess)) {
             *u = guess;
             at = next;
             step *= 2.0;

@@ -236,7 +236,7 @@ dea_row film_row(const true_film *f, long double u, long double voltage)
     }
     const true_edge e = film_edge(f, hyper ? u : 0.0L);
     const bool taut = lame ? lame_tension(f, s, m) > 0.0L : l * (f->dot ? 1.0L - p * s : 1.0L + s) > 1.0L;
-    const long double field = fabsl(nominal) * l * l * area;
+    const long double field = fabsl(nominal * l * l * area);
     return (dea_row){(double)s, (double)u, (double)(e.push.value * voltage * voltage), (double)field,
                      field > f->breakdown ? DEA_STATE_BREAKDOWN
                      : taut               ? DEA_STATE_OK

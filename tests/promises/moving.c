@@ -653,9 +653,10 @@ true_run moving_truth(const dea_scene *scene, const dea_model *model, double fac
     } else {
         truth.why = "no signal";
     }
+    const double none = (double)NAN;
     for (size_t i = truth.good; i < truth.count; i++) {
-        truth.samples[i] =
-            (dea_sample){.time = dea_layout_place(scene, i), .displacement = (double)NAN, .state = DEA_STATE_PULL_IN};
+        const double time = dea_layout_place(scene, i);
+        truth.samples[i] = (dea_sample){time, none, none, none, none, none, none, none, none, DEA_STATE_PULL_IN};
     }
     dea_signal_close(&m->signal);
     free(m);

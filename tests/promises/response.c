@@ -38,7 +38,9 @@ double response_truth(const dea_scene *scene, const dea_model *model, dea_respon
     const true_film f = film_of(scene, model);
     const size_t count = dea_layout_of(scene).rows;
     const long double bias = f.kept * (long double)scene->ac.bias;
-    const long double u = still_displacement(&f, bias);
+    const long double still = still_displacement(&f, bias);
+    const bool inside = still > -f.divide && still < f.frame - f.divide; /* what else a film cannot do */
+    const long double u = inside ? still : (long double)NAN;
     const true_edge e = film_edge(&f, isnan(u) ? 0.0L : u);
     const double none = (double)NAN;
     const dea_state state = isnan(u) ? DEA_STATE_PULL_IN : film_row(&f, u, bias).state;

@@ -38,10 +38,7 @@ static long double balance_share(branch *b, long double e)
 /* Place between two where the share is 1. */
 static long double between(branch *b, share_function *share, long double low, long double high)
 {
-    long double at_low = share(b, low) - 1.0L, at_high = share(b, high) - 1.0L;
-    if (low == 0.0L) {
-        at_low = -1.0L;
-    }
+    long double at_low = low == 0.0L ? -1.0L : share(b, low) - 1.0L, at_high = share(b, high) - 1.0L;
     for (int i = 0; i < 200 && fabsl(high - low) > 1e-19L * fabsl(high) && at_high != 0.0L; i++) {
         long double at = (low * at_high - high * at_low) / (at_high - at_low);
         if (i % 3 == 2 || !((at > low && at < high) || (at < low && at > high))) {
@@ -285,9 +282,9 @@ static long double membrane_share(branch *b, long double edge)
             continue;
         }
         const long double next = share - miss * (share - last) / (miss - miss_last);
-        if (fabsl(next - share) <= 1e-17L * fabsl(share)) {
-            b->guess = share;
-            return share;
+        if (fabsl(next - share) <= 1e-14L * fabsl(share)) {
+            b->guess = next;
+            return next;
         }
         last = share;
         miss_last = miss;
@@ -322,7 +319,8 @@ static dea_row membrane_row(const true_film *f, long double voltage, int steps)
     const long double disc = l + edge, nominal = fabsl(voltage / f->thickness);
     x.stress = fminl(x.stress, tension_at(f, m.disc, (stretches){disc, disc}).s1);
     const long double field = nominal * (f->dot ? disc * disc : x.area);
-    const long double force = sign * 2.0L * pi * f->thickness * pressure * (f->divide / l) * disc * disc * disc;
+    const long double radial = f->dot ? disc : behind_edge(&m, disc).l1; /* of the electroded side */
+    const long double force = sign * 2.0L * pi * f->thickness * pressure * (f->divide / l) * radial * disc * disc;
     return (dea_row){(double)(edge / l), (double)(edge / l * f->divide), (double)force, (double)field,
                      field > f->breakdown ? DEA_STATE_BREAKDOWN
                      : x.stress > 0.0L    ? DEA_STATE_OK

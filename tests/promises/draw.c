@@ -247,7 +247,7 @@ static void draw_transient(uint64_t *seed, paper *p)
     scene.study = DEA_STUDY_TRANSIENT;
     scene.material.prony_count = 0;
     const double pace = random_frequency(&scene);
-    run->until = heavy ? random_decades(seed, 2.0, 200.0) / pace : random_decades(seed, 1e-6, 1e6);
+    run->until = heavy ? random_decades(seed, 2.0, 40.0) / pace : random_decades(seed, 1e-6, 1e6);
     run->every = run->until / (double)(int)random_decades(seed, 10.0, 400.0);
     run->from_bias = random_chance(seed, 0.25);
     draw_motion(seed, &scene, run->until);

@@ -498,6 +498,7 @@ static long double first_step(const motion *m)
 static bool run_segment(motion *m, state *s)
 {
     const long double width = (long double)m->segment->to - m->segment->from;
+    const bool linear = strcmp(m->film.model, "coverage") != 0;
     long double time = 0.0L, h = first_step(m);
     while (time < width) {
         state whole, half, two;
@@ -520,7 +521,8 @@ static bool run_segment(motion *m, state *s)
             }
             continue;
         }
-        if (!inside(m, two.u) || (is_free(&m->film) && !(held_stiffness(&m->film, &two) > 0.0L))) {
+        const bool stays = linear || inside(m, two.u); /* of a linear film only the samples tell */
+        if (!stays || (is_free(&m->film) && !(held_stiffness(&m->film, &two) > 0.0L))) {
             if (h > 1e-9L * width) {
                 h *= 0.1L; /* rows before it counts are still to be taken */
                 continue;

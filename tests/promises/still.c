@@ -18,10 +18,11 @@ static dea_row refused(void)
 
 typedef struct branch {
     const true_film *film;
-    long double load;  /* eps lambda_pre^4 (U/H)^2 [Pa]; membrane: M [Pa] */
-    long double ratio; /* strain that the passive film gives back */
-    int steps;         /* of the membrane */
-    long double guess; /* last share found */
+    long double load;                  /* eps lambda_pre^4 (U/H)^2 [Pa]; membrane: M [Pa] */
+    long double ratio;                 /* strain that the passive film gives back */
+    int steps;                         /* of the membrane */
+    long double linear;                /* displacement under the full load without softening, of the membrane */
+    long double known_at, known_share; /* last share found */
 } branch;
 
 typedef long double share_function(branch *b, long double place);
@@ -88,8 +89,9 @@ static long double top(branch *b, share_function *share, long double low, long d
 static long double first_place(branch *b, share_function *share, long double step, long double end)
 {
     long double before = 0.0L, last = 0.0L, held = 0.0L;
-    b->guess = 0.0L;
-    while (fabsl(last) < fabsl(end) && fabsl(step) > 1e-7L * fabsl(end)) {
+    b->known_at = b->known_share = 0.0L;
+    const long double shortest = 1e-6L * fabsl(step);
+    while (fabsl(last) < fabsl(end) && fabsl(step) > shortest) {
         long double here = last + step;
         here = fabsl(here) < fabsl(end) ? here : end;
         const long double now = share(b, here);
@@ -202,6 +204,9 @@ static stretches behind_edge(const membrane *m, long double l)
 {
     const long double wanted = tension_at(m->film, m->disc, (stretches){l, l}).s1;
     stretches at = {l, l};
+    while (!(tension_at(m->film, m->annulus, at).s11 > 0.0L) && at.l1 > 0.1L * l) {
+        at.l1 *= 0.9L; /* on the branch from rest the stress rises with the stretch */
+    }
     for (int i = 0; i < 60; i++) {
         const tension t = tension_at(m->film, m->annulus, at);
         if (!(t.s11 > 0.0L)) {
@@ -270,10 +275,12 @@ static long double miss_at_frame(const membrane *m, long double edge, int steps,
     return l.l2 - f->prestretch;
 }
 
+/* Secant; from the last share that was found, which grows with the edge. */
 static long double membrane_share(branch *b, long double edge)
 {
     const long double full = b->load;
-    long double last = 0.0L, miss_last = edge, share = b->guess > 0.0L ? b->guess : 0.5L;
+    long double last = 0.0L, miss_last = edge;
+    long double share = b->known_share > 0.0L ? b->known_share * (edge / b->known_at) : edge / b->linear;
     for (int i = 0; i < 80; i++) {
         const membrane m = {b->film, b->film->dot ? share * full : 0.0L, b->film->dot ? 0.0L : share * full};
         const long double miss = miss_at_frame(&m, edge, b->steps, NULL);
@@ -282,9 +289,10 @@ static long double membrane_share(branch *b, long double edge)
             continue;
         }
         const long double next = share - miss * (share - last) / (miss - miss_last);
-        if (fabsl(next - share) <= 1e-14L * fabsl(share)) {
-            b->guess = next;
-            return next;
+        if (miss == 0.0L || fabsl(next - share) <= fmaxl(1e-14L, 2e-17L / fabsl(edge)) * fabsl(share)) {
+            b->known_at = edge;
+            b->known_share = miss == 0.0L ? share : next;
+            return b->known_share;
         }
         last = share;
         miss_last = miss;
@@ -308,7 +316,8 @@ static dea_row membrane_row(const true_film *f, long double voltage, int steps)
     const tension rest = tension_at(f, 0.0L, (stretches){l, l});
     long double edge = 0.0L;
     if (pressure > 0.0L) {
-        const long double step = sign * fminl(0.01L * l, 0.02L * fabsl(end));
+        b.linear = sign * pressure * l * l * l * (1.0L - f->coverage) * (1.0L + f->coverage) / (2.0L * rest.s11);
+        const long double step = sign * fminl(fminl(0.01L * l, 0.02L * fabsl(end)), 0.3L * fabsl(b.linear));
         edge = rest.s11 > 0.0L ? first_place(&b, membrane_share, step, end) : none;
     }
     if (isnan(edge)) {
@@ -386,6 +395,8 @@ true_row still_truth(const dea_scene *scene, const dea_model *model, double fact
     if (model->membrane && truth.row.state != DEA_STATE_PULL_IN) {
         const dea_row coarse = row_of(&f, voltage, 12);
         truth.error += fmax(relative(coarse.strain, truth.row.strain), relative(coarse.field, truth.row.field));
+        truth.error +=
+            truth.row.strain != 0.0 ? 1e-17 / fabs(truth.row.strain) : 0.0; /* the miss at the frame has so many digits */
     }
     if (model->solve && (strcmp(model->name, "coverage") == 0 || strcmp(model->name, "constant_force") == 0) &&
         truth.row.strain != 0.0) {

@@ -130,10 +130,13 @@ static node between(const runner *r, const node *a, const node *b, double time)
     return node_at(r, time, &s);
 }
 
-/* The edge lies between centre and frame. */
+/* The edge lies between centre and frame. A linear film knows no frame: of what it does there only the samples tell. */
 static bool is_inside(const dea_dynamics *d, const node *n)
 {
     const double u = n->moment.u;
+    if (d->linear) {
+        return isfinite(u) && isfinite(n->moment.v);
+    }
     return u > -d->radius && u < d->point.frame_radius - d->radius && isfinite(n->moment.v);
 }
 

@@ -236,11 +236,11 @@ static void enter_segment(runner *r, double time, double next)
     }
 }
 
-/* Inside; and a film without mass stays where its branches, held, keep it stable. */
+/* Inside; and a film without mass and damper stays where its branches, held, keep it stable. */
 static bool is_possible(const runner *r, const node *n)
 {
     dea_dynamics *d = r->route->dynamics;
-    return is_inside(d, n) && (d->mass > 0.0 || dea_dynamics_stiffness(d, n->moment.u, n->moment.voltage, false) > 0.0);
+    return is_inside(d, n) && (!is_free(d) || dea_dynamics_stiffness(d, n->moment.u, n->moment.voltage, false) > 0.0);
 }
 
 /* Why the run ends: the film has lost its stability there or will find no equilibrium, or another reason. */
@@ -264,10 +264,10 @@ static bool advance(runner *r, double time, const dea_mobility_state *state)
     node n = node_at(r, time, state);
     correct(r, time - r->last.moment.time, &n);
     if (!is_possible(r, &n)) {
-        /* a mass can carry the film out; without one Newton's method may have found a root of no film */
-        const bool heavy = r->route->dynamics->mass > 0.0;
-        r->track->end = heavy ? DEA_STATE_PULL_IN : verdict(r);
-        if (heavy) {
+        /* mass and damper carry the film out; without them Newton's method may have found a root of no film */
+        const bool carried = !is_free(r->route->dynamics);
+        r->track->end = carried ? DEA_STATE_PULL_IN : verdict(r);
+        if (carried) {
             take_samples(r, &n);
         }
         return false;

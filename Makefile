@@ -103,10 +103,10 @@ promises:
 	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/promises
 	@$(BUILD)/promises --scenes $(SCENES) --seed $(SEED)
 
-PROMISES := $(filter-out tests/promises/main.c,$(sort $(wildcard tests/promises/*.c)))
-$(BUILD)/promises: tests/promises/main.c $(PROMISES) tests/promises/promises.h $(wildcard tests/unit/*.h) $(BUILD)/libdeaspice.a
-	@echo "CC $@"
-	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) -Itests/unit $(filter %.c,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) -lcmocka $(LIBS)
+PROMISES := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tests/promises/*.c)))
+$(BUILD)/promises: $(PROMISES) $(BUILD)/libdeaspice.a
+	@echo "LD $@"
+	@$(CC) $(CFLAGS) $(LDFLAGS) $^ -o $@ -lcmocka $(LIBS)
 
 # The ready-made parts for circuit simulators; a unit test finds what is checked in and differs.
 netlists: $(BUILD)/make_netlists
@@ -156,8 +156,11 @@ $(BUILD)/deaspice: $(PROGRAM_OBJECTS) $(BUILD)/libdeaspice.a
 $(BUILD)/tests/%: tests/unit/%.c $(BUILD)/libdeaspice.a Makefile
 	@mkdir -p $(@D)
 	@echo "CC $@"
-	@$(CC) $(ALL_CFLAGS) -Itests/unit $< $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) -lcmocka $(LIBS)
+	@$(CC) $(ALL_CFLAGS) -Itests/unit $< $(PARTS) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) -lcmocka $(LIBS)
+
+$(BUILD)/tests/test_promises: PARTS = $(filter-out %/main.o,$(PROMISES))
+$(BUILD)/tests/test_promises: $(filter-out %/main.o,$(PROMISES))
 
 unit: $(UNIT_PROGRAMS)
 
--include $(LIBRARY_OBJECTS:.o=.d) $(PROGRAM_OBJECTS:.o=.d) $(wildcard $(BUILD)/tests/*.d)
+-include $(LIBRARY_OBJECTS:.o=.d) $(PROGRAM_OBJECTS:.o=.d) $(PROMISES:.o=.d) $(wildcard $(BUILD)/tests/*.d)

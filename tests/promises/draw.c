@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "random_transients.h"
+#include "../unit/random_transients.h"
 
 enum { TEXT = 16384, SWEEP_POINTS = 6, BRANCHES = 8 };
 

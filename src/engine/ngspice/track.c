@@ -314,6 +314,7 @@ static void set_piece(runner *r, dea_mobility_piece *piece, double to, double st
                                   .step = step,
                                   .scale = route->scale,
                                   .force = route->scale * dea_dynamics_stiffness(route->dynamics, 0.0, 0.0, false),
+                                  .tolerance = fmin(1e-7, 1e-3 * route->scene->accuracy),
                                   .mass = r->match.mass,
                                   .conductance = r->match.resistance,
                                   .start = scaled(r->last.state, 1.0 / r->speed)};

@@ -32,7 +32,7 @@ JOBS     ?= $(shell nproc 2>/dev/null || echo 1)
 SANITIZE := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 
 .DELETE_ON_ERROR:
-.PHONY: all unit demo check test asan fuzz clang bench stability netlists examples-agree compilers-agree asan-run install uninstall clean packages packages-check
+.PHONY: all unit demo check test asan fuzz clang bench stability promises netlists examples-agree compilers-agree asan-run install uninstall clean packages packages-check
 
 all: $(BUILD)/deaspice $(BUILD)/libdeaspice.so
 
@@ -118,6 +118,19 @@ $(BUILD)/stability: $(STABILITY_PARTS) $(BUILD)/tests/stability/main.o $(BUILD)/
 	@echo "LD $@"
 	@$(CC) $(CFLAGS) $(LDFLAGS) $^ -o $@ $(LIBS)
 
+# Random scenes by all engines and accuracies against truths found another way: broken promises of accuracy. About 15 minutes;
+# SCENES=n, SEED=s for others.
+SCENES ?= 500
+SEED   ?= 1
+promises:
+	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/promises
+	@$(BUILD)/promises --scenes $(SCENES) --seed $(SEED)
+
+PROMISES := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tests/promises/*.c)))
+$(BUILD)/promises: $(PROMISES) $(BUILD)/libdeaspice.a
+	@echo "LD $@"
+	@$(CC) $(CFLAGS) $(LDFLAGS) $^ -o $@ -lcmocka $(LIBS)
+
 # The ready-made parts for circuit simulators; a unit test finds what is checked in and differs.
 netlists: $(BUILD)/make_netlists
 	@$(BUILD)/make_netlists netlists
@@ -169,7 +182,8 @@ $(BUILD)/tests/%: tests/unit/%.c $(BUILD)/libdeaspice.a Makefile
 	@$(CC) $(ALL_CFLAGS) -Itests/unit $< $(filter %.o,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) -lcmocka $(LIBS)
 
 $(BUILD)/tests/test_stability: $(STABILITY_PARTS)
+$(BUILD)/tests/test_promises: $(filter-out %/main.o,$(PROMISES))
 
 unit: $(UNIT_PROGRAMS)
 
--include $(LIBRARY_OBJECTS:.o=.d) $(PROGRAM_OBJECTS:.o=.d) $(STABILITY_PARTS:.o=.d) $(wildcard $(BUILD)/tests/*.d)
+-include $(LIBRARY_OBJECTS:.o=.d) $(PROGRAM_OBJECTS:.o=.d) $(STABILITY_PARTS:.o=.d) $(PROMISES:.o=.d) $(wildcard $(BUILD)/tests/*.d)

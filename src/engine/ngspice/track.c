@@ -128,7 +128,17 @@ static node between(const runner *r, const node *a, const node *b, double time)
     return node_at(r, time, &s);
 }
 
-/* Takes the samples up to the point @p b. */
+/* The edge lies between centre and frame. A linear film knows no frame: of what it does there only the samples tell. */
+static bool is_inside(const dea_dynamics *d, const node *n)
+{
+    const double u = n->moment.u;
+    if (d->linear) {
+        return isfinite(u) && isfinite(n->moment.v);
+    }
+    return u > -d->radius && u < d->point.frame_radius - d->radius && isfinite(n->moment.v);
+}
+
+/* Takes the samples up to the point @p b, or up to where the film leaves its frame before that. */
 static void take_samples(runner *r, const node *b)
 {
     dea_track *track = r->track;
@@ -140,6 +150,9 @@ static void take_samples(runner *r, const node *b)
         node n = *b;
         if (time < b->moment.time) {
             n = between(r, &r->last, b, time);
+        }
+        if (!is_inside(r->route->dynamics, &n)) {
+            return;
         }
         track->points[track->reached++] = (dea_track_point){n.moment.u, n.moment.v, n.state.charge};
     }
@@ -221,13 +234,11 @@ static void enter_segment(runner *r, double time, double next)
     }
 }
 
-/* The edge lies between centre and frame, and a film without mass stays where its branches, held, keep it stable. */
+/* Inside; and a film without mass and damper stays where its branches, held, keep it stable. */
 static bool is_possible(const runner *r, const node *n)
 {
     dea_dynamics *d = r->route->dynamics;
-    const double u = n->moment.u;
-    const bool inside = u > -d->radius && u < d->point.frame_radius - d->radius && isfinite(n->moment.v);
-    return inside && (d->mass > 0.0 || dea_dynamics_stiffness(d, u, n->moment.voltage, false) > 0.0);
+    return is_inside(d, n) && (!is_free(d) || dea_dynamics_stiffness(d, n->moment.u, n->moment.voltage, false) > 0.0);
 }
 
 /* Why the run ends: the film has lost its stability there or will find no equilibrium, or another reason. */
@@ -251,8 +262,12 @@ static bool advance(runner *r, double time, const dea_mobility_state *state)
     node n = node_at(r, time, state);
     correct(r, time - r->last.moment.time, &n);
     if (!is_possible(r, &n)) {
-        /* a mass can carry the film out; without one Newton's method may have found a root of no film */
-        r->track->end = r->route->dynamics->mass > 0.0 ? DEA_STATE_PULL_IN : verdict(r);
+        /* mass and damper carry the film out; without them Newton's method may have found a root of no film */
+        const bool carried = !is_free(r->route->dynamics);
+        r->track->end = carried ? DEA_STATE_PULL_IN : verdict(r);
+        if (carried) {
+            take_samples(r, &n);
+        }
         return false;
     }
     add_step(r, &n);
@@ -297,6 +312,7 @@ static void set_piece(runner *r, dea_mobility_piece *piece, double to, double st
                                   .step = step,
                                   .scale = route->scale,
                                   .force = route->scale * dea_dynamics_stiffness(route->dynamics, 0.0, 0.0, false),
+                                  .tolerance = fmin(1e-7, 1e-3 * route->scene->accuracy),
                                   .mass = r->match.mass,
                                   .conductance = r->match.resistance,
                                   .start = scaled(r->last.state, 1.0 / r->speed)};

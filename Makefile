@@ -29,7 +29,7 @@ JOBS     ?= $(shell nproc 2>/dev/null || echo 1)
 SANITIZE := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 
 .DELETE_ON_ERROR:
-.PHONY: all unit demo check test asan fuzz clang bench netlists examples-agree asan-run install uninstall clean packages packages-check
+.PHONY: all unit demo check test asan fuzz clang bench hard netlists examples-agree asan-run install uninstall clean packages packages-check
 
 all: $(BUILD)/deaspice $(BUILD)/libdeaspice.so
 
@@ -94,6 +94,15 @@ bench:
 $(BUILD)/bench: $(wildcard tests/bench/*.[ch]) $(BUILD)/libdeaspice.a
 	@echo "CC $@"
 	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) -Itests/bench $(filter %.c,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) $(LIBS)
+
+# The hard cases by all engines as a Markdown table, the full size of each; make check runs them thinned.
+hard:
+	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/hard
+	@$(BUILD)/hard tests/hard
+
+$(BUILD)/hard: $(wildcard tests/hard/*.[ch]) $(BUILD)/libdeaspice.a
+	@echo "CC $@"
+	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) $(filter %.c,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) $(LIBS)
 
 # The ready-made parts for circuit simulators; a unit test finds what is checked in and differs.
 netlists: $(BUILD)/make_netlists

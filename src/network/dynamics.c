@@ -68,12 +68,53 @@ static double shortest_change(const dea_scene *scene)
     return shortest;
 }
 
+/* The shortest time in which ring, damper and branches of the film at rest move [s]. */
+static double shortest_of_film(dea_dynamics *d)
+{
+    const dea_edge rest = dea_dynamics_edge(d, 0.0);
+    const double held = dea_dynamics_stiffness(d, 0.0, 0.0, false);
+    double shortest = (double)INFINITY;
+    if (d->mass > 0.0) {
+        shortest = sqrt(d->mass / held);
+    } else if (d->retardation > 0.0) {
+        shortest = rest.area * d->retardation * rest.stress_slope / held;
+    }
+    for (size_t i = 0; i < d->branch_count; i++) {
+        shortest = fmin(shortest, d->branches[i].tau);
+    }
+    return shortest;
+}
+
+/* True where a sample, or the start, lies in a time. */
+static bool is_seen(const dea_scene *scene, double from, double to)
+{
+    const double every = scene->transient.every;
+    return from <= 0.0 || floor(to / every * (1.0 + 1e-12)) > floor(from / every * (1.0 + 1e-12));
+}
+
+/* True where no sample falls into an edge of the voltage, or so short a time behind it that the film still charges. */
+static bool edges_are_unseen(const dea_scene *scene, double delay)
+{
+    const dea_waveform *wave = &scene->drive.waveform;
+    const double charged = 40.0 * delay; /* e^-40 is nothing */
+    bool seen = scene->study != DEA_STUDY_TRANSIENT || wave->kind == DEA_WAVE_SINE || !isnan(wave->period);
+    if (wave->kind == DEA_WAVE_STEP) {
+        const double end = wave->step.rise + charged;
+        seen = seen || is_seen(scene, wave->step.on, wave->step.on + end) ||
+               (!isnan(wave->step.off) && is_seen(scene, wave->step.off, wave->step.off + end));
+    }
+    for (size_t i = 1; wave->kind == DEA_WAVE_POINTS && i < wave->point_count && !seen; i++) {
+        seen = wave->voltages[i] != wave->voltages[i - 1] && is_seen(scene, wave->times[i - 1], wave->times[i] + charged);
+    }
+    return !seen;
+}
+
 /* A series resistance over which the film charges much faster than the voltage changes moves nothing: the film follows with a
- * delay of R_s C. */
+ * delay of R_s C. It moves nothing either where the film is so much slower than that delay, and no sample sees an edge. */
 static void drop_series(const dea_scene *scene, dea_dynamics *d)
 {
     const double delay = d->series * dea_dynamics_edge(d, 0.0).capacitance;
-    if (delay <= 0.3 * scene->accuracy * shortest_change(scene)) {
+    if (delay <= 0.3 * scene->accuracy * shortest_change(scene) || (delay <= 0.5 * scene->accuracy * shortest_of_film(d) && edges_are_unseen(scene, delay))) {
         d->series = 0.0;
     }
 }
@@ -298,6 +339,9 @@ static double focal_length(const dea_dynamics *d, double strain)
 /* Current of the source: through R_s, or d(C U)/dt and the leakage. */
 static double current(const dea_dynamics *d, const dea_edge *e, const dea_moment *m)
 {
+    if (m->charging) {
+        return m->charge_slope + m->voltage * d->conductance;
+    }
     if (d->series > 0.0) {
         return (m->source - m->voltage) / d->series;
     }
@@ -336,10 +380,10 @@ void dea_audit_add(dea_audit *audit, dea_dynamics *dynamics, const dea_moment *m
     const dea_edge e = dea_dynamics_edge(dynamics, m->u);
     const double square = m->voltage * m->voltage;
     const double leak = square * dynamics->conductance;
-    const double drop = m->source - m->voltage;
     const bool series = dynamics->series > 0.0;
-    const double work = series ? m->source * drop / dynamics->series : e.push * square * m->v + leak;
-    const double ohmic = leak + (series ? drop * drop / dynamics->series : 0.0);
+    const double flow = series ? current(dynamics, &e, m) : 0.0;
+    const double work = series ? m->source * flow : e.push * square * m->v + leak;
+    const double ohmic = leak + flow * flow * dynamics->series;
     audit->work += weight * work;
     audit->dissipated += weight * (ohmic + e.area * dynamics->retardation * e.stress_slope * m->v * m->v);
     audit->branch += weight * e.area * branch_stress(dynamics, e.stress, z) * m->v;

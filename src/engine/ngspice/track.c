@@ -6,6 +6,9 @@
 /* Most time steps of one netlist: what its plot takes of memory. */
 static const double most_steps = 300000.0;
 
+/* Share of a step within which a film charges at once. */
+static const double at_once = 1e-2;
+
 /* An accepted point of the library with the slopes that go with it inside one segment. */
 typedef struct node {
     dea_moment moment;
@@ -68,6 +71,18 @@ static void set_velocity(dea_dynamics *d, const dea_edge *e, node *n)
     }
 }
 
+/* A film that charges within a small part of a step: the drop over R_s, a difference of almost equal voltages, follows from
+ * i = d(C U)/dt with U' = U_s' - R_s i' instead, where i' is C' u'' U. */
+static void follow_source(const dea_dynamics *d, const dea_edge *e, node *n)
+{
+    dea_moment *m = &n->moment;
+    m->slope -= d->series * e->capacitance_slope * n->acceleration * m->source;
+    n->current = e->capacitance * m->slope + e->capacitance_slope * m->v * m->source;
+    m->voltage = m->source - d->series * (n->current + m->source * d->conductance);
+    m->charging = true;
+    m->charge_slope = n->current;
+}
+
 /* A state at a time inside the segment. The velocity of a film without mass follows from the rest. */
 static node node_at(const runner *r, double time, const dea_mobility_state *state)
 {
@@ -86,6 +101,10 @@ static node node_at(const runner *r, double time, const dea_mobility_state *stat
         set_velocity(route->slow, &e, &n);
     } else {
         n.acceleration = acceleration(d, &e, &n);
+    }
+    if (d->series > 0.0 && d->series * e.capacitance < at_once * r->step) {
+        n.moment.slope = dea_segment_slope(route->signal, segment, time);
+        follow_source(d, &e, &n);
     }
     return n;
 }
@@ -143,7 +162,7 @@ static void take_samples(runner *r, const node *b)
         if (time < b->moment.time) {
             n = between(r, &r->last, b, time);
         }
-        track->points[track->reached++] = (dea_track_point){n.moment.u, n.moment.v, n.state.charge};
+        track->points[track->reached++] = (dea_track_point){n.moment.u, n.moment.v, n.state.charge, n.current};
     }
 }
 
@@ -410,7 +429,7 @@ static bool start(runner *r)
     r->track->first.v = 0.0;
     jump(r, 0);
     if (r->track->end == DEA_STATE_OK) {
-        r->track->points[r->track->reached++] = (dea_track_point){r->last.moment.u, r->last.moment.v, r->last.state.charge};
+        r->track->points[r->track->reached++] = (dea_track_point){r->last.moment.u, r->last.moment.v, r->last.state.charge, r->last.current};
     }
     return r->track->end == DEA_STATE_OK;
 }

@@ -30,7 +30,8 @@ static double better(double coarse, double fine)
 
 static dea_track_point better_point(const dea_track_point *coarse, const dea_track_point *fine)
 {
-    return (dea_track_point){better(coarse->u, fine->u), better(coarse->v, fine->v), better(coarse->charge, fine->charge)};
+    return (dea_track_point){better(coarse->u, fine->u), better(coarse->v, fine->v), better(coarse->charge, fine->charge),
+                             better(coarse->current, fine->current)};
 }
 
 static size_t common(const levels *l)
@@ -225,7 +226,9 @@ static dea_moment moment_at(const dea_route *route, size_t index, size_t *segmen
                         .voltage = dea_route_voltage(route, source, point->u, point->charge),
                         .slope = dea_segment_slope(route->signal, s, time),
                         .u = point->u,
-                        .v = point->v};
+                        .v = point->v,
+                        .charging = route->dynamics->series > 0.0,
+                        .charge_slope = point->current};
 }
 
 static void fill_samples(const dea_route *route, const levels *l, dea_sample *samples)

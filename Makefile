@@ -32,7 +32,7 @@ JOBS     ?= $(shell nproc 2>/dev/null || echo 1)
 SANITIZE := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 
 .DELETE_ON_ERROR:
-.PHONY: all unit demo check test asan fuzz clang bench stability promises netlists examples-agree compilers-agree asan-run install uninstall clean packages packages-check
+.PHONY: all unit demo check test asan fuzz clang bench stability promises hard netlists examples-agree compilers-agree asan-run install uninstall clean packages packages-check
 
 all: $(BUILD)/deaspice $(BUILD)/libdeaspice.so
 
@@ -130,6 +130,15 @@ PROMISES := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tests/promises/*.c)))
 $(BUILD)/promises: $(PROMISES) $(BUILD)/libdeaspice.a
 	@echo "LD $@"
 	@$(CC) $(CFLAGS) $(LDFLAGS) $^ -o $@ -lcmocka $(LIBS)
+
+# The hard cases by all engines as a Markdown table, the full size of each; make check runs them thinned.
+hard:
+	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/hard
+	@$(BUILD)/hard tests/hard
+
+$(BUILD)/hard: $(wildcard tests/hard/*.[ch]) $(BUILD)/libdeaspice.a
+	@echo "CC $@"
+	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) $(filter %.c,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) $(LIBS)
 
 # The ready-made parts for circuit simulators; a unit test finds what is checked in and differs.
 netlists: $(BUILD)/make_netlists

@@ -135,6 +135,10 @@ void dea_attempt_remark(const dea_attempt *attempt, const dea_plan *plan, const 
         return;
     char place[256];
     const size_t first = span->first + attempt->next;
+    if (plan->scene->study == DEA_STUDY_SWEEP) { /* of many points, it names its own */
+        dea_plan_log(plan, damage, "%s, %s: %s", plan->engine->name, span->model->name, why);
+        return;
+    }
     point_place(plan->scene, first, place, sizeof place);
     dea_plan_log(plan, damage, "%s, %s, point %zu%s: %s", plan->engine->name, span->model->name, first, place, why);
 }
@@ -183,6 +187,33 @@ static dea_status run_transient(const dea_plan *plan, void *session, dea_scene *
     return status;
 }
 
+/* The first of the rows of a sweep that failed, and how many did: in a grid a corner can lie outside the ranges of its numbers.
+ */
+static void explain_rows(const dea_plan *plan, size_t first, size_t count, const dea_row *rows, dea_error *error)
+{
+    size_t failed = 0;
+    size_t at = 0;
+    error->message[0] = '\0';
+    for (size_t i = count; i-- > 0;) {
+        if (rows[i].state == DEA_STATE_FAILED) {
+            failed++;
+            at = i;
+        }
+    }
+    if (failed == 0)
+        return;
+    char place[256];
+    dea_point point;
+    dea_scene here = *plan->scene;
+    dea_axes_place(&here, first + at);
+    dea_film_prepare(&here, &point.film);
+    dea_point_place(&here, &point);
+    point_place(plan->scene, first + at, place, sizeof place);
+    const char *why =
+        dea_point_valid(&point) ? "the engine found no answer that passes its own check" : "a number is out of its range";
+    dea_fail(error, DEA_OK, "%zu of %zu points failed, the first at %zu%s: %s", failed, count, first + at, place, why);
+}
+
 /* One transient or frequency response. */
 static dea_status run_point(const dea_plan *plan, void *session, const dea_model *model, size_t point, void *result,
                             dea_error *error)
@@ -210,7 +241,7 @@ dea_status dea_plan_solve(const dea_plan *plan, void *session, const dea_model *
     if (plan->scene->study == DEA_STUDY_SWEEP) {
         status = plan->engine->sweep(session, plan->scene, model, first, count, points, error);
         if (status == DEA_OK)
-            error->message[0] = '\0';
+            explain_rows(plan, first, count, points, error);
         return status;
     }
     for (size_t i = 0; i < count && status == DEA_OK; i++)

@@ -213,24 +213,40 @@ static void write_source(const writer *w, const char *node)
     fputs(")\n", w->out);
 }
 
+static double current_tolerance(const writer *w)
+{
+    return 1e-10 * w->piece->force;
+}
+
+/* The library has one tolerance for all currents, forces and electrical ones: those of the port are drawn in a unit of so many
+ * amperes that it leaves 10^-9 of the voltage open. In amperes the current of a small resistance could not be found so well, and
+ * that of a large one would drown. */
+static double port_unit(const writer *w)
+{
+    const double unit = 1e-9 * w->piece->signal->largest / (w->dynamics->series * current_tolerance(w));
+    return unit > 0.0 && isfinite(unit) ? unit : 1.0;
+}
+
 /* The electrical side: the film's charge is the integral of its current, its voltage that charge over C(u). */
 static void write_port(const writer *w)
 {
     FILE *out = w->out;
+    const double unit = w->dynamics->series > 0.0 ? port_unit(w) : 1.0;
     write_source(w, w->dynamics->series > 0.0 ? "source" : "film");
     if (w->dynamics->conductance > 0.0) {
-        fputs("* leakage resistance of the film [Ohm]\n", out);
-        parameter(out, "r_leak", 1.0 / w->dynamics->conductance);
+        fprintf(out, "* leakage resistance of the film [Ohm], current in units of %.9g A\n", unit);
+        parameter(out, "r_leak", unit / w->dynamics->conductance);
         fputs("rleak film 0 {r_leak}\n", out);
     }
     if (w->dynamics->series > 0.0) {
-        fputs("* series resistance of source and electrodes [Ohm]\n", out);
-        parameter(out, "r_series", w->dynamics->series);
+        fprintf(out, "* series resistance of source and electrodes [Ohm], current in units of %.9g A\n", unit);
+        parameter(out, "r_series", unit * w->dynamics->series);
         fputs("rseries source film {r_series}\n", out);
         fputs("* film: its current into its capacitance at rest [F], whose charge over C(u) is its voltage\n", out);
         parameter(out, "c_rest", w->mobility->rest);
+        parameter(out, "c_unit", w->mobility->rest / unit);
         parameter(out, "u_rest", w->piece->start.charge / w->mobility->rest);
-        fputs("vfilm film plate 0\nfcharge 0 charge vfilm 1\nccharge charge 0 {c_rest} ic={u_rest}\n", out);
+        fputs("vfilm film plate 0\nfcharge 0 charge vfilm 1\nccharge charge 0 {c_unit} ic={u_rest}\n", out);
         fputs("bfilm plate 0 v=v(charge)*{c_rest}/(", out);
         dea_expression_text_write(&w->text, w->mobility->network.capacitance);
         fputs(")\n", out);
@@ -301,7 +317,7 @@ static void write_analysis(const writer *w)
     fputs(" vntol=", w->out);
     dea_netlist_number(w->out, 1e-11 * fmin(speed, p->scale) + noise);
     fputs(" abstol=", w->out);
-    dea_netlist_number(w->out, 1e-10 * p->force);
+    dea_netlist_number(w->out, current_tolerance(w));
     fputs(" chgtol=1e-30\n.save", w->out);
     for (size_t i = 1; i < vectors.count; i++) {
         const char *name = vectors.names[i];

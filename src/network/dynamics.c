@@ -352,6 +352,9 @@ static double focal_length(const dea_dynamics *d, double strain)
 /* Current of the source: through R_s, or d(C U)/dt and the leakage. */
 static double current(const dea_dynamics *d, const dea_edge *e, const dea_moment *m)
 {
+    if (m->charging) {
+        return m->charge_slope + m->voltage * d->conductance;
+    }
     if (d->series > 0.0) {
         return (m->source - m->voltage) / d->series;
     }
@@ -390,10 +393,10 @@ void dea_audit_add(dea_audit *audit, dea_dynamics *dynamics, const dea_moment *m
     const dea_edge e = dea_dynamics_edge(dynamics, m->u);
     const double square = m->voltage * m->voltage;
     const double leak = square * dynamics->conductance;
-    const double drop = m->source - m->voltage;
     const bool series = dynamics->series > 0.0;
-    const double work = series ? m->source * drop / dynamics->series : e.push * square * m->v + leak;
-    const double ohmic = leak + (series ? drop * drop / dynamics->series : 0.0);
+    const double flow = series ? current(dynamics, &e, m) : 0.0;
+    const double work = series ? m->source * flow : e.push * square * m->v + leak;
+    const double ohmic = leak + flow * flow * dynamics->series;
     audit->work += weight * work;
     audit->dissipated += weight * (ohmic + e.area * dynamics->retardation * e.stress_slope * m->v * m->v);
     audit->branch += weight * e.area * branch_stress(dynamics, e.stress, z) * m->v;

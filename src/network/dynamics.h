@@ -78,6 +78,8 @@ typedef struct dea_moment {
     double voltage; /* film voltage [V] */
     double slope;   /* of the film voltage [V/s], used where there is no series resistance */
     double u, v;    /* [m], [m/s] */
+    bool charging;  /* the slope of the charge is known better than the small drop over R_s: */
+    double charge_slope; /* [A] */
 } dea_moment;
 
 /* Fills a row; its state says slack or breakdown. A displacement past what the film can do is pull_in: false, as for all that

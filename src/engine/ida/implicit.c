@@ -74,6 +74,31 @@ static const double *unknowns_at(const dea_flight *flight, double time, int deri
     return IDAGetDky(flight->integrator.ida, time, derivative, w) == IDA_SUCCESS ? N_VGetArrayPointer(w) : NULL;
 }
 
+/* The drop over a small R_s is a difference of almost equal voltages; over a step longer than R_s C IDA's own slope of the charge
+ * is the better number: with y = X R(omega t) w + center, y' = X R (w' + omega (-w_1, w_0, 0, ...)). @p w is lost. */
+static void take_current(const dea_flight *flight, double time, dea_turn turn, const double *w, dea_moment *moment)
+{
+    const dea_motion *motion = &flight->motion;
+    const dea_ring *ring = flight->ring;
+    double step, rate[DEA_MOTION_MOST], y[DEA_MOTION_MOST];
+    if (motion->q < 0 || IDAGetLastStep(flight->integrator.ida, &step) != IDA_SUCCESS ||
+        step * motion->signal->largest < motion->dynamics->series * motion->size[motion->q]) {
+        return;
+    }
+    const double around[2] = {ring->turns ? -ring->omega * w[1] : 0.0, ring->turns ? ring->omega * w[0] : 0.0};
+    const double *slope = unknowns_at(flight, time, 1);
+    if (!slope) {
+        return;
+    }
+    memcpy(rate, slope, (size_t)motion->count * sizeof *rate);
+    for (int i = 0; ring->turns && i < 2; i++) {
+        rate[i] += around[i];
+    }
+    dea_ring_state(ring, turn, rate, y);
+    moment->charging = true;
+    moment->charge_slope = (y[motion->q] - (ring->turns ? ring->center[motion->q] : 0.0)) * motion->size[motion->q];
+}
+
 /* Where a damper alone sets the velocity of the last sample, the force that drives it is a small difference: IDA's own slope of u
  * is the better number. */
 static void take_velocity(dea_flight *flight, double time)
@@ -96,10 +121,12 @@ static dea_state take_samples(dea_flight *flight, double time, bool last)
         if (!w) {
             return at <= time ? DEA_STATE_FAILED : DEA_STATE_OK;
         }
-        dea_ring_state(flight->ring, dea_ring_turn(flight->ring, fmin(at, time), 0.0), w, y);
+        const dea_turn turn = dea_ring_turn(flight->ring, fmin(at, time), 0.0);
+        dea_ring_state(flight->ring, turn, w, y);
         if (!dea_flight_record(flight, at, y)) {
             return DEA_STATE_PULL_IN;
         }
+        take_current(flight, fmin(at, time), turn, w, &flight->trace->moments[flight->trace->count - 1]);
         take_velocity(flight, fmin(at, time));
     }
     return DEA_STATE_OK;
@@ -123,8 +150,10 @@ static double gauss_at(int g)
 static void audit_at(const dea_flight *flight, double time, double angle, const double *w, double weight)
 {
     double y[DEA_MOTION_MOST], z[DEA_PRONY_MAX];
-    dea_ring_state(flight->ring, dea_ring_turn(flight->ring, time, angle), w, y);
-    const dea_moment moment = dea_motion_moment(&flight->motion, time, y);
+    const dea_turn turn = dea_ring_turn(flight->ring, time, angle);
+    dea_ring_state(flight->ring, turn, w, y);
+    dea_moment moment = dea_motion_moment(&flight->motion, time, y);
+    take_current(flight, time, turn, w, &moment);
     dea_motion_branches(&flight->motion, y, z);
     dea_audit_add(flight->audit, flight->motion.dynamics, &moment, z, weight);
 }
@@ -159,12 +188,15 @@ static void audit_turns(const dea_flight *flight, double from, double to)
     for (int g = 0; g < NODES; g++) {
         const double x = node_at(g);
         const double time = from + half * (1.0 + x);
-        const double *w = unknowns_at(flight, time, 0);
-        double real[HARMONICS], imaginary[HARMONICS];
+        const double *there = unknowns_at(flight, time, 0);
+        double real[HARMONICS], imaginary[HARMONICS], w[DEA_MOTION_MOST];
+        if (there) {
+            memcpy(w, there, (size_t)flight->motion.count * sizeof *w);
+        }
         for (int k = 1; k <= HARMONICS; k++) {
             project(x, k * kappa, &real[k - 1], &imaginary[k - 1]);
         }
-        for (int j = 0; w && j < PHASES; j++) {
+        for (int j = 0; there && j < PHASES; j++) {
             const double phase = 2.0 * DEA_PI * j / PHASES;
             double weight = 1.0;
             for (int k = 1; k <= HARMONICS; k++) {

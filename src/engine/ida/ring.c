@@ -8,6 +8,9 @@
 static const double long_enough = 6.0;
 static const double light_enough = 4.0;
 
+/* Sizes of an unknown. */
+static const double far_away = 30.0;
+
 enum { N = DEA_MOTION_MOST };
 
 static void multiply(int n, const double *a, const double *x, double *out)
@@ -92,13 +95,27 @@ void dea_ring_stop(dea_ring *ring)
     ring->turns = false;
 }
 
+/* The equilibrium under the voltage; rest instead where that lies far beyond what the run reaches, of which the unknowns have their
+ * sizes: behind a large series resistance the digits of a small answer would drown in it. */
+static bool find_center(const dea_motion *motion, double *center)
+{
+    double largest = 0.0;
+    if (!dea_motion_start(motion, true, center)) {
+        return false;
+    }
+    for (int i = 0; i < motion->count; i++) {
+        largest = fmax(largest, fabs(center[i]));
+    }
+    return largest < far_away || dea_motion_start(motion, false, center);
+}
+
 void dea_ring_find(const dea_motion *motion, dea_ring *ring)
 {
     const dea_segment *segment = motion->segment;
     const int n = ring->n = motion->count;
     double jacobian[N * N], work[N * N], left[N * N], right[N * N], real[N], imaginary[N];
     ring->turns = ring->light = false;
-    if (motion->v < 0 || !dea_motion_start(motion, true, ring->center)) {
+    if (motion->v < 0 || !find_center(motion, ring->center)) {
         return;
     }
     dea_motion_jacobian(motion, 0.0, ring->center, jacobian);

@@ -6,6 +6,9 @@
 /* Most time steps of one netlist: what its plot takes of memory. */
 static const double most_steps = 300000.0;
 
+/* Share of a step within which a film charges at once. */
+static const double at_once = 1e-2;
+
 /* An accepted point of the library with the slopes that go with it inside one segment. */
 typedef struct node {
     dea_moment moment;
@@ -66,6 +69,24 @@ static void set_velocity(dea_dynamics *d, const dea_edge *e, node *n)
     }
 }
 
+/* True where what follow_source() leaves out, (R_s C)^2 i'', is nothing: the film charges within a small part of a step. */
+static bool charges_at_once(const runner *r, const dea_edge *e)
+{
+    return r->route->dynamics->series * e->capacitance < at_once * r->step;
+}
+
+/* A film that charges at once: the drop over R_s, a difference of almost equal voltages, follows from
+ * i = d(C U)/dt with U' = U_s' - R_s i' instead, where i' is (C' u'' + C'' u'^2) U; C' = 2 phi. */
+static void follow_source(const dea_dynamics *d, const dea_edge *e, node *n)
+{
+    dea_moment *m = &n->moment;
+    m->slope -= d->series * (e->capacitance_slope * n->acceleration + 2.0 * e->push_slope * m->v * m->v) * m->source;
+    n->current = e->capacitance * m->slope + e->capacitance_slope * m->v * m->source;
+    m->voltage = m->source - d->series * (n->current + m->source * d->conductance);
+    m->charging = true;
+    m->charge_slope = n->current;
+}
+
 /* A state at a time inside the segment. The velocity of a film without mass follows from the rest. */
 static node node_at(const runner *r, double time, const dea_mobility_state *state)
 {
@@ -84,6 +105,10 @@ static node node_at(const runner *r, double time, const dea_mobility_state *stat
         set_velocity(route->slow, &e, &n);
     } else {
         n.acceleration = acceleration(d, &e, &n);
+    }
+    if (d->series > 0.0 && charges_at_once(r, &e)) {
+        n.moment.slope = dea_segment_slope(route->signal, segment, time);
+        follow_source(d, &e, &n);
     }
     return n;
 }
@@ -154,7 +179,7 @@ static void take_samples(runner *r, const node *b)
         if (!is_inside(r->route->dynamics, &n)) {
             return;
         }
-        track->points[track->reached++] = (dea_track_point){n.moment.u, n.moment.v, n.state.charge};
+        track->points[track->reached++] = (dea_track_point){n.moment.u, n.moment.v, n.state.charge, n.current};
     }
 }
 
@@ -327,8 +352,8 @@ static void absorb(runner *r, const dea_ngspice_table *table, double from, doubl
     for (size_t i = 0; i < table->count; i++) {
         const bool last = times[i] >= length * (1.0 - 1e-12);
         const double time = last ? to : from + times[i];
-        if (!(time > r->last.moment.time)) {
-            continue;
+        if (!(time > r->last.moment.time) || (time >= to && !last)) {
+            continue; /* late in a run the steps of a short edge are finer than its time can be told */
         }
         const dea_mobility_state state = scaled(dea_mobility_read(r->route->mobility, columns, i), r->speed);
         if (!advance(r, time, &state) || last) {
@@ -424,7 +449,8 @@ static bool start(runner *r)
     r->track->first.v = 0.0;
     jump(r, 0);
     if (r->track->end == DEA_STATE_OK) {
-        r->track->points[r->track->reached++] = (dea_track_point){r->last.moment.u, r->last.moment.v, r->last.state.charge};
+        r->track->points[r->track->reached++] =
+            (dea_track_point){r->last.moment.u, r->last.moment.v, r->last.state.charge, r->last.current};
     }
     return r->track->end == DEA_STATE_OK;
 }

@@ -6,9 +6,9 @@
 #include "engine/ngspice/pieces.h"
 #include "netlist/mobility.h"
 
-/* Displacement, velocity and charge at a sample. */
+/* Displacement, velocity, charge and its slope, where there is a series resistance, at a sample. */
 typedef struct dea_track_point {
-    double u, v, charge;
+    double u, v, charge, current;
 } dea_track_point;
 
 typedef struct dea_track {

@@ -1,6 +1,7 @@
 /* Runs with ever finer steps until their answers agree. The error of the trapezoidal rule is even in the step: two runs, h and
  * h/2, give an answer of fourth order, (4 y(h/2) - y(h))/3, and the two last of these the error bar. The balance of energies must
  * close too. */
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -13,6 +14,10 @@ static const double most_work = 5e6;
 static const double nonlinear_step = 5.0;
 static const double netlist = 1000.0;
 enum { MOST_LEVELS = 14, STUBBORN = 5 };
+
+/* Share of the wanted error at which an open balance of energies is no longer worth finer runs: the study says that it is open.
+ */
+static const double enough = 1e-3;
 
 typedef struct levels {
     dea_track coarse, fine; /* the last two runs */
@@ -30,7 +35,8 @@ static double better(double coarse, double fine)
 
 static dea_track_point better_point(const dea_track_point *coarse, const dea_track_point *fine)
 {
-    return (dea_track_point){better(coarse->u, fine->u), better(coarse->v, fine->v), better(coarse->charge, fine->charge)};
+    return (dea_track_point){better(coarse->u, fine->u), better(coarse->v, fine->v), better(coarse->charge, fine->charge),
+                             better(coarse->current, fine->current)};
 }
 
 static size_t common(const levels *l)
@@ -182,7 +188,7 @@ static dea_status refine_once(const dea_route *route, levels *l, double fineness
         fill_summary(route, l, summary);
         l->residual = summary->residual;
         const bool settled = l->fine.end != DEA_STATE_FAILED || l->runs >= STUBBORN;
-        const bool closed = l->fine.end != DEA_STATE_OK || summary->residual <= 10.0 * wanted;
+        const bool closed = l->fine.end != DEA_STATE_OK || summary->residual <= 10.0 * wanted || l->error <= enough * wanted;
         *done = l->error <= wanted && settled && closed;
     }
     return status;
@@ -226,7 +232,9 @@ static dea_moment moment_at(const dea_route *route, size_t index, size_t *segmen
                         .voltage = dea_route_voltage(route, source, point->u, point->charge),
                         .slope = dea_segment_slope(route->signal, s, time),
                         .u = point->u,
-                        .v = point->v};
+                        .v = point->v,
+                        .charging = route->dynamics->series > 0.0,
+                        .charge_slope = point->current};
 }
 
 static void fill_samples(const dea_route *route, const levels *l, dea_sample *samples)
@@ -305,6 +313,37 @@ static double resonance_of(dea_dynamics *d)
     return d->mass > 0.0 ? sqrt(dea_dynamics_stiffness(d, 0.0, 0.0, false) / d->mass) / (2.0 * DEA_PI) : (double)NAN;
 }
 
+/* A point of a netlist stands at a time of the run, which tells no two of them apart within an edge that is very short beside it:
+ * refused where the film is as fast. */
+static dea_status can_tell_edges(const dea_signal *signal, const dea_pace *pace, dea_error *error)
+{
+    for (size_t i = 0; i < signal->count; i++) {
+        const dea_segment *s = &signal->segments[i];
+        const double width = s->to - s->from;
+        if (s->start != s->end && !s->sine && width < 1e4 * DBL_EPSILON * s->to && pace->fastest < 1e4 * width) {
+            return dea_fail(error, DEA_ERROR_ENGINE,
+                            "an edge of %.3g s at %.9g s is too short beside its time for the steps of ngspice", width, s->from);
+        }
+    }
+    return DEA_OK;
+}
+
+/* Rounding of the library's times and of the fitted mass turns a ring by so much of its angle: measured on undamped rings. */
+static const double drift = 3e-12;
+
+/* Refuses a ring that lives for too many periods. */
+static dea_status can_keep_phase(const dea_route *route, const dea_pace *pace, dea_error *error)
+{
+    const double life = fmin(dea_pieces_ringing(route->pieces), 1.0 / pace->decay);
+    const double angle = pace->omega > 0.0 ? pace->omega * life : 0.0;
+    if (angle * drift <= route->scene->accuracy) {
+        return DEA_OK;
+    }
+    return dea_fail(error, DEA_ERROR_ENGINE,
+                    "the film rings for %.2g periods, over which ngspice loses a phase of %.1g, the scene wants an error of %g",
+                    angle / (2.0 * DEA_PI), angle * drift, route->scene->accuracy);
+}
+
 static dea_status run_on(dea_route *route, dea_sample *samples, dea_summary *summary, dea_error *error)
 {
     const dea_transient *transient = &route->scene->transient;
@@ -312,12 +351,18 @@ static dea_status run_on(dea_route *route, dea_sample *samples, dea_summary *sum
     const bool quiet = transient->from_bias || route->signal->segments[0].start == 0.0;
     dea_pieces pieces;
     levels l = {.error = INFINITY};
-    dea_status status =
-        dea_pieces_cut(route->signal, &pace, route->scene->accuracy, route->scene->reduction.ring, quiet, &pieces, error);
+    pieces.pieces = NULL;
+    dea_status status = can_tell_edges(route->signal, &pace, error);
+    if (status == DEA_OK) {
+        status = dea_pieces_cut(route->signal, &pace, route->scene->accuracy, route->scene->reduction.ring, quiet, &pieces, error);
+    }
     route->pieces = &pieces;
     route->omega = pace.omega;
     route->voltage = film_voltage(route->dynamics, transient, route->signal);
     route->scale = scale_of(route->dynamics, transient, route->voltage);
+    if (status == DEA_OK) {
+        status = can_keep_phase(route, &pace, error);
+    }
     if (status == DEA_OK) {
         status = refine(route, &l, summary, error);
     }

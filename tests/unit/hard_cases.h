@@ -1,0 +1,51 @@
+/* The table of tests/hard as tests, one a case, named as the case. Run from the project's folder. */
+#ifndef DEA_TEST_HARD_CASES_H
+#define DEA_TEST_HARD_CASES_H
+
+#include "scenes.h"
+
+#include "../hard/cases.h"
+
+/* No case may take longer with one engine, sanitizers and a busy machine included [s]. */
+static const double hard_patience = 120.0;
+
+static inline void hard_check_case(void **state)
+{
+    const hard_case *c = *state;
+    hard_subject subject;
+    dea_error error = {0};
+    if (!hard_begin(c, "tests/hard", false, &subject, &error)) {
+        fail_msg("%s", error.message);
+    }
+    int bad = 0;
+    for (size_t k = 0; k < HARD_ENGINES; k++) {
+        static char text[HARD_LOG + 1024];
+        const hard_verdict v = hard_try(&subject, k);
+        if (hard_shortfall(&c->cells[k], &v, subject.own_error, text, sizeof text)) {
+            print_error("%s, %s: %s\n", c->name, hard_engine_names[k], text);
+            bad++;
+        } else if (v.seconds > hard_patience) {
+            print_error("%s, %s: %g s\n", c->name, hard_engine_names[k], v.seconds);
+            bad++;
+        }
+    }
+    hard_end(&subject);
+    assert_int_equal(bad, 0);
+}
+
+/* All cases in time, or all others. */
+static inline int hard_run_all(bool moving)
+{
+    struct CMUnitTest tests[HARD_CASES];
+    size_t count = 0;
+    for (size_t i = 0; i < HARD_CASES; i++) {
+        const hard_case *c = &hard_cases[i];
+        if ((c->judge != HARD_STATICS && c->judge != HARD_AC) == moving) {
+            tests[count++] =
+                (struct CMUnitTest){.name = c->name, .test_func = hard_check_case, .initial_state = (void *)(uintptr_t)c};
+        }
+    }
+    return _cmocka_run_group_tests("hard", tests, count, NULL, NULL);
+}
+
+#endif

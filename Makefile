@@ -98,11 +98,11 @@ $(BUILD)/fuzz/scene_fuzz: tests/fuzz/scene_fuzz.c $(LIBRARY_SOURCES)
 # Speed and error side by side, against the goals and against other programs where they are installed. Takes 3 to 4 minutes.
 bench:
 	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/bench
-	@$(BUILD)/bench $(BUILD)/deaspice tests/peers
+	@$(BUILD)/bench $(BUILD)/deaspice tests/peers examples
 
 $(BUILD)/bench: $(wildcard tests/bench/*.[ch]) $(BUILD)/libdeaspice.a
 	@echo "CC $@"
-	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) -Itests/bench $(filter %.c,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) $(LIBS)
+	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) -Itests/bench $(filter %.c,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) -lcmocka $(LIBS)
 
 # Orders, conditioning, freedom of units, other compilers and flags, as Markdown. Takes 3 minutes after the builds.
 stability:

@@ -25,8 +25,9 @@ typedef enum dea_takes {
     DEA_TAKES_JOBS = 1 << 5,
     DEA_TAKES_QUIET = 1 << 6,
     DEA_TAKES_TOLERANCE = 1 << 7,
-    DEA_TAKES_FIT = 1 << 8,   /**< --uniaxial, --equibiaxial, --terms, --relaxation, --ramp, --branches, --relative */
-    DEA_TAKES_EXPORT = 1 << 9 /**< --as, --dialect, --analogy */
+    DEA_TAKES_FIT = 1 << 8,    /**< --uniaxial, --equibiaxial, --terms, --relaxation, --ramp, --branches, --relative */
+    DEA_TAKES_EXPORT = 1 << 9, /**< --as, --dialect, --analogy */
+    DEA_TAKES_FULL = 1 << 10
 } dea_takes;
 
 /** Mode of a data file as the command line gives it. */
@@ -49,6 +50,7 @@ typedef struct dea_arguments {
     const char *plot;
     size_t jobs; /**< 0: not given; "auto" is already the number of cores */
     bool quiet;
+    bool full;
     double tolerance; /**< NAN: not given */
     unsigned terms;   /**< 0: not given */
     bool relative;
@@ -100,6 +102,10 @@ const dea_engine *dea_engine_choose(const char *name);
 bool dea_scene_open(const dea_arguments *arguments, const char *path, dea_scene *scene, dea_exit *outcome);
 /** Complains about an engine that refuses a model and names those that can do it; true where it does. */
 bool dea_engine_unfit(const dea_engine *engine, const dea_scene *scene);
+/** Settles `model: auto`: sets the first model and takes its error bound off the accuracy; says which unless @p quiet. False,
+ * with a complaint and @p outcome, where no model that the engine (NULL: any) can do is good enough. @p bound: of the model
+ * error, 0 where the scene names its models. */
+bool dea_model_settle(dea_scene *scene, const dea_engine *engine, bool quiet, double *bound, dea_exit *outcome);
 /** Seconds since some moment. */
 double dea_seconds(void);
 

@@ -173,7 +173,7 @@ static void find_steps(dea_dynamics *d, const dea_signal *signal, double steps[2
     dea_error error = {0};
     dea_pieces pieces;
     const dea_pace pace = dea_pace_of(d, 0.0, 0.0);
-    if (dea_pieces_cut(signal, &pace, 1e-6, true, &pieces, &error) != DEA_OK) {
+    if (dea_pieces_cut(signal, &pace, 1e-6, 0.0, true, &pieces, &error) != DEA_OK) {
         bench_give_up("%s", error.message);
     }
     steps[0] = steps[1] = pieces.pieces[0].step;

@@ -168,7 +168,7 @@ static dea_status lay_route(ngspice_job *job, dea_error *error)
                            .scale = dea_dynamics_scale(&dynamics, signal.largest),
                            .omega = pace.omega,
                            .unit = 1.0};
-        status = dea_pieces_cut(&signal, &pace, 1e-6, true, &pieces, error);
+        status = dea_pieces_cut(&signal, &pace, 1e-6, 0.0, true, &pieces, error);
         status = status == DEA_OK ? run_tracks(job, &route, error) : status;
     }
     free(pieces.pieces);

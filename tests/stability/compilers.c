@@ -118,24 +118,24 @@ static double table_difference(const table *a, const table *b)
     return worst;
 }
 
-/* Both files are in a folder of this run. */
-typedef struct bench {
+/* A folder of this run, and the tables in it. */
+typedef struct scratch {
     char folder[64], reference[96], other[96];
-} bench;
+} scratch;
 
 /* Adds what one example says to the differences of all programs. */
-static void compare(const bench *b, const char *const *programs, size_t count, const char *example, const char *engine,
+static void compare(const scratch *files, const char *const *programs, size_t count, const char *example, const char *engine,
                     stability_difference_found *found)
 {
-    if (!run_program(programs[0], example, engine, b->reference)) {
+    if (!run_program(programs[0], example, engine, files->reference)) {
         return;
     }
-    table reference = read_table(b->reference);
+    table reference = read_table(files->reference);
     const char *slash = strrchr(example, '/');
     for (size_t i = 1; i < count; i++) {
-        (void)unlink(b->other);
-        const bool ran = run_program(programs[i], example, engine, b->other);
-        table other = read_table(b->other);
+        (void)unlink(files->other);
+        const bool ran = run_program(programs[i], example, engine, files->other);
+        table other = read_table(files->other);
         const double apart = ran ? table_difference(&reference, &other) : (double)INFINITY;
         if (!(apart <= found[i].largest)) {
             found[i].largest = apart;
@@ -152,19 +152,19 @@ void stability_compare_programs(const char *const *programs, size_t count, const
 {
     char pattern[MOST_LINE];
     glob_t list;
-    bench b = {.folder = "/tmp/deaspice-stability-XXXXXX"};
+    scratch files = {.folder = "/tmp/deaspice-stability-XXXXXX"};
     snprintf(pattern, sizeof pattern, "%s/*.yaml", folder);
-    if (!mkdtemp(b.folder) || glob(pattern, 0, NULL, &list) != 0) {
+    if (!mkdtemp(files.folder) || glob(pattern, 0, NULL, &list) != 0) {
         bench_give_up("no scenes in %s", folder);
     }
-    snprintf(b.reference, sizeof b.reference, "%s/a.csv", b.folder);
-    snprintf(b.other, sizeof b.other, "%s/b.csv", b.folder);
+    snprintf(files.reference, sizeof files.reference, "%s/a.csv", files.folder);
+    snprintf(files.other, sizeof files.other, "%s/b.csv", files.folder);
     memset(found, 0, count * sizeof *found);
     for (size_t i = 0; i < list.gl_pathc; i++) {
-        compare(&b, programs, count, list.gl_pathv[i], engine, found);
+        compare(&files, programs, count, list.gl_pathv[i], engine, found);
     }
     globfree(&list);
-    (void)unlink(b.reference);
-    (void)unlink(b.other);
-    (void)rmdir(b.folder);
+    (void)unlink(files.reference);
+    (void)unlink(files.other);
+    (void)rmdir(files.folder);
 }

@@ -55,7 +55,8 @@ struct dea_journal {
     size_t points;       /* in it */
     uint64_t *places;    /* of the records of the shard's blocks, 0: not in it; owned */
     unsigned char *room; /* buffer of streams; owned */
-    double synced;       /* when the file was last brought to the disk [s] */
+    double waiting;      /* since when a record has waited for the disk [s], 0: none does */
+    int broken;          /* errno of the disk that did not take one, 0: fine */
 };
 
 static double seconds_now(void)
@@ -383,7 +384,7 @@ static dea_journal *journal_new(const dea_journal_study *study, const char *path
 {
     dea_journal *journal = calloc(1, sizeof *journal);
     if (journal) {
-        *journal = (dea_journal){.study = study, .fd = -1, .synced = seconds_now()};
+        *journal = (dea_journal){.study = study, .fd = -1};
         journal->path = strdup(path);
         journal->room = malloc(DEA_STREAM_BUFFER);
     }
@@ -581,14 +582,19 @@ dea_status dea_journal_complete(const dea_journal *journal, dea_error *error)
                     journal->points + points.count < points_of(journal->study, journal->blocks).count ? ", and more" : "");
 }
 
-static dea_status journal_sync(dea_journal *journal, bool now, dea_error *error)
+static void journal_sync(dea_journal *journal)
 {
-    if (!now && seconds_now() - journal->synced < sync_interval) {
-        return DEA_OK;
+    if (fdatasync(journal->fd) != 0 && errno != EINVAL) {
+        journal->broken = errno;
     }
-    const int failed = fdatasync(journal->fd);
-    journal->synced = seconds_now();
-    return failed != 0 && errno != EINVAL ? fail_io(error, "write", journal->path) : DEA_OK;
+    journal->waiting = 0.0;
+}
+
+void dea_journal_settle(dea_journal *journal)
+{
+    if (journal->waiting > 0.0 && seconds_now() - journal->waiting >= sync_interval) {
+        journal_sync(journal);
+    }
 }
 
 dea_status dea_journal_append(dea_journal *journal, size_t first, const void *points, size_t count, dea_error *error)
@@ -618,7 +624,10 @@ dea_status dea_journal_append(dea_journal *journal, size_t first, const void *po
         return ftruncate(journal->fd, (off_t)journal->end) == 0 ? status : status; /* what stays is cut off later */
     }
     record_keep(journal, block, count);
-    return journal_sync(journal, false, error);
+    journal->waiting = journal->waiting > 0.0 ? journal->waiting : seconds_now();
+    dea_journal_settle(journal);
+    errno = journal->broken;
+    return journal->broken ? fail_io(error, "write", journal->path) : DEA_OK;
 }
 
 /* Reads the points of block number @p block. */
@@ -682,9 +691,13 @@ static void folder_sync(const char *path)
 
 static dea_status part_place(dea_journal *journal, const char *target, dea_error *error)
 {
-    const dea_status status = journal_sync(journal, true, error);
-    if (status != DEA_OK || strcmp(journal->path, target) == 0) {
-        return status;
+    journal_sync(journal);
+    errno = journal->broken;
+    if (journal->broken) {
+        return fail_io(error, "write", journal->path);
+    }
+    if (strcmp(journal->path, target) == 0) {
+        return DEA_OK;
     }
     if (rename(journal->path, target) != 0) {
         return fail_io(error, "write", target);
@@ -708,7 +721,7 @@ dea_status dea_journal_close(dea_journal *journal, dea_journal_end end, const ch
         folder_sync(journal->path); /* the result's name is on the disk before the journal's goes */
         unlink(journal->path);
     } else if (journal->open) {
-        (void)fdatasync(journal->fd);
+        journal_sync(journal);
     }
     if (journal->fd >= 0) {
         close(journal->fd); /* and with it the lock */

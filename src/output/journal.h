@@ -6,8 +6,8 @@
  * twice; a record that is not whole is as if it were not there.
  *
  * What lasts: a record stands once dea_journal_append() returned, whatever becomes of the process (SIGKILL too). It is on the
- * disk, safe from a loss of power, after at most 10 s and once the journal is complete; what such a loss leaves half written
- * fails its digest, is cut off and computed again. */
+ * disk, safe from a loss of power, 10 s later (at the next call of dea_journal_settle() or dea_journal_append()) and once the
+ * journal ends; what such a loss leaves half written fails its digest, is cut off and computed again. */
 #ifndef DEASPICE_OUTPUT_JOURNAL_H
 #define DEASPICE_OUTPUT_JOURNAL_H
 
@@ -76,6 +76,8 @@ bool dea_journal_wants(const dea_journal *journal, size_t block);
 dea_status dea_journal_complete(const dea_journal *journal, dea_error *error);
 /* Appends the points of one whole block. */
 dea_status dea_journal_append(dea_journal *journal, size_t first, const void *points, size_t count, dea_error *error);
+/* Brings to the disk what has waited for 10 s; to be called now and then. A disk that fails is told by the next call that can. */
+void dea_journal_settle(dea_journal *journal);
 /* Hands the points of a complete journal to options->points in order, verified. progress and stop are used as in a run. */
 dea_status dea_journal_replay(dea_journal *journal, const dea_run_options *options, dea_error *error);
 /* Ends the journal and frees it, NULL is fine. @p target: what a part is called; NULL else. */

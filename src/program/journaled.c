@@ -51,6 +51,13 @@ static void recorder_progress(void *user, size_t done, size_t total)
     dea_audience_progress(&run->audience, done, total);
 }
 
+static bool recorder_stop(void *user)
+{
+    const recorder *run = user;
+    dea_journal_settle(run->journal);
+    return dea_signals_stop(NULL);
+}
+
 static bool ends_in(const char *path, const char *ending)
 {
     const size_t whole = strlen(path), part = strlen(ending);
@@ -147,7 +154,7 @@ static dea_status compute(recorder *run, const dea_engine *engine, dea_error *er
                                      .any_order = true,
                                      .progress = recorder_progress,
                                      .log = recorder_log,
-                                     .stop = dea_signals_stop,
+                                     .stop = recorder_stop,
                                      .user = run};
     return dea_study_run(run->study.scene, engine, &options, error);
 }

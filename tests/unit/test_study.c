@@ -261,6 +261,74 @@ static void rows_come_in_order_and_complete(void **state)
     }
 }
 
+/* Who wants some of the blocks, in any order. */
+typedef struct chooser {
+    dea_cut cut;
+    size_t seen[2 * POINTS]; /* how often each block came */
+    size_t last;             /* block that came last */
+    size_t steps_back;       /* blocks that came behind a later one */
+    size_t points, progress, total;
+} chooser;
+
+static bool wants_every_second(void *user, size_t block)
+{
+    (void)user;
+    return block % 2 == 1;
+}
+
+static dea_status take_block(void *user, size_t first, const void *points, size_t count, dea_error *error)
+{
+    chooser *chosen = user;
+    const dea_row *rows = points;
+    const size_t block = dea_cut_block(&chosen->cut, first);
+    const dea_range range = dea_cut_range(&chosen->cut, block);
+    (void)error;
+    assert_true(range.place == first && range.count == count);
+    assert_true(rows[count - 1].strain == (double)(range.first + count - 1) + 0.5 * (double)range.model);
+    chosen->seen[block]++;
+    chosen->steps_back += block < chosen->last;
+    chosen->last = block;
+    chosen->points += count;
+    return DEA_OK;
+}
+
+static void tell_chooser(void *user, size_t done, size_t total)
+{
+    chooser *chosen = user;
+    chosen->progress = done;
+    chosen->total = total;
+}
+
+static void only_wanted_blocks_are_computed_each_as_soon_as_it_is_finished(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < 6; i++) {
+        static chooser chosen;
+        dea_scene scene = scene_of(POINTS, 2);
+        dea_engine engine = engine_of(sweep_backwards, i < 3);
+        const dea_run_options options = {.jobs = all_jobs[i % 3],
+                                         .points = take_block,
+                                         .wanted = wants_every_second,
+                                         .any_order = true,
+                                         .progress = tell_chooser,
+                                         .user = &chosen};
+        chosen = (chooser){0};
+        *shared = (fake){0};
+        assert_int_equal(dea_cut_make(&scene, &engine, &chosen.cut, NULL), DEA_OK);
+        assert_int_equal(dea_study_run(&scene, &engine, &options, NULL), DEA_OK);
+        size_t wanted = 0;
+        for (size_t block = 0; block < chosen.cut.blocks; block++) {
+            assert_int_equal(chosen.seen[block], block % 2 == 1);
+            wanted += block % 2 == 1;
+        }
+        assert_int_equal(shared->sweeps, wanted);
+        assert_true(chosen.progress == chosen.points && chosen.total == chosen.points && wanted == chosen.cut.blocks / 2);
+        assert_true(all_jobs[i % 3] == 1 ? chosen.steps_back == 0 : chosen.steps_back > 0);
+        free(scene.axes[0].values);
+        check_no_child_left();
+    }
+}
+
 static void crash_costs_only_its_point(void **state)
 {
     (void)state;
@@ -519,6 +587,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rows_come_in_order_and_complete),
+        cmocka_unit_test(only_wanted_blocks_are_computed_each_as_soon_as_it_is_finished),
         cmocka_unit_test(crash_costs_only_its_point),
         cmocka_unit_test(hang_costs_only_its_point),
         cmocka_unit_test(error_costs_only_its_point_and_is_told),

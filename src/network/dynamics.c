@@ -53,17 +53,17 @@ static void set_port(const dea_drive *drive, dea_dynamics *d)
 /* Part of the accuracy that leaving out a series resistance may take. */
 static const double spared = 0.1;
 
-/* True where a sample lies so close behind a jump of the source voltage that it sees the film charge within @p delay [s]; as the
- * first one does where the film starts at rest. */
+/* True where a sample lies so close behind a jump of the source voltage that it sees the film charge within @p delay [s]. */
 static bool sees_charging(const dea_scene *scene, const dea_signal *signal, double delay)
 {
     const double every = scene->transient.every;
     const double wait = delay * log(1.0 / (spared * scene->accuracy));
-    bool seen = !scene->transient.from_bias && signal->segments[0].start != 0.0;
+    bool seen = false;
     for (size_t i = 1; i < signal->count && !seen; i++) {
         const double from = signal->segments[i].from;
         const bool jumps = signal->segments[i].start != signal->segments[i - 1].end;
-        seen = jumps && (floor(from / every) + 1.0) * every - from < wait;
+        const double sample = ceil(from / every) * every;
+        seen = jumps && (sample > from ? sample : sample + every) - from < wait;
     }
     return seen;
 }
@@ -89,10 +89,11 @@ static double electric_damping(const dea_scene *scene, const dea_dynamics *d, co
 {
     const double damper = 4.0 * e->push * e->push * voltage * voltage * d->series;
     const double own = e->area * d->retardation * e->stress_slope;
+    const double share = own > 0.0 ? damper / own : (double)INFINITY;
     if (d->mass > 0.0) {
-        return damper * scene->transient.until / (2.0 * d->mass);
+        return fmin(share, damper * scene->transient.until / (2.0 * d->mass));
     }
-    return own > 0.0 ? damper / own : 0.0;
+    return own > 0.0 ? share : 0.0;
 }
 
 /* A series resistance over which the film charges much faster than the voltage and the film change moves nothing: the film
@@ -109,6 +110,7 @@ static dea_status drop_series(const dea_scene *scene, dea_dynamics *d, dea_error
     const dea_status status = dea_signal_open(scene, &signal, error);
     if (status == DEA_OK && delay <= little * shortest_change(scene, &signal) && d->series * d->conductance <= little &&
         electric_damping(scene, d, &rest, signal.largest) <= little && !sees_charging(scene, &signal, delay)) {
+        d->dropped = scene->transient.from_bias ? 0.0 : d->series;
         d->series = 0.0;
     }
     dea_signal_close(&signal);
@@ -351,9 +353,25 @@ static double current(const dea_dynamics *d, const dea_edge *e, const dea_moment
     return e->capacitance * m->slope + e->capacitance_slope * m->v * m->voltage + m->voltage * d->conductance;
 }
 
+/* The first sample of a run from rest, over a resistance that the network leaves out: the film has no charge yet. */
+static void sample_uncharged(dea_dynamics *dynamics, const dea_moment *moment, dea_sample *sample)
+{
+    const dea_moment rest = {.time = moment->time};
+    const double series = dynamics->dropped;
+    dynamics->dropped = 0.0;
+    (void)dea_dynamics_sample(dynamics, &rest, sample);
+    dynamics->dropped = series;
+    sample->voltage = moment->source;
+    sample->current = moment->source / series;
+}
+
 bool dea_dynamics_sample(dea_dynamics *dynamics, const dea_moment *moment, dea_sample *sample)
 {
     dea_row row = dea_row_failed();
+    if (dynamics->dropped > 0.0 && moment->time == 0.0) {
+        sample_uncharged(dynamics, moment, sample);
+        return true;
+    }
     const bool inside = moment->u > -dynamics->radius && moment->u < dynamics->point.frame_radius - dynamics->radius;
     if (inside) {
         dea_balance_fill(&dynamics->balance, moment->voltage, moment->u, &row);

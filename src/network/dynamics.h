@@ -24,6 +24,7 @@ typedef struct dea_dynamics {
     double total_share;                    /* sum of c_i */
     bool port;                             /* a resistance is given: current and charge are wanted */
     double series;                         /* R_s [Ohm], 0: the film sees the source, as where R_s changes nothing */
+    double dropped;                        /* R_s that changes nothing but the first sample of a run from rest [Ohm], else 0 */
     double conductance;                    /* 1/R_p [S], 0: no leakage */
     double radius;                         /* r_a [m] */
     double focal_length, refractive_index; /* NAN: no optics */

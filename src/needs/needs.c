@@ -212,7 +212,7 @@ static void try_series(planner *p)
     s->drag = s->dynamics.series;
     const bool solved = pays(p, DEA_PART_SERIES) && dea_surrogate_solve(s, &p->reduction, p->next);
     s->drag = 0.0;
-    for (size_t i = 0; i < s->count && solved; i++) {
+    for (size_t i = s->scene->transient.from_bias ? 0 : 1; i < s->count && solved; i++) { /* the first has no charge in any case */
         segment = dea_signal_find(&s->signal, segment, dea_layout_place(s->scene, s->probes[i]));
         late = fmax(late, lag_at(p, lag, segment, i));
     }

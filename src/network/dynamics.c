@@ -82,7 +82,11 @@ static void set_port(const dea_scene *scene, dea_dynamics *d)
 {
     const dea_drive *drive = &scene->drive;
     d->port = !isnan(drive->series_resistance) || !isnan(drive->leakage_resistance);
-    d->series = isnan(drive->series_resistance) || scene->reduction.series ? 0.0 : drive->series_resistance;
+    d->series = isnan(drive->series_resistance) ? 0.0 : drive->series_resistance;
+    if (scene->reduction.series) {
+        d->dropped = scene->transient.from_bias ? 0.0 : d->series;
+        d->series = 0.0;
+    }
     d->conductance = isnan(drive->leakage_resistance) ? 0.0 : 1.0 / drive->leakage_resistance;
 }
 
@@ -361,9 +365,25 @@ static double current(const dea_dynamics *d, const dea_edge *e, const dea_moment
     return e->capacitance * m->slope + e->capacitance_slope * m->v * m->voltage + m->voltage * d->conductance;
 }
 
+/* The first sample of a run from rest, over a resistance that the network leaves out: the film has no charge yet. */
+static void sample_uncharged(dea_dynamics *dynamics, const dea_moment *moment, dea_sample *sample)
+{
+    const dea_moment rest = {.time = moment->time};
+    const double series = dynamics->dropped;
+    dynamics->dropped = 0.0;
+    (void)dea_dynamics_sample(dynamics, &rest, sample);
+    dynamics->dropped = series;
+    sample->voltage = moment->source;
+    sample->current = moment->source / series;
+}
+
 bool dea_dynamics_sample(dea_dynamics *dynamics, const dea_moment *moment, dea_sample *sample)
 {
     dea_row row = dea_row_failed();
+    if (dynamics->dropped > 0.0 && moment->time == 0.0) {
+        sample_uncharged(dynamics, moment, sample);
+        return true;
+    }
     const bool inside = moment->u > -dynamics->radius && moment->u < dynamics->point.frame_radius - dynamics->radius;
     if (inside) {
         dea_balance_fill(&dynamics->balance, moment->voltage, moment->u, &row);

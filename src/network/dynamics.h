@@ -25,7 +25,8 @@ typedef struct dea_dynamics {
     size_t branch_count;
     double total_share;                    /* sum of their c_i */
     bool port;                             /* a resistance is given: current and charge are wanted */
-    double series;                         /* R_s [Ohm], 0: the film sees the source, as where R_s changes nothing */
+    double series;                         /* R_s [Ohm], 0: the film sees the source */
+    double dropped;                        /* R_s that is left out and shows in the first sample of a run from rest alone [Ohm], else 0 */
     double conductance;                    /* 1/R_p [S], 0: no leakage */
     double radius;                         /* r_a [m] */
     double focal_length, refractive_index; /* NAN: no optics */

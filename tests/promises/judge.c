@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
+#include <sys/resource.h>
 
 #include "engine/line.h"
 #include "promises.h"
@@ -39,11 +39,17 @@ static const column columns[] = {
     {DEA_STUDY_AC, offsetof(dea_response, impedance_phase), OVER_RADIAN, "impedance_phase"},
 };
 
-static double now(void)
+/* Processor time of this process and of the workers that it has waited for [s]. */
+static double spent(void)
 {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+    const int whom[] = {RUSAGE_SELF, RUSAGE_CHILDREN};
+    double sum = 0.0;
+    for (int i = 0; i < 2; i++) {
+        struct rusage u;
+        getrusage(whom[i], &u);
+        sum += (double)(u.ru_utime.tv_sec + u.ru_stime.tv_sec) + 1e-6 * (double)(u.ru_utime.tv_usec + u.ru_stime.tv_usec);
+    }
+    return sum;
 }
 
 static double number_at(const void *row, size_t offset)
@@ -398,9 +404,9 @@ bool judge_engine(judged *j, const dea_engine *engine, double accuracy, tally *t
     hearing h = {.j = j, .points = calloc(j->points, j->layout.point_size)};
     dea_error error = {0};
     const dea_run_options options = {.jobs = 1, .points = hear_points, .log = hear_line, .user = &h};
-    const double from = now();
+    const double from = spent();
     const dea_status status = dea_study_run(scene, engine, &options, &error);
-    t->seconds += now() - from;
+    t->seconds += spent() - from;
     bool broken = false;
     found f = {0};
     if (status == DEA_OK) {

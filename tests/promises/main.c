@@ -60,7 +60,8 @@ static double now(void)
 static void print_table(tally tallies[MOST_ENGINES][STUDIES])
 {
     static const char *const studies[STUDIES] = {"sweep", "transient", "ac"};
-    puts("\n| engine | study | runs | delivered | refused | failed | not judged | worst delivered/wanted | broken | time [s] |");
+    puts("\n| engine | study | runs | delivered | refused | failed | not judged | worst delivered/wanted | broken | processor "
+         "time [s] |");
     puts("|---|---|---|---|---|---|---|---|---|---|");
     for (size_t e = 0; e < dea_engine_count() && e < MOST_ENGINES; e++) {
         for (int s = 0; s < STUDIES; s++) {
@@ -102,7 +103,13 @@ static size_t judge_scene(const arguments *a, size_t number, tally tallies[MOST_
             if (k == 3 && best >= 1e-6) {
                 continue;
             }
-            if (judge_engine(&j, engine, accuracy, &tallies[e][j.scene.study], line, sizeof line)) {
+            const double before = tallies[e][j.scene.study].seconds;
+            const bool breaks = judge_engine(&j, engine, accuracy, &tallies[e][j.scene.study], line, sizeof line);
+            if (a->verbose) {
+                fprintf(stderr, "%zu %s %.0e: %.4f s\n", number, engine->name, accuracy,
+                        tallies[e][j.scene.study].seconds - before);
+            }
+            if (breaks) {
                 printf("- broken: %s\n", line);
                 fflush(stdout);
                 broken++;

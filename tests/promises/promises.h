@@ -93,8 +93,8 @@ typedef struct tally {
     size_t scenes;    /* runs: scene x accuracy */
     size_t delivered; /* with all rows judged */
     size_t refused, failed, unjudged, broken;
-    double worst; /* delivered over wanted error, of promises that were kept */
-    double seconds;
+    double worst;   /* delivered over wanted error, of promises that were kept */
+    double seconds; /* of processors */
     reason reasons[MOST_REASONS];
 } tally;
 

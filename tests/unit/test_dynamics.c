@@ -331,44 +331,28 @@ static void capacitance_of_a_lens_keeps_its_digits(void **state)
     }
 }
 
-static double series_left(const dea_scene *scene)
-{
-    dea_dynamics dynamics;
-    open_dynamics(scene, "lumped", &dynamics);
-    const double series = dynamics.series;
-    dea_dynamics_close(&dynamics);
-    return series;
-}
-
-/* R_s C is 25 us against edges of a second: left out, unless it damps a ring, a sample sees the film charge, or a leakage leaves
- * the film less voltage. */
-static void a_series_resistance_is_left_out_where_nothing_shows_it(void **state)
+/* Its resistance is left out, but the first sample of a run from rest is still that of a film without charge. */
+static void a_film_at_rest_has_no_charge_behind_a_resistance(void **state)
 {
     (void)state;
     dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, (double)NAN);
+    dea_dynamics dynamics;
+    dea_sample sample;
     scene.study = DEA_STUDY_TRANSIENT;
-    scene.accuracy = 1e-3;
     scene.transient = (dea_transient){.until = 10.0, .every = 1.0};
-    scene.drive.waveform = (dea_waveform){.kind = DEA_WAVE_STEP, .step = {0.5, (double)NAN, 4000.0, 1.0}, .period = (double)NAN};
-    scene.drive.series_resistance = 1e5;
-    assert_true(series_left(&scene) == 0.0);
-    scene.drive.leakage_resistance = 1e8;
-    assert_true(series_left(&scene) == 1e5);
-    scene.drive.leakage_resistance = (double)NAN;
-    scene.drive.waveform.step.rise = 0.0;
-    assert_true(series_left(&scene) == 0.0);
-    scene.drive.waveform.step.on = 0.9999; /* 0.1 ms before a sample */
-    assert_true(series_left(&scene) == 1e5);
-    scene.drive.waveform.step.on = 0.0; /* the first sample is of a film without charge */
-    assert_true(series_left(&scene) == 1e5);
-    scene.transient.from_bias = true;
-    assert_true(series_left(&scene) == 0.0);
-    scene.material.density = 1080.0;
-    assert_true(series_left(&scene) == 1e5);
-    scene.material.density = (double)NAN;
-    scene.study = DEA_STUDY_AC;
-    scene.ac = (dea_ac){.from = 1e-3, .to = 1e-2, .points_per_decade = 10, .bias = 4000.0};
-    assert_true(series_left(&scene) == 1e5);
+    scene.drive.waveform = (dea_waveform){.kind = DEA_WAVE_STEP, .step = {0.0, (double)NAN, 4000.0, 0.0}, .period = (double)NAN};
+    scene.drive.series_resistance = 10.0;
+    scene.reduction.series = true;
+    open_dynamics(&scene, "lumped", &dynamics);
+    dea_moment moment = {.source = 4000.0, .voltage = 4000.0, .u = 1e-4};
+    assert_true(dynamics.series == 0.0);
+    assert_true(dea_dynamics_sample(&dynamics, &moment, &sample));
+    assert_true(sample.displacement == 0.0 && sample.charge == 0.0 && sample.force == 0.0);
+    assert_true(sample.voltage == 4000.0 && sample.current == 400.0);
+    moment.time = 1.0;
+    assert_true(dea_dynamics_sample(&dynamics, &moment, &sample));
+    assert_true(sample.displacement == 1e-4 && sample.charge > 0.0);
+    dea_dynamics_close(&dynamics);
 }
 
 static void times_and_frequencies_reach_their_ends(void **state)
@@ -404,7 +388,7 @@ int main(void)
         cmocka_unit_test(jump_and_creep_close_the_energy_balance),
         cmocka_unit_test(a_jump_of_the_voltage_passes_through_the_loads_between),
         cmocka_unit_test(capacitance_of_a_lens_keeps_its_digits),
-        cmocka_unit_test(a_series_resistance_is_left_out_where_nothing_shows_it),
+        cmocka_unit_test(a_film_at_rest_has_no_charge_behind_a_resistance),
         cmocka_unit_test(times_and_frequencies_reach_their_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

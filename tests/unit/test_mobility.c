@@ -609,27 +609,28 @@ static void a_damped_film_snaps_through(void **state)
     check_run(&scene, &finer, "ida", finer.accuracy, 0);
 }
 
-/* Behind a resistance, right after a jump, far below what the film would reach at rest. */
+/* Behind a resistance, right after a jump, far below what the film would reach at rest: where ngspice's own iteration ends early,
+ * all runs do so alike, and no comparison of them tells. */
 static void a_small_part_of_the_way_keeps_its_digits(void **state)
 {
     (void)state;
     dea_scene scene = protocol("lumped");
-    scene.actuator = paper_scene(DEA_DOT, 1.25134, 0.944696, 0.0).actuator;
-    scene.actuator.frame_radius = 1.34293e-3;
-    scene.actuator.film_thickness = 6.7743e-5;
-    scene.material.yeoh[0] = 374791.0;
+    scene.actuator = paper_scene(DEA_DOT, 1.2513399201379898, 0.94469603318627193, 0.0).actuator;
+    scene.actuator.frame_radius = 0.0013429273601450787;
+    scene.actuator.film_thickness = 6.7743024175892928e-05;
+    scene.material.yeoh[0] = 374791.09446750127;
     scene.material.yeoh[1] = 0.0;
-    scene.material.yeoh[2] = 4121.0;
-    scene.material.permittivity = 8.66682;
-    scene.material.density = 924.82;
-    scene.material.retardation = (double)NAN;
+    scene.material.yeoh[2] = 4121.045749163899;
+    scene.material.permittivity = 8.8080213009698287;
+    scene.material.permittivity_per_stretch = -0.11287801925126462;
+    scene.material.density = 924.82051720053721;
     scene.material.prony_count = 3;
-    scene.material.prony[0] = (dea_prony){0.237769, 3.48602e-5};
-    scene.material.prony[1] = (dea_prony){0.109613, 3.59957e-7};
-    scene.material.prony[2] = (dea_prony){0.186459, 0.699083};
-    scene.drive.series_resistance = 386822.7;
-    scene.drive.waveform.step = (dea_step){3.36343e-5, (double)NAN, 19283.05, 0.0};
-    scene.transient = (dea_transient){.until = 3.4796e-5, .every = 3.4796e-5 / 3.0, .from_bias = true};
+    scene.material.prony[0] = (dea_prony){0.23776908025610202, 3.4860184950993141e-05};
+    scene.material.prony[1] = (dea_prony){0.10961293152283363, 3.5995711811726036e-07};
+    scene.material.prony[2] = (dea_prony){0.18645877169803626, 0.69908324921626874};
+    scene.drive.series_resistance = 386822.73002244672;
+    scene.drive.waveform.step = (dea_step){3.3634255339461662e-05, 0.00013444237886345062, 19283.049058818815, 0.0};
+    scene.transient = (dea_transient){.until = 0.00034796175066229636, .every = 1.1598725022076545e-05, .from_bias = true};
     scene.accuracy = 1e-6;
     dea_scene finer = scene;
     finer.accuracy = 1e-8;

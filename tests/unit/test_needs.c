@@ -119,6 +119,42 @@ static void samples_decide_what_is_left_out(void **state)
     dea_scene_free(&scene);
 }
 
+static bool leaves_out_series(const dea_scene *scene)
+{
+    const dea_needs needs = needs_of(scene, "ngspice");
+    return leaves_out(&needs, DEA_PART_SERIES, 0, DEA_BRANCH_WHOLE);
+}
+
+/* R_s C is 25 us against edges of a second: left out, unless it damps a ring, a sample sees the film charge, or a leakage leaves
+ * the film less voltage. */
+static void a_series_resistance_is_left_out_where_nothing_shows_it(void **state)
+{
+    (void)state;
+    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, (double)NAN);
+    scene.models[0] = dea_model_find("lumped");
+    scene.study = DEA_STUDY_TRANSIENT;
+    scene.accuracy = 1e-3;
+    scene.transient = (dea_transient){.until = 10.0, .every = 1.0};
+    scene.drive.waveform = (dea_waveform){.kind = DEA_WAVE_STEP, .step = {0.5, (double)NAN, 4000.0, 1.0}, .period = (double)NAN};
+    scene.drive.series_resistance = 1e5;
+    assert_true(leaves_out_series(&scene));
+    scene.drive.leakage_resistance = 1e8;
+    assert_false(leaves_out_series(&scene));
+    scene.drive.leakage_resistance = (double)NAN;
+    scene.drive.waveform.step.rise = 0.0;
+    assert_true(leaves_out_series(&scene));
+    scene.drive.waveform.step.on = 0.9999; /* 0.1 ms before a sample */
+    assert_false(leaves_out_series(&scene));
+    scene.drive.waveform.step.on = 1.0; /* with one: it shows what was before */
+    assert_true(leaves_out_series(&scene));
+    scene.material.density = 1080.0;
+    assert_false(leaves_out_series(&scene));
+    scene.material.density = (double)NAN;
+    scene.study = DEA_STUDY_AC;
+    scene.ac = (dea_ac){.from = 1e-3, .to = 1e-2, .points_per_decade = 10, .bias = 4000.0};
+    assert_false(leaves_out_series(&scene));
+}
+
 static void what_costs_an_engine_nothing_stays(void **state)
 {
     (void)state;
@@ -232,6 +268,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bounds_of_random_scenes_hold),
         cmocka_unit_test(samples_decide_what_is_left_out),
+        cmocka_unit_test(a_series_resistance_is_left_out_where_nothing_shows_it),
         cmocka_unit_test(what_costs_an_engine_nothing_stays),
         cmocka_unit_test(reduced_runs_keep_the_accuracy),
         cmocka_unit_test(simpler_forms_of_a_branch_are_springs_and_dampers),

@@ -410,6 +410,9 @@ static inline hard_verdict hard_try(const hard_subject *s, size_t engine)
     return v;
 }
 
+/* A current is a slope: it may be so much worse than what it is the slope of. */
+static const double current_slack = 30.0;
+
 /* NULL where the verdict meets the demand, else what is wrong, in @p text. */
 static inline const char *hard_shortfall(const hard_cell *cell, const hard_verdict *v, double own_error, char *text, size_t size)
 {
@@ -432,7 +435,7 @@ static inline const char *hard_shortfall(const hard_cell *cell, const hard_verdi
         why = "none or all of the points failed";
     } else if (cell->demand == HARD_REFUSED && v->failed < v->points) {
         why = "points did not fail";
-    } else if (cell->demand == HARD_RIGHT && !cell->words && !(v->current <= 10.0 * v->accuracy)) {
+    } else if (cell->demand == HARD_RIGHT && !cell->words && !(v->current <= current_slack * v->accuracy)) {
         why = "the current is wrong";
     }
     if (why) {

@@ -69,22 +69,28 @@ static void set_velocity(dea_dynamics *d, const dea_edge *e, node *n)
     }
 }
 
-/* True where what follow_source() leaves out, (R_s C)^2 i'', is nothing: the film charges within a small part of a step. */
-static bool charges_at_once(const runner *r, const dea_edge *e)
+/* A film that charges at once: the drop over R_s, a difference of almost equal voltages, follows from i = d(C U)/dt with
+ * U' = U_s' - R_s i' instead, where i' is (C' u'' + C'' u'^2) U; C' = 2 phi. (R_s C)^2 i'' is left out: that is nothing where the
+ * film charges within a small part of a step, and for a sample where that is of a radian of its ring. */
+static void follow_source(const runner *r, const dea_edge *e, node *n)
 {
-    return r->route->dynamics->series * e->capacitance < at_once * r->step;
-}
-
-/* A film that charges at once: the drop over R_s, a difference of almost equal voltages, follows from
- * i = d(C U)/dt with U' = U_s' - R_s i' instead, where i' is (C' u'' + C'' u'^2) U; C' = 2 phi. */
-static void follow_source(const dea_dynamics *d, const dea_edge *e, node *n)
-{
+    const dea_dynamics *d = r->route->dynamics;
+    const double time = d->series * e->capacitance;
+    const bool turns = d->mass > 0.0 && !r->slow && time < r->step && r->route->omega * time < 0.2 * at_once;
+    if (time >= at_once * r->step && !turns) {
+        return;
+    }
     dea_moment *m = &n->moment;
-    m->slope -= d->series * (e->capacitance_slope * n->acceleration + 2.0 * e->push_slope * m->v * m->v) * m->source;
-    n->current = e->capacitance * m->slope + e->capacitance_slope * m->v * m->source;
-    m->voltage = m->source - d->series * (n->current + m->source * d->conductance);
-    m->charging = true;
-    m->charge_slope = n->current;
+    const double bend = e->capacitance_slope * n->acceleration + 2.0 * e->push_slope * m->v * m->v;
+    const double slope =
+        dea_segment_slope(r->route->signal, &r->route->signal->segments[r->segment], m->time) - d->series * bend * m->source;
+    n->current = e->capacitance * slope + e->capacitance_slope * m->v * m->source;
+    if (time < at_once * r->step) {
+        m->slope = slope;
+        m->voltage = m->source - d->series * (n->current + m->source * d->conductance);
+        m->charging = true;
+        m->charge_slope = n->current;
+    }
 }
 
 /* A state at a time inside the segment. The velocity of a film without mass follows from the rest. */
@@ -106,9 +112,8 @@ static node node_at(const runner *r, double time, const dea_mobility_state *stat
     } else {
         n.acceleration = acceleration(d, &e, &n);
     }
-    if (d->series > 0.0 && charges_at_once(r, &e)) {
-        n.moment.slope = dea_segment_slope(route->signal, segment, time);
-        follow_source(d, &e, &n);
+    if (d->series > 0.0) {
+        follow_source(r, &e, &n);
     }
     return n;
 }

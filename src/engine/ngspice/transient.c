@@ -328,13 +328,29 @@ static dea_status can_tell_edges(const dea_signal *signal, const dea_pace *pace,
     return DEA_OK;
 }
 
+/* Most of the run over the fastest branch's time: what springs that are not linear lose in it then drowns in the library's
+ * tolerance, and the balance of energies does not close, however fine the steps (measured). */
+static const double most_decades = 1e11;
+
+static dea_status can_see_branches(const dea_route *route, dea_error *error)
+{
+    const dea_dynamics *d = route->dynamics;
+    const double until = route->scene->transient.until;
+    const double fastest = d->branch_count > 0 ? d->branches[d->branch_count - 1].tau : (double)INFINITY;
+    if (d->linear || until <= most_decades * fastest) {
+        return DEA_OK;
+    }
+    return dea_fail(error, DEA_ERROR_ENGINE, "a branch of %.3g s in a run of %.3g s is too fast for the tolerances of ngspice",
+                    fastest, until);
+}
+
 /* Rounding of the library's times and of the fitted mass turns a ring by so much of its angle: measured on undamped rings. */
 static const double drift = 3e-12;
 
 /* Refuses a ring that lives for too many periods. */
 static dea_status can_keep_phase(const dea_route *route, const dea_pace *pace, dea_error *error)
 {
-    const double life = fmin(dea_pieces_ringing(route->pieces), 1.0 / pace->decay);
+    const double life = fmin(dea_pieces_ringing(route->pieces), pace->decay > 0.0 ? 1.0 / pace->decay : (double)INFINITY);
     const double angle = pace->omega > 0.0 ? pace->omega * life : 0.0;
     if (angle * drift <= route->scene->accuracy) {
         return DEA_OK;
@@ -362,6 +378,9 @@ static dea_status run_on(dea_route *route, dea_sample *samples, dea_summary *sum
     route->scale = scale_of(route->dynamics, transient, route->voltage);
     if (status == DEA_OK) {
         status = can_keep_phase(route, &pace, error);
+    }
+    if (status == DEA_OK) {
+        status = can_see_branches(route, error);
     }
     if (status == DEA_OK) {
         status = refine(route, &l, summary, error);

@@ -1,0 +1,57 @@
+/* How far the points of a study, solved one way, are from reference points of the same study and model, solved another way. */
+#ifndef DEASPICE_RESULT_COMPARE_H
+#define DEASPICE_RESULT_COMPARE_H
+
+#include "deaspice/result.h"
+#include "deaspice/scene.h"
+
+enum { DEA_COMPARED_COLUMNS = 5 };
+
+/* How the difference of two numbers counts. */
+typedef enum dea_measure {
+    DEA_OVER_ITSELF, /* relative to the reference's own number */
+    DEA_OVER_PEAK,   /* relative to the largest of its column over the run */
+    DEA_OVER_RADIAN  /* an angle in degrees: absolute, in radian, whole turns taken off */
+} dea_measure;
+
+/* One compared column: where it lies in a row, and how. */
+typedef struct dea_compared {
+    size_t column; /* of the layout */
+    dea_measure measure;
+    const char *head;
+} dea_compared;
+
+/* The reference points of one model, and what the points that come after them differ by. */
+typedef struct dea_comparison {
+    const dea_scene *scene; /* its first model counts; outlives this */
+    dea_layout layout;
+    dea_compared columns[DEA_COMPARED_COLUMNS];
+    size_t column_count;
+    char *reference; /* points as the layout has them; owned */
+    size_t points;
+    bool filling; /* points are the reference itself; the caller ends this */
+    /* magnitude that samples of a transient can miss altogether, where they fall between pulses */
+    double least[DEA_COMPARED_COLUMNS];
+    double scale[DEA_COMPARED_COLUMNS]; /* largest magnitude in the reference */
+    /* since dea_comparison_forget(): */
+    double worst[DEA_COMPARED_COLUMNS]; /* largest difference */
+    size_t states;                      /* rows whose states differ */
+    size_t failed;                      /* rows not solved */
+    double error;                       /* largest error that the engine estimates, NAN: it does not tell */
+    double residual;                    /* largest residual of its energy balance, NAN */
+} dea_comparison;
+
+/* Begins a comparison for the first model of the scene, waiting for its reference. The caller ends it with
+ * dea_comparison_close(). @return DEA_OK, DEA_ERROR_MEMORY */
+dea_status dea_comparison_open(dea_comparison *comparison, const dea_scene *scene, dea_error *error);
+/* Frees the reference; a zeroed comparison is fine. */
+void dea_comparison_close(dea_comparison *comparison);
+/* Forgets all differences, before the points of the next engine. */
+void dea_comparison_forget(dea_comparison *comparison);
+/* Takes points in any order: into the reference, or against it. Rows that one of the two did not solve are not compared.
+ * @return DEA_OK, DEA_ERROR_ENGINE (more points than the study has) */
+dea_status dea_comparison_take(dea_comparison *comparison, size_t first, const void *points, size_t count, dea_error *error);
+/* Largest difference over the compared columns, infinite where states differ. */
+double dea_comparison_worst(const dea_comparison *comparison);
+
+#endif

@@ -57,6 +57,11 @@ dea_status dea_plan_make(const dea_scene *scene, const dea_engine *engine, const
     return DEA_OK;
 }
 
+bool dea_plan_here(const dea_plan *plan)
+{
+    return !plan->engine->isolated && (plan->options->jobs == 1 || plan->blocks == 1);
+}
+
 dea_span dea_plan_span(const dea_plan *plan, size_t block)
 {
     size_t model = block / plan->blocks_per_model;

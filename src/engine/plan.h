@@ -46,6 +46,8 @@ typedef struct dea_damage {
 /** Cuts the study for @p options->jobs workers. */
 dea_status dea_plan_make(const dea_scene *scene, const dea_engine *engine, const dea_run_options *options, dea_plan *plan,
                          dea_error *error);
+/** True where the study runs in this process, not in workers. */
+bool dea_plan_here(const dea_plan *plan);
 /** Block number @p block. */
 dea_span dea_plan_span(const dea_plan *plan, size_t block);
 

@@ -25,8 +25,9 @@ typedef enum dea_takes {
     DEA_TAKES_JOBS = 1 << 5,
     DEA_TAKES_QUIET = 1 << 6,
     DEA_TAKES_TOLERANCE = 1 << 7,
-    DEA_TAKES_FIT = 1 << 8,   /**< --uniaxial, --equibiaxial, --terms, --relaxation, --ramp, --branches, --relative */
-    DEA_TAKES_EXPORT = 1 << 9 /**< --as, --dialect, --analogy */
+    DEA_TAKES_FIT = 1 << 8,    /**< --uniaxial, --equibiaxial, --terms, --relaxation, --ramp, --branches, --relative */
+    DEA_TAKES_EXPORT = 1 << 9, /**< --as, --dialect, --analogy */
+    DEA_TAKES_BENCH = 1 << 10  /**< --runs, --budget */
 } dea_takes;
 
 /** Mode of a data file as the command line gives it. */
@@ -58,6 +59,8 @@ typedef struct dea_arguments {
     const char *as;         /**< NULL: not given */
     const char *dialect;    /**< NULL: not given */
     const char *analogy;    /**< NULL: not given */
+    size_t runs;            /**< 0: not given */
+    double budget;          /**< [s], NAN: not given */
     dea_operand *operands;
     size_t operand_count;
 } dea_arguments;
@@ -74,6 +77,7 @@ typedef struct dea_command {
 
 extern const dea_command dea_command_run;
 extern const dea_command dea_command_check;
+extern const dea_command dea_command_bench;
 extern const dea_command dea_command_export;
 extern const dea_command dea_command_fit;
 extern const dea_command dea_command_materials;

@@ -73,6 +73,7 @@ typedef struct dea_bench_options {
     const dea_engine *engine; /**< the only one to measure; NULL: all */
     size_t jobs;              /**< worker processes, >= 1, default 1 */
     size_t runs;              /**< timed runs of a setting, more where they are short, fewer where the budget ends, default 5 */
+    double enough;            /**< short runs are repeated until they take so long together [s], >= 0, default 0.2 */
     double budget;            /**< time that all may take, roughly [s], > 0, default 60 */
     void (*progress)(void *user, size_t done, size_t total);
     void (*log)(void *user, const char *line); /**< what engines say about points that failed */

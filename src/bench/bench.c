@@ -15,7 +15,7 @@ static const double reference_share = 0.3;
 
 dea_bench_options dea_bench_options_default(void)
 {
-    return (dea_bench_options){.jobs = 1, .runs = 5, .budget = 60.0};
+    return (dea_bench_options){.jobs = 1, .runs = 5, .enough = 0.2, .budget = 60.0};
 }
 
 static bool can_do(const dea_scene *scene, const dea_model *model)

@@ -9,8 +9,6 @@
 
 enum { MOST_RUNS = 1000, MOST_ROUNDS = 25, STARTS = 5 };
 
-static const double enough = 0.2; /* [s] of timed runs that make a median */
-
 /* Who listens to one run. */
 typedef struct audience {
     const dea_bench_work *work;
@@ -109,7 +107,7 @@ void dea_bench_summarise(dea_bench_setting *setting, double *seconds, size_t cou
 /* Runs that a setting would have without a budget. */
 static size_t runs_wished(const dea_bench_work *work, double seconds)
 {
-    const double many = ceil(enough / fmax(seconds, 1e-9));
+    const double many = ceil(work->options->enough / fmax(seconds, 1e-9));
     const size_t least = work->options->runs;
     return many < (double)least ? least : many < MOST_RUNS ? (size_t)many : least < MOST_RUNS ? MOST_RUNS : least;
 }
@@ -158,7 +156,7 @@ static dea_status run_round(dea_bench_work *work, size_t number, size_t round, d
     const dea_scene *scene = &work->truths[setting->model].scene;
     const size_t until = (round + 1) * times->wanted / MOST_ROUNDS;
     dea_status status = DEA_OK;
-    while (times->count < until && status == DEA_OK) {
+    while (times->count < until && status == DEA_OK && dea_bench_left(work) > 0.0) {
         status =
             dea_bench_solve(work, setting->engine, scene, setting->accuracy, false, NULL, &times->seconds[times->count], error);
         times->count += status == DEA_OK;

@@ -29,7 +29,7 @@ JOBS     ?= $(shell nproc 2>/dev/null || echo 1)
 SANITIZE := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 
 .DELETE_ON_ERROR:
-.PHONY: all unit demo check test asan fuzz clang bench netlists examples-agree asan-run install uninstall clean packages packages-check
+.PHONY: all unit demo check test asan fuzz clang bench work-precision netlists examples-agree asan-run install uninstall clean packages packages-check
 
 all: $(BUILD)/deaspice $(BUILD)/libdeaspice.so
 
@@ -86,10 +86,17 @@ $(BUILD)/fuzz/scene_fuzz: tests/fuzz/scene_fuzz.c $(LIBRARY_SOURCES)
 	@echo "CC $@"
 	@clang $(filter-out -MMD -MP,$(ALL_CFLAGS)) -O1 -g -fsanitize=fuzzer,address,undefined -DDEA_AXIS_VALUES_MAX=100000 $^ -o $@ $(LIBS)
 
-# Speed and error side by side, against the goals and against other programs where they are installed. Takes 3 to 4 minutes.
+# Speed and error side by side, against the goals and against other programs where they are installed, then the diagrams of README.
+# Takes 6 to 7 minutes.
 bench:
 	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/bench
 	@$(BUILD)/bench $(BUILD)/deaspice tests/peers
+	@$(MAKE) --no-print-directory work-precision
+
+work-precision:
+	@$(MAKE) --no-print-directory -j$(JOBS) all
+	@$(BUILD)/deaspice bench examples/figure10.yaml --model lumped,coverage,lame,field --plot examples/work-precision-static.svg
+	@$(BUILD)/deaspice bench examples/work-precision.yaml --model lumped,coverage --plot examples/work-precision-transient.svg
 
 $(BUILD)/bench: $(wildcard tests/bench/*.[ch]) $(BUILD)/libdeaspice.a
 	@echo "CC $@"

@@ -1,5 +1,6 @@
-/* Work-precision diagram: error over time, a curve an engine and model, and beside it, in statics, what the models themselves are
- * off by. Colour tells the model (the engine where there is one model), the symbol the engine; a hollow symbol is dominated. */
+/* Work-precision diagram: error over time, a curve for each engine and model, and beside it, in statics, what the models
+ * themselves are off by. Colour tells the model (the engine where there is one model), the symbol the engine; a hollow symbol is
+ * dominated. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -18,7 +19,8 @@ enum {
     SECOND = 660, /* left edge of the panel of models */
     SECOND_WIDTH = 270,
     LABELS = 68,  /* below the panels */
-    BOXES = 4096, /* places that labels must not cover */
+    BOXES = 8192, /* places that labels must not cover */
+    MARKS = 512,
     TEXT = 96
 };
 
@@ -37,13 +39,19 @@ typedef struct taken {
     double left, bottom, right, top;
 } taken;
 
+/* A mark, on the canvas. */
+typedef struct spot {
+    double x, y;
+} spot;
+
 typedef struct sheet {
     const dea_bench *bench;
     panel work, models;
     double floor; /* where references are drawn, as an error */
     bool references, statics;
     taken boxes[BOXES];
-    size_t box_count, label;
+    spot marks[MARKS];
+    size_t box_count, mark_count, label;
     int height;
 } sheet;
 
@@ -161,50 +169,63 @@ static void measure_models(sheet *page)
 
 /* ---- tics */
 
-/* "100 ns" for 1e-7 s. */
-static void time_text(int decade, char text[TEXT])
+/* "100 ns" for 1e-7. */
+static void time_text(double value, char text[TEXT])
 {
     static const char *const units[] = {"ps", "ns", "µs", "ms", "s", "ks"};
-    static const char *const numbers[] = {"1", "10", "100"};
-    const int step = (decade + 12 >= 0 ? decade + 12 : 0);
-    const int unit = step / 3 < 5 ? step / 3 : 5;
-    snprintf(text, TEXT, "%s %s", numbers[step % 3], units[unit]);
+    const int unit = (int)fmin(fmax(floor(log10(value) / 3.0 + 1e-9) + 4.0, 0.0), 5.0);
+    snprintf(text, TEXT, "%g %s", value * pow(10.0, 3.0 * (4 - unit)), units[unit]);
 }
 
-/* "10⁻⁶" for -6. */
-static void power_text(int decade, char text[TEXT])
+/* "10⁻⁶" for 1e-6. */
+static void power_text(double value, char text[TEXT])
 {
     static const char *const digits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+    const int decade = (int)lround(log10(value));
     const int size = decade < 0 ? -decade : decade;
     snprintf(text, TEXT, "10%s%s%s", decade < 0 ? "⁻" : "", size > 9 ? digits[size / 10 % 10] : "", digits[size % 10]);
 }
 
-/* "10 %" for -1; gnuplot reads tics as formats, so that the sign is doubled. */
-static void percent_text(int decade, char text[TEXT])
+/* "10 %" for 0.1; gnuplot reads tics as formats, so that the sign is doubled. */
+static void percent_text(double value, char text[TEXT])
 {
-    snprintf(text, TEXT, "%g %%%%", pow(10.0, decade + 2));
+    snprintf(text, TEXT, "%g %%%%", 100.0 * value);
 }
 
-/* Labels at decades, as many as have room, and a short tic at each decade between. */
-static void write_tics(FILE *script, const char *axis, double low, double high, int most, void (*name)(int, char[TEXT]))
+static void write_tic(FILE *script, const char *before, const char *text, double value)
+{
+    fputs(before, script);
+    dea_gnuplot_text(script, text);
+    fputc(' ', script);
+    dea_gnuplot_number(script, value);
+    fputs(*text ? "" : " 1", script);
+}
+
+/* Labels at decades, as many as have room, and a short tic at each decade between; also at 2 and 5 of each where decades are
+ * few and @p fine. */
+static void write_tics(FILE *script, const char *axis, double low, double high, int most, bool fine,
+                       void (*name)(double, char[TEXT]))
 {
     const int first = (int)ceil(low), last = (int)floor(high);
-    int step = 1;
-    while ((last - first) / step + 1 > most) {
-        step++;
+    const int step = last - first < most ? 1 : (last - first) / most + 1;
+    const char *before = "(";
+    fprintf(script, "set %stics ", axis);
+    for (int decade = first - 1; decade <= last; decade++) {
+        for (int number = 1; number <= 5; number += number == 1 ? 1 : 3) {
+            const double value = number * pow(10.0, decade);
+            char text[TEXT] = "";
+            const bool named = number == 1 ? (last - decade) % step == 0 : fine && high - low < 2.5;
+            if (!(log10(value) >= low && log10(value) <= high) || (number > 1 && !named)) {
+                continue;
+            }
+            if (named) {
+                name(value, text);
+            }
+            write_tic(script, before, text, value);
+            before = ", ";
+        }
     }
-    fprintf(script, "set %stics (", axis);
-    const char *before = "";
-    for (int decade = first; decade <= last; decade++) {
-        char text[TEXT];
-        const bool named = (last - decade) % step == 0;
-        name(decade, text);
-        fputs(before, script);
-        dea_gnuplot_text(script, named ? text : "");
-        fprintf(script, " 1e%d%s", decade, named ? "" : " 1");
-        before = ", ";
-    }
-    fputs(")\n", script);
+    fputs(*before == '(' ? "autofreq\n" : ")\n", script);
 }
 
 static void write_ranges(FILE *script, const panel *part)
@@ -237,6 +258,32 @@ static void take_box(sheet *page, taken box)
     if (page->box_count < BOXES) {
         page->boxes[page->box_count++] = box;
     }
+}
+
+static void take_mark(sheet *page, double x, double y)
+{
+    take_box(page, (taken){x - 5.0, y + 5.0, x + 5.0, y - 5.0});
+    if (page->mark_count < MARKS) {
+        page->marks[page->mark_count++] = (spot){x, y};
+    }
+}
+
+static double distance(taken box, double x, double y)
+{
+    return hypot(fmax(0.0, fmax(box.left - x, x - box.right)), fmax(0.0, fmax(box.top - y, y - box.bottom)));
+}
+
+/* Is the mark at x, y clearly the nearest to a label? */
+static bool is_nearest(const sheet *page, taken box, double x, double y)
+{
+    const double own = distance(box, x, y);
+    for (size_t i = 0; i < page->mark_count; i++) {
+        const spot *mark = &page->marks[i];
+        if (hypot(mark->x - x, mark->y - y) > 0.5 && distance(box, mark->x, mark->y) < own + 3.0) {
+            return false;
+        }
+    }
+    return true;
 }
 
 static bool is_free(const sheet *page, const panel *part, taken box)
@@ -280,7 +327,7 @@ static void label_mark(sheet *page, FILE *script, const panel *part, double x, d
                   {across - 8.0 - 0.5 * width, down + 9.0}};
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
         const taken box = {places[i].x - 0.5 * width, places[i].y + half, places[i].x + 0.5 * width, places[i].y - half};
-        if (is_free(page, part, box)) {
+        if (is_free(page, part, box) && is_nearest(page, box, across, down)) {
             take_box(page, box);
             fprintf(script, "set label %zu ", ++page->label);
             dea_gnuplot_text(script, text);
@@ -297,8 +344,8 @@ static void label_mark(sheet *page, FILE *script, const panel *part, double x, d
 static void accuracy_text(const dea_bench_setting *setting, char text[TEXT])
 {
     char loose[TEXT], tight[TEXT];
-    power_text((int)lround(log10(setting->loosest)), loose);
-    power_text((int)lround(log10(setting->accuracy)), tight);
+    power_text(setting->loosest, loose);
+    power_text(setting->accuracy, tight);
     if (setting->any) {
         snprintf(text, TEXT, "any");
     } else if (setting->loosest > setting->accuracy) {
@@ -343,7 +390,7 @@ static void take_curves(sheet *page)
             continue;
         }
         const double x = place_x(&page->work, time_of(bench, setting)), y = place_y(&page->work, error_of(page, setting));
-        take_box(page, (taken){x - 5.0, y + 5.0, x + 5.0, y - 5.0});
+        take_mark(page, x, y);
         for (int k = 1; k < STEPS && !isnan(before[0]) && !setting->reference; k++) {
             const double share = (double)k / STEPS;
             const double across = before[0] + share * (x - before[0]), down = before[1] + share * (y - before[1]);
@@ -365,7 +412,8 @@ static void label_settings(sheet *page, FILE *script)
             size_t place, count;
             place_in_curve(bench, i, &place, &count);
             const bool end = place == 0 || place + 1 == count;
-            if (is_drawn(setting) && end == (turn == 0)) {
+            const bool told = setting->any && setting->reference; /* a closed form: its place says all */
+            if (is_drawn(setting) && !told && end == (turn == 0)) {
                 char text[TEXT], colour[8];
                 accuracy_text(setting, text);
                 colour_of(bench, setting, colour);
@@ -429,11 +477,11 @@ static const char *time_label(const dea_bench *bench)
 {
     switch (bench->scene->study) {
     case DEA_STUDY_TRANSIENT:
-        return "Wall time a simulated second";
+        return "Wall time per simulated second";
     case DEA_STUDY_AC:
-        return "Wall time a frequency";
+        return "Wall time per frequency";
     default:
-        return "Wall time a point";
+        return "Wall time per point";
     }
 }
 
@@ -452,9 +500,9 @@ static void write_work(sheet *page, FILE *script)
     dea_gnuplot_text(script, error_label(bench));
     fputc('\n', script);
     write_ranges(script, &page->work);
-    write_tics(script, "x", page->work.low[0], page->work.high[0], (int)(page->work.box.width / 62.0), time_text);
+    write_tics(script, "x", page->work.low[0], page->work.high[0], (int)(page->work.box.width / 62.0), false, time_text);
     const double low = page->references ? log10(page->floor) + 0.5 : page->work.low[1];
-    write_tics(script, "y", low, page->work.high[1], 10, power_text);
+    write_tics(script, "y", low, page->work.high[1], 10, false, power_text);
     if (page->references) {
         fputs("set ytics add ('ref.' ", script);
         dea_gnuplot_number(script, page->floor);
@@ -478,17 +526,18 @@ static void write_models(sheet *page, FILE *script)
 {
     const dea_bench *bench = page->bench;
     const panel *part = &page->models;
+    page->mark_count = page->box_count = 0;
     fputs("unset label\nset label 1 '(b)' at graph 0, graph 1.04 left\n", script);
     page->label = 2;
     dea_plot_place(script, WIDTH, page->height, part->box);
     fputs("set xlabel ", script);
-    dea_gnuplot_text(script, "Wall time a point, fastest setting");
+    dea_gnuplot_text(script, "Wall time per point, fastest setting");
     fputs("\nset ylabel ", script);
     dea_gnuplot_text(script, "Error of the model’s strain against field");
     fputc('\n', script);
     write_ranges(script, part);
-    write_tics(script, "x", part->low[0], part->high[0], (int)(part->box.width / 62.0), time_text);
-    write_tics(script, "y", part->low[1], part->high[1], 10, percent_text);
+    write_tics(script, "x", part->low[0], part->high[0], (int)(part->box.width / 62.0), false, time_text);
+    write_tics(script, "y", part->low[1], part->high[1], 10, true, percent_text);
     for (size_t i = 0; i < bench->model_count; i++) {
         const dea_bench_model *model = &bench->models[i];
         const dea_bench_setting *setting = cheapest(bench, i);

@@ -488,7 +488,7 @@ static void the_diagram_names_engines_models_and_accuracies(void **state)
     text[fread(text, 1, sizeof text - 1, picture)] = '\0';
     fclose(picture);
     unlink(path);
-    const char *const words[] = {"direct",          "ngspice", "ida",  "lumped", "coverage", "Wall time a point",
+    const char *const words[] = {"direct",          "ngspice", "ida",  "lumped", "coverage", "Wall time per point",
                                  "Numerical error", "10⁻²",    "ref.", "</svg>"};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         if (!strstr(text, words[i])) {

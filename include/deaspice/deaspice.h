@@ -10,6 +10,7 @@
 #include "deaspice/material.h"
 #include "deaspice/measures.h"
 #include "deaspice/model.h"
+#include "deaspice/needs.h"
 #include "deaspice/output.h"
 #include "deaspice/plot.h"
 #include "deaspice/result.h"

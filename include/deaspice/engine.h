@@ -10,6 +10,16 @@
 extern "C" {
 #endif
 
+/** What a moving network can leave out; one bit each in `omits`. */
+typedef enum dea_part {
+    DEA_PART_MASS,
+    DEA_PART_RING, /**< the mass once its ring has died away behind a corner of the voltage */
+    DEA_PART_BRANCH,
+    DEA_PART_DAMPER,
+    DEA_PART_SERIES,
+    DEA_PART_SOFTENING
+} dea_part;
+
 /** An engine. A session is the engine's mutable state inside one process; the table entry is const. */
 typedef struct dea_engine {
     const char *name;    /**< e.g. "ngspice" */
@@ -18,6 +28,7 @@ typedef struct dea_engine {
     double patience;     /**< a worker that needs longer than this for one point, on average over its block, hangs [s] */
     double run_patience; /**< the same for one transient or frequency response [s] */
     size_t block;        /**< points that one call of sweep() takes best */
+    unsigned omits;      /**< parts of a moving network that cost it time: 1 << dea_part */
     /** NULL where the engine can do this model and scene, else why not (one phrase, static). */
     const char *(*refuses)(const dea_scene *scene, const dea_model *model);
     /** Starts a session; the caller ends it with end(). */
@@ -50,6 +61,7 @@ DEA_API const dea_engine *dea_engine_find(const char *name);
 /** How a study is run and who listens. Every callback may be NULL except points. */
 typedef struct dea_run_options {
     size_t jobs; /**< worker processes, >= 1; 1 keeps an engine that is not isolated in this process */
+    bool full;   /**< transients leave out nothing (see needs.h) */
     /** Takes the results of @p count points in order, each as the scene's dea_layout says; @p first counts over models (slowest)
      * and points. A failure ends the run with its status. */
     dea_status (*points)(void *user, size_t first, const void *points, size_t count, dea_error *error);

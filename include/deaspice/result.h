@@ -67,7 +67,8 @@ typedef struct dea_sample {
 
 /** What a transient tells besides its samples. Energies are those between start and end of the run [J]. */
 typedef struct dea_summary {
-    double error;    /**< estimated error of the displacement, relative to its peak [1] */
+    double error;    /**< estimated error of the displacement, relative to its peak, with what is left out [1] */
+    double omitted;  /**< bound of what is left out, relative to the peak [1], 0: nothing is */
     double work;     /**< put in by the source */
     double electric; /**< stored in the film's capacitance */
     double elastic;  /**< stored in springs, those of the branches too */

@@ -116,6 +116,25 @@ typedef struct dea_ac {
     double bias;              /**< source voltage [V], default drive.voltage */
 } dea_ac;
 
+/** How a branch of the Prony series enters a moving network. */
+typedef enum dea_branch_form {
+    DEA_BRANCH_WHOLE,  /**< spring and damper in series */
+    DEA_BRANCH_OUT,    /**< not at all */
+    DEA_BRANCH_SPRING, /**< a spring alone: too slow to relax */
+    DEA_BRANCH_DAMPER  /**< a damper alone: relaxed but for what its velocity takes */
+} dea_branch_form;
+
+/** What a moving network leaves out; zeroed: nothing. See needs.h. */
+typedef struct dea_reduction {
+    bool mass;      /**< no inertia */
+    bool damper;    /**< no Kelvin-Voigt damper */
+    bool softening; /**< the voltage does not change the stiffness */
+    bool series;    /**< the film sees the source: no series resistance */
+    double ring;    /**< time behind a corner of the voltage from which on the mass counts no more [s], > 0; 0: an engine may set
+                       one itself, +inf: it always counts */
+    dea_branch_form branches[DEA_PRONY_MAX]; /**< of the material's prony, in its order */
+} dea_reduction;
+
 /** A scene. Owns its title, waveform and axes; free with dea_scene_free(). */
 typedef struct dea_scene {
     char *title; /**< may be empty, never NULL */
@@ -124,6 +143,8 @@ typedef struct dea_scene {
     dea_drive drive;
     const struct dea_model *models[DEA_SCENE_MODELS]; /**< models to run one after the other, model_count of them */
     size_t model_count;                               /**< >= 1 */
+    bool automatic;          /**< `model: auto`: the first model is the finest there is until dea_needs_model() has chosen one */
+    dea_reduction reduction; /**< never read from a file: set by dea_needs_find() */
     double accuracy;         /**< wanted relative error of the solution [1], 0 < accuracy < 1, default 1e-6 */
     dea_study_kind study;    /**< sweep, transient or AC */
     dea_transient transient; /**< of a transient */

@@ -1,7 +1,9 @@
 #include "engine/plan.h"
 
+#include "deaspice/needs.h"
 #include "engine/line.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -189,6 +191,28 @@ static void doubt_balance(const dea_scene *scene, const dea_summary *summary, de
             summary->residual);
 }
 
+/* One transient, without what it does not need: the engine gets what accuracy that leaves. */
+static dea_status run_transient(const dea_plan *plan, void *session, dea_scene *here, const dea_model *model, void *result,
+                                dea_error *error)
+{
+    const dea_engine *engine = plan->engine;
+    dea_summary *summary = dea_layout_summary(&plan->layout, result);
+    dea_needs needs = {.count = 0};
+    if (plan->options->full) {
+        here->reduction.ring = (double)INFINITY;
+        return engine->transient(session, here, model, result, summary, error);
+    }
+    dea_status status = dea_needs_find(here, model, engine, &needs, error);
+    if (status == DEA_OK) {
+        here->reduction = dea_needs_reduction(needs.omissions, needs.count);
+        here->accuracy -= needs.bound;
+        status = engine->transient(session, here, model, result, summary, error);
+    }
+    summary->omitted = needs.bound;
+    summary->error += needs.bound;
+    return status;
+}
+
 /* One transient or frequency response. */
 static dea_status run_point(const dea_plan *plan, void *session, const dea_model *model, size_t point, void *result,
                             dea_error *error)
@@ -197,7 +221,7 @@ static dea_status run_point(const dea_plan *plan, void *session, const dea_model
     dea_axes_place(&here, point);
     dea_status status;
     if (here.study == DEA_STUDY_TRANSIENT)
-        status = plan->engine->transient(session, &here, model, result, dea_layout_summary(&plan->layout, result), error);
+        status = run_transient(plan, session, &here, model, result, error);
     else
         status = plan->engine->ac(session, &here, model, result, error);
     if (status == DEA_ERROR_USAGE && plan->total > 1) {

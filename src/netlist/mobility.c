@@ -25,9 +25,9 @@ dea_status dea_mobility_open(const dea_scene *scene, const dea_dynamics *dynamic
         return status;
     }
     dea_pool *pool = &network->pool;
-    mobility->stress = dea_network_stress(network);
+    mobility->stress = dea_dynamics_stress(dynamics, network);
     mobility->area = dea_network_area(network);
-    mobility->push = SUB(dea_network_load(network), MUL(dea_network_softening(network), network->edge));
+    mobility->push = dea_dynamics_push(dynamics, network);
     const dea_expr slope = dea_expr_slope(pool, mobility->stress);
     mobility->resistance = SCALE(dynamics->retardation, MUL(mobility->area, slope));
     if (pool->exhausted) {

@@ -16,36 +16,73 @@ static int by_time(const void *a, const void *b)
     return (x < y) - (x > y);
 }
 
-/* Shares of the long-term stress, c = g/g_inf; branches of the same time are one. False where no long-term
- * stress is left. */
-static bool set_branches(const dea_material *material, dea_dynamics *d)
+/* One branch in the form that the reduction wants, its share of the long-term stress. */
+static void add_branch(dea_dynamics *d, dea_branch_form form, dea_branch branch)
 {
-    double rest = 1.0;
-    for (size_t i = 0; i < material->prony_count; i++) {
-        rest -= material->prony[i].g;
+    switch (form) {
+    case DEA_BRANCH_OUT:
+        break;
+    case DEA_BRANCH_SPRING:
+        d->held += branch.share;
+        break;
+    case DEA_BRANCH_DAMPER:
+        d->retardation += branch.share * branch.tau;
+        break;
+    case DEA_BRANCH_WHOLE:
+        d->branches[d->branch_count++] = branch;
+        break;
     }
-    if (!(rest > 0.0)) {
-        return false;
-    }
-    for (size_t i = 0; i < material->prony_count; i++) {
-        d->branches[i] = (dea_branch){material->prony[i].g / rest, material->prony[i].tau};
+}
+
+/* From shares of the long-term stress to those of S = (1 + held) of it. */
+static void share_out(dea_dynamics *d)
+{
+    const double whole = 1.0 + d->held;
+    d->retardation /= whole;
+    for (size_t i = 0; i < d->branch_count; i++) {
+        d->branches[i].share /= whole;
         d->total_share += d->branches[i].share;
     }
-    qsort(d->branches, material->prony_count, sizeof *d->branches, by_time);
-    for (size_t i = 0; i < material->prony_count; i++) {
+}
+
+/* Those of the same time are one. */
+static void join_branches(dea_dynamics *d)
+{
+    const size_t count = d->branch_count;
+    qsort(d->branches, count, sizeof *d->branches, by_time);
+    d->branch_count = 0;
+    for (size_t i = 0; i < count; i++) {
         if (d->branch_count > 0 && d->branches[d->branch_count - 1].tau == d->branches[i].tau) {
             d->branches[d->branch_count - 1].share += d->branches[i].share;
         } else {
             d->branches[d->branch_count++] = d->branches[i];
         }
     }
-    return true;
 }
 
-static void set_port(const dea_drive *drive, dea_dynamics *d)
+bool dea_dynamics_relax(dea_dynamics *d, const dea_scene *scene)
 {
+    const dea_material *material = &scene->material;
+    double rest = 1.0;
+    d->held = d->total_share = 0.0;
+    d->branch_count = 0;
+    d->retardation = isnan(material->retardation) || scene->reduction.damper ? 0.0 : material->retardation;
+    for (size_t i = 0; i < material->prony_count; i++) {
+        rest -= material->prony[i].g;
+    }
+    for (size_t i = 0; i < material->prony_count && rest > 0.0; i++) {
+        add_branch(d, scene->reduction.branches[i], (dea_branch){material->prony[i].g / rest, material->prony[i].tau});
+    }
+    share_out(d);
+    join_branches(d);
+    return rest > 0.0;
+}
+
+static void set_port(const dea_scene *scene, dea_dynamics *d)
+{
+    const dea_drive *drive = &scene->drive;
     d->port = !isnan(drive->series_resistance) || !isnan(drive->leakage_resistance);
-    d->series = isnan(drive->series_resistance) ? 0.0 : drive->series_resistance;
+    d->series = isnan(drive->series_resistance) || scene->reduction.series ? 0.0 : drive->series_resistance;
     d->conductance = isnan(drive->leakage_resistance) ? 0.0 : 1.0 / drive->leakage_resistance;
 }
 
@@ -78,16 +115,39 @@ static void drop_series(const dea_scene *scene, dea_dynamics *d)
     }
 }
 
+dea_expr dea_dynamics_stress(const dea_dynamics *d, dea_network *network)
+{
+    const dea_expr stress = dea_network_stress(network);
+    return d->held > 0.0 ? dea_expr_scale(&network->pool, 1.0 + d->held, stress) : stress;
+}
+
+dea_expr dea_dynamics_push(const dea_dynamics *d, dea_network *network)
+{
+    dea_pool *pool = &network->pool;
+    const dea_expr load = dea_network_load(network);
+    if (!d->softens) {
+        return load;
+    }
+    return dea_expr_sub(pool, load, dea_expr_mul(pool, dea_network_softening(network), network->edge));
+}
+
+dea_linear dea_dynamics_linear(const dea_dynamics *d)
+{
+    dea_linear linear;
+    d->model->linear(&d->point, &linear);
+    linear.stiffness *= 1.0 + d->held;
+    linear.softening = d->softens ? linear.softening : 0.0;
+    return linear;
+}
+
 /* The functions of u under 1 V, so that the force is phi. */
 static dea_status compile(dea_network *network, dea_dynamics *d, dea_error *error)
 {
-    dea_pool *pool = &network->pool;
-    const dea_expr softening = dea_expr_mul(pool, dea_network_softening(network), network->edge);
     const dea_expr refs[OUTPUTS] = {[AREA] = dea_network_area(network),
-                                    [STRESS] = dea_network_stress(network),
-                                    [PUSH] = dea_expr_sub(pool, dea_network_load(network), softening),
+                                    [STRESS] = dea_dynamics_stress(d, network),
+                                    [PUSH] = dea_dynamics_push(d, network),
                                     [CAPACITANCE] = network->capacitance};
-    const dea_status status = dea_tape_compile(pool, refs, OUTPUTS, &d->tape, error);
+    const dea_status status = dea_tape_compile(&network->pool, refs, OUTPUTS, &d->tape, error);
     return status == DEA_OK ? dea_balance_open(network, &d->balance, error) : status;
 }
 
@@ -122,17 +182,17 @@ dea_status dea_dynamics_open(const dea_scene *scene, const dea_model *model, dea
     if (!model->dynamic) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s has no time domain", model->name);
     }
+    d->softens = !scene->reduction.softening;
+    if (!dea_dynamics_relax(d, scene)) {
+        return dea_fail(error, DEA_ERROR_USAGE, "the shares g of the branches sum to 1 or more");
+    }
     const dea_status status = build(scene, d, error);
     if (status != DEA_OK) {
         return status;
     }
-    set_port(&scene->drive, d);
-    if (!set_branches(&scene->material, d)) {
-        return dea_fail(error, DEA_ERROR_USAGE, "the shares g of the branches sum to 1 or more");
-    }
+    set_port(scene, d);
     d->radius = d->point.coverage * d->point.frame_radius;
-    d->mass = dea_point_mass(scene, &d->point);
-    d->retardation = isnan(scene->material.retardation) ? 0.0 : scene->material.retardation;
+    d->mass = scene->reduction.mass ? 0.0 : dea_point_mass(scene, &d->point);
     drop_series(scene, d);
     if (!isnan(d->focal_length) && !(d->focal_length * (d->refractive_index - 1.0) >= d->radius)) {
         return dea_fail(error, DEA_ERROR_USAGE,

@@ -10,7 +10,7 @@
 #include "network/balance.h"
 
 typedef struct dea_branch {
-    double share; /* c = g/g_inf, of the long-term stress [1] */
+    double share; /* c = g/g_inf, of the stress S [1] */
     double tau;   /* [s] */
 } dea_branch;
 
@@ -19,9 +19,11 @@ typedef struct dea_dynamics {
     const dea_model *model;
     double mass;                        /* [kg], 0: none */
     double retardation;                 /* tau_KV [s], 0: none */
+    double held;                        /* sum of c_i of branches that are springs alone: S is that of film and these [1] */
+    bool softens;                       /* the voltage changes the stiffness */
     dea_branch branches[DEA_PRONY_MAX]; /* slowest first, those of equal time drawn together */
     size_t branch_count;
-    double total_share;                    /* sum of c_i */
+    double total_share;                    /* sum of their c_i */
     bool port;                             /* a resistance is given: current and charge are wanted */
     double series;                         /* R_s [Ohm], 0: the film sees the source, as where R_s changes nothing */
     double conductance;                    /* 1/R_p [S], 0: no leakage */
@@ -44,6 +46,14 @@ typedef struct dea_edge {
  * failure. DEA_ERROR_UNSUPPORTED for a model that is not dynamic, DEA_ERROR_USAGE for numbers out of range, DEA_ERROR_MEMORY. */
 dea_status dea_dynamics_open(const dea_scene *scene, const dea_model *model, dea_dynamics *dynamics, dea_error *error);
 void dea_dynamics_close(dea_dynamics *dynamics);
+
+/* S, and phi under 1 V, of a network that was built under 1 V for these dynamics. */
+dea_expr dea_dynamics_stress(const dea_dynamics *dynamics, dea_network *network);
+dea_expr dea_dynamics_push(const dea_dynamics *dynamics, dea_network *network);
+/* Sets damper and branches from the scene's material and reduction anew; false where no long-term stress is left. */
+bool dea_dynamics_relax(dea_dynamics *dynamics, const dea_scene *scene);
+/* Coefficients of a network whose springs are linear. */
+dea_linear dea_dynamics_linear(const dea_dynamics *dynamics);
 
 dea_edge dea_dynamics_edge(dea_dynamics *dynamics, double u);
 /* Static displacement under film voltage U from the model's own equation; false where there is none. */

@@ -114,6 +114,7 @@ static dea_exit run_scene(const dea_arguments *arguments, const dea_scene *scene
     dea_status status = open_audience(arguments, scene, engine, &audience, &error);
     audience.progress = arguments->quiet ? NULL : dea_progress_begin();
     const dea_run_options options = {.jobs = arguments->jobs ? arguments->jobs : dea_core_count(),
+                                     .full = arguments->full,
                                      .points = take_points,
                                      .progress = take_progress,
                                      .log = take_log,
@@ -169,6 +170,7 @@ const dea_command dea_command_run = {
             "      --model M         model instead of the scene's; several with commas between\n"
             "      --set KEY=VALUE   change a value of the scene, e.g. actuator.prestretch=1.3;\n"
             "                        may be repeated\n"
+            "      --full            a transient leaves out nothing, whatever its accuracy\n"
             "  -j, --jobs N          worker processes, default auto: one per core\n"
             "  -q, --quiet           no summary and no progress\n"
             "  -h, --help            this text\n"
@@ -184,7 +186,7 @@ const dea_command dea_command_run = {
             "  deaspice run dot.yaml -o dot.csv --plot dot.svg\n"
             "  deaspice run dot.yaml --engine direct --model lumped,field --set drive.voltage='3 kV'\n",
     .takes = DEA_TAKES_ENGINE | DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_FORMAT | DEA_TAKES_PLOT | DEA_TAKES_JOBS |
-             DEA_TAKES_QUIET,
+             DEA_TAKES_QUIET | DEA_TAKES_FULL,
     .least = 1,
     .most = 1,
     .run = run,

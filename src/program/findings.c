@@ -5,6 +5,7 @@
 
 #include "deaspice/model.h"
 #include "output/label.h"
+#include "program/omissions.h"
 #include "support/number.h"
 
 static const double resolved = 0.1;    /* periods of an oscillation from one sample to the next that still show it */
@@ -75,18 +76,6 @@ static void print_averages(const dea_findings *findings, size_t number, const de
     }
 }
 
-/* The scene of run number @p number; its lists still belong to @p scene. */
-static dea_scene scene_of_run(const dea_scene *scene, size_t number)
-{
-    dea_scene placed = *scene;
-    size_t rest = number;
-    for (size_t i = scene->axis_count; i-- > 0; rest /= scene->axes[i].count) {
-        const double value = scene->axes[i].values[rest % scene->axes[i].count];
-        memcpy((char *)&placed + scene->axes[i].offset, &value, sizeof value);
-    }
-    return placed;
-}
-
 static void take_transient(dea_findings *findings, size_t number, const void *point)
 {
     const dea_layout *layout = &findings->layout;
@@ -94,7 +83,9 @@ static void take_transient(dea_findings *findings, size_t number, const void *po
     memcpy(&findings->summary, (const char *)point + layout->rows * layout->row_size, sizeof findings->summary);
     findings->error = fmax(findings->error, findings->summary.error);
     findings->residual = fmax(findings->residual, findings->summary.residual);
-    const dea_scene placed = scene_of_run(findings->scene, number);
+    findings->reduced += findings->summary.omitted > 0.0 ? 1 : 0;
+    findings->omitted = fmax(findings->omitted, findings->summary.omitted);
+    const dea_scene placed = dea_scene_of_run(findings->scene, number);
     findings->edge_count = dea_measure_edges(&placed, samples, layout->rows, findings->edges);
     for (size_t i = 0; i < layout->rows; i++) {
         if (samples[i].state == DEA_STATE_PULL_IN) {
@@ -199,7 +190,29 @@ static void print_edges(const dea_findings *findings)
     }
 }
 
-static void print_transients(const dea_findings *findings)
+/* What was left out, found anew for a single run. */
+static void print_omissions(const dea_findings *findings, const dea_engine *engine)
+{
+    char text[DEA_OMISSION_LENGTH];
+    dea_needs needs = {.count = 0};
+    if (findings->reduced == 0) {
+        return;
+    }
+    if (findings->points > 1) {
+        fprintf(stderr, "left out in %zu of %zu runs: at most %s of the largest displacement\n", findings->reduced,
+                findings->points, dea_bound_text(findings->omitted, text));
+        return;
+    }
+    const dea_scene placed = dea_scene_of_run(findings->scene, 0);
+    if (dea_needs_find(&placed, placed.models[0], engine, &needs, NULL) == DEA_OK && needs.count > 0) {
+        for (size_t i = 0; i < needs.count; i++) {
+            fprintf(stderr, "%s%s", i == 0 ? "left out: " : ", ", dea_omission_text(&needs.omissions[i], &placed, text));
+        }
+        fputc('\n', stderr);
+    }
+}
+
+static void print_transients(const dea_findings *findings, const dea_engine *engine)
 {
     const char *worst = findings->points > 1 ? "worst " : "";
     if (!isnan(findings->error)) {
@@ -209,6 +222,7 @@ static void print_transients(const dea_findings *findings)
     if (!isnan(findings->residual)) {
         fprintf(stderr, "%senergy balance off by %.2g\n", worst, findings->residual);
     }
+    print_omissions(findings, engine);
     if (findings->points == 1 && !isnan(findings->summary.resonance)) {
         fputs("first resonance ", stderr);
         print_quantity(findings->summary.resonance, "Hz");
@@ -253,7 +267,7 @@ void dea_findings_print(const dea_findings *findings, const dea_engine *engine, 
     fprintf(stderr, " in %.3g s (%s)", seconds, engine->name);
     print_states(findings);
     if (findings->scene->study == DEA_STUDY_TRANSIENT) {
-        print_transients(findings);
+        print_transients(findings, engine);
     } else if (findings->scene->study == DEA_STUDY_AC) {
         print_responses(findings);
     }

@@ -16,6 +16,8 @@ typedef struct dea_findings {
     size_t points;                  /**< taken so far */
     size_t states[DEA_STATE_COUNT]; /**< rows in each state */
     double error, residual;         /**< the worst of all transients, NAN: none known */
+    size_t reduced;                 /**< transients that leave something out */
+    double omitted;                 /**< largest bound of what they leave out [1] */
     size_t pulled;                  /**< runs that pull in */
     double pull_in;                 /**< earliest time of that [s] */
     double resonance[2];            /**< lowest and highest of all frequency responses [Hz], NAN: none */

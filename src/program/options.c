@@ -103,6 +103,13 @@ static bool set_quiet(dea_arguments *arguments, const char *value)
     return true;
 }
 
+static bool set_full(dea_arguments *arguments, const char *value)
+{
+    (void)value;
+    arguments->full = true;
+    return true;
+}
+
 static bool set_tolerance(dea_arguments *arguments, const char *value)
 {
     char *end;
@@ -224,6 +231,7 @@ static const option_entry entries[] = {
     {"plot", 0, true, DEA_TAKES_PLOT, set_plot},
     {"jobs", 'j', true, DEA_TAKES_JOBS, set_jobs},
     {"quiet", 'q', false, DEA_TAKES_QUIET, set_quiet},
+    {"full", 0, false, DEA_TAKES_FULL, set_full},
     {"tolerance", 0, true, DEA_TAKES_TOLERANCE, set_tolerance},
     {"uniaxial", 0, true, DEA_TAKES_FIT, add_uniaxial},
     {"equibiaxial", 0, true, DEA_TAKES_FIT, add_equibiaxial},

@@ -27,7 +27,8 @@ typedef enum dea_takes {
     DEA_TAKES_TOLERANCE = 1 << 7,
     DEA_TAKES_FIT = 1 << 8,    /**< --uniaxial, --equibiaxial, --terms, --relaxation, --ramp, --branches, --relative */
     DEA_TAKES_EXPORT = 1 << 9, /**< --as, --dialect, --analogy */
-    DEA_TAKES_BENCH = 1 << 10  /**< --runs, --budget */
+    DEA_TAKES_FULL = 1 << 10,  /**< --full */
+    DEA_TAKES_BENCH = 1 << 11  /**< --runs, --budget */
 } dea_takes;
 
 /** Mode of a data file as the command line gives it. */
@@ -50,6 +51,7 @@ typedef struct dea_arguments {
     const char *plot;
     size_t jobs; /**< 0: not given; "auto" is already the number of cores */
     bool quiet;
+    bool full;
     double tolerance; /**< NAN: not given */
     unsigned terms;   /**< 0: not given */
     bool relative;

@@ -416,7 +416,7 @@ static void lay_route(child_route *c)
                            .samples = dea_layout_of(&c->scene).rows,
                            .scale = 1e-3,
                            .omega = pace.omega};
-    if (!ready || dea_pieces_cut(&c->signal, &pace, 1e-6, true, &c->pieces, &error) != DEA_OK ||
+    if (!ready || dea_pieces_cut(&c->signal, &pace, 1e-6, 0.0, true, &c->pieces, &error) != DEA_OK ||
         dea_ngspice_open(&c->route.library, &error) != DEA_OK) {
         _exit(100);
     }

@@ -3,39 +3,24 @@
 #include <string.h>
 
 #include "engine/direct/direct.h"
-#include "engine/direct/piece.h"
+#include "engine/direct/walk.h"
 
 /* Samples that are stepped from one to the next before the state is computed anew from the begin of the segment. */
-enum { STEPS = 64, CACHED = 2 };
+enum { STEPS = 64 };
 
 static const char varies[] = "the voltage softens the film, which has a closed form only while the voltage is constant";
-
-/* Modes under one stiffness, and what the sample interval does to them. */
-typedef struct cached {
-    dea_modes modes;
-    dea_advance every;
-} cached;
 
 typedef struct run {
     const dea_scene *scene;
     dea_dynamics dynamics;
-    dea_linear linear;
     dea_signal signal;
-    dea_chain chain; /* at 0 V */
-    cached cache[CACHED];
-    size_t cached;     /* in use */
-    const cached *now; /* NULL before the first segment */
-    dea_course course; /* at the begin of the segment, the part of a sine included */
-    double force;      /* before that begin [N] */
-    dea_motion motion; /* before that begin */
+    dea_walk walk;
     dea_sample *samples;
     size_t rows, row; /* the next one */
-    bool lost;        /* pull-in */
     dea_audit audit;
-    double peak;         /* of |u| at the samples [m] */
-    double parts;        /* of what a sine does [m] */
-    double cancellation; /* worst of the modes */
-    double turns;        /* of the pair and of the sine, which round [rad] */
+    double peak;  /* of |u| at the samples [m] */
+    double parts; /* of what a sine does [m] */
+    double turns; /* of the pair and of the sine, which round [rad] */
 } run;
 
 const char *dea_direct_refuses_transient(const dea_scene *scene, const dea_model *model)
@@ -46,7 +31,7 @@ const char *dea_direct_refuses_transient(const dea_scene *scene, const dea_model
     if (!model->linear) {
         return "its springs are not linear, so that a transient has no closed form";
     }
-    if (scene->drive.series_resistance > 0.0) {
+    if (scene->drive.series_resistance > 0.0 && !scene->reduction.series) {
         return "the charging of the film through a series resistance is not linear";
     }
     dea_film_prepare(scene, &point.film);
@@ -57,7 +42,7 @@ const char *dea_direct_refuses_transient(const dea_scene *scene, const dea_model
     for (size_t i = 1; wave->kind == DEA_WAVE_POINTS && i < wave->point_count; i++) {
         ramps = ramps || wave->voltages[i] != wave->voltages[i - 1];
     }
-    return ramps && linear.softening != 0.0 ? varies : NULL;
+    return ramps && linear.softening != 0.0 && !scene->reduction.softening ? varies : NULL;
 }
 
 static bool is_constant(const dea_segment *segment, const dea_signal *signal)
@@ -67,26 +52,12 @@ static bool is_constant(const dea_segment *segment, const dea_signal *signal)
 
 static dea_status check_segments(const run *r, dea_error *error)
 {
-    for (size_t i = 0; i < r->signal.count && r->linear.softening != 0.0; i++) {
+    for (size_t i = 0; i < r->signal.count && r->walk.linear.softening != 0.0; i++) {
         if (!is_constant(&r->signal.segments[i], &r->signal)) {
             return dea_fail(error, DEA_ERROR_UNSUPPORTED, "%s", varies);
         }
     }
     return DEA_OK;
-}
-
-static void set_chain(run *r)
-{
-    const dea_dynamics *d = &r->dynamics;
-    r->chain = (dea_chain){.mass = d->mass,
-                           .damping = d->retardation * r->linear.stiffness,
-                           .stiffness = r->linear.stiffness,
-                           .count = d->branch_count};
-    for (size_t i = 0; i < d->branch_count; i++) {
-        r->chain.spring[i] = r->linear.stiffness * d->branches[i].share;
-        r->chain.tau[i] = d->branches[i].tau;
-        r->chain.rate[i] = 1.0 / d->branches[i].tau;
-    }
 }
 
 static dea_status open_run(run *r, const dea_model *model, dea_error *error)
@@ -98,8 +69,11 @@ static dea_status open_run(run *r, const dea_model *model, dea_error *error)
     if (status != DEA_OK) {
         return status;
     }
-    model->linear(&r->dynamics.point, &r->linear);
-    set_chain(r);
+    r->walk = (dea_walk){.signal = &r->signal,
+                         .linear = dea_dynamics_linear(&r->dynamics),
+                         .every = r->scene->transient.every,
+                         .from_bias = r->scene->transient.from_bias};
+    r->walk.chain = dea_walk_chain(&r->dynamics, r->walk.linear.stiffness);
     r->rows = dea_layout_of(r->scene).rows;
     return check_segments(r, error);
 }
@@ -108,31 +82,6 @@ static void close_run(run *r)
 {
     dea_dynamics_close(&r->dynamics);
     dea_signal_close(&r->signal);
-}
-
-/* The modes under this stiffness into the older place of the cache, unless they are there. NULL with DEA_OK: nothing holds the
- * film. */
-static dea_status find_modes(run *r, double stiffness, const cached **found, dea_error *error)
-{
-    for (size_t i = 0; i < r->cached; i++) {
-        if (r->cache[i].modes.chain.stiffness == stiffness) {
-            *found = &r->cache[i];
-            return DEA_OK;
-        }
-    }
-    const size_t place = r->cached < CACHED ? r->cached++ : r->now == &r->cache[0] ? 1 : 0;
-    cached *entry = &r->cache[place];
-    dea_chain chain = r->chain;
-    chain.stiffness = stiffness;
-    const dea_modes_answer answer = dea_modes_find(&chain, &entry->modes);
-    *found = answer == DEA_MODES_FOUND ? entry : NULL;
-    if (answer == DEA_MODES_CLOSE) {
-        return dea_fail(error, DEA_ERROR_UNSUPPORTED,
-                        "three time constants of the film nearly coincide: its modes cannot be told apart");
-    }
-    dea_advance_make(&entry->modes, r->scene->transient.every, &entry->every);
-    r->cancellation = fmax(r->cancellation, entry->modes.cancellation);
-    return DEA_OK;
 }
 
 /* Rows from the next one on: pull-in. */
@@ -145,13 +94,13 @@ static void refuse_rest(run *r)
         const double voltage = dea_segment_voltage(&r->signal, &r->signal.segments[near], time);
         r->samples[r->row] = dea_sample_refused(time, voltage, DEA_STATE_PULL_IN);
     }
-    r->lost = true;
+    r->walk.lost = true;
 }
 
 static void write_row(run *r, const dea_piece *piece, const dea_course *course, double time, double t)
 {
     const double voltage = dea_segment_voltage(&r->signal, piece->segment, time);
-    const dea_motion motion = dea_piece_motion(piece, &r->now->modes, course, t);
+    const dea_motion motion = dea_piece_motion(piece, &r->walk.now->modes, course, t);
     const dea_moment moment = {.time = time,
                                .source = voltage,
                                .voltage = voltage,
@@ -173,7 +122,7 @@ static void write_rows(run *r, const dea_piece *piece, const dea_course *start, 
     dea_course course = *start;
     size_t steps = STEPS;
     double before = 0.0;
-    while (r->row < r->rows && !r->lost) {
+    while (r->row < r->rows && !r->walk.lost) {
         const double time = dea_layout_place(r->scene, r->row);
         const double t = fmax(time - piece->segment->from, 0.0);
         if (time > piece->segment->to && !last) {
@@ -182,12 +131,12 @@ static void write_rows(run *r, const dea_piece *piece, const dea_course *start, 
         if (steps >= STEPS || r->row + 1 == r->rows) {
             dea_advance fresh;
             course = *start;
-            dea_advance_make(&r->now->modes, t, &fresh);
-            dea_advance_take(&r->now->modes, &fresh, &piece->force, &course);
+            dea_advance_make(&r->walk.now->modes, t, &fresh);
+            dea_advance_take(&r->walk.now->modes, &fresh, &piece->force, &course);
             steps = 0;
         } else {
             const dea_forcing force = dea_piece_force(piece, before);
-            dea_advance_take(&r->now->modes, &r->now->every, &force, &course);
+            dea_advance_take(&r->walk.now->modes, &r->walk.now->every, &force, &course);
         }
         write_row(r, piece, &course, time, t);
         before = t;
@@ -195,26 +144,10 @@ static void write_rows(run *r, const dea_piece *piece, const dea_course *start, 
     }
 }
 
-/* Rest, or the equilibrium under the first voltage; false where there is none. */
-static bool begin_motion(run *r, const cached *modes, double force)
-{
-    memset(&r->course, 0, sizeof r->course);
-    if (r->scene->transient.from_bias) {
-        const double stiffness = modes->modes.chain.stiffness;
-        if (!(stiffness > 0.0)) {
-            return false;
-        }
-        r->course = dea_modes_relaxed(&modes->modes, force);
-        r->motion.u = force / stiffness;
-        r->force = force;
-    }
-    return true;
-}
-
 static void see_energies(run *r)
 {
-    const double kinetic = 0.5 * r->chain.mass * r->motion.v * r->motion.v;
-    const double elastic = 0.5 * r->chain.stiffness * r->motion.u * r->motion.u;
+    const double kinetic = 0.5 * r->walk.chain.mass * r->walk.motion.v * r->walk.motion.v;
+    const double elastic = 0.5 * r->walk.chain.stiffness * r->walk.motion.u * r->walk.motion.u;
     r->audit.largest = fmax(r->audit.largest, fmax(kinetic, elastic));
     r->audit.largest = fmax(r->audit.largest, fmax(fabs(r->audit.work), fabs(r->audit.dissipated)));
 }
@@ -224,58 +157,39 @@ static double branch_energy(const run *r)
 {
     double rates[DEA_PRONY_MAX];
     double sum = 0.0;
-    dea_modes_branches(&r->now->modes, &r->course.speed, rates);
-    for (size_t i = 0; i < r->chain.count; i++) {
-        const double stretch = r->chain.tau[i] * rates[i];
-        sum += 0.5 * r->chain.spring[i] * stretch * stretch;
+    dea_modes_branches(&r->walk.now->modes, &r->walk.course.speed, rates);
+    for (size_t i = 0; i < r->walk.chain.count; i++) {
+        const double stretch = r->walk.chain.tau[i] * rates[i];
+        sum += 0.5 * r->walk.chain.spring[i] * stretch * stretch;
     }
     return sum;
-}
-
-/* Takes the course over to the next segment. Its modes differ where the voltage softens the film. */
-static void cross_edge(run *r, const cached *next, double force)
-{
-    if (next == r->now) {
-        dea_modes_jump(&next->modes, force - r->force, &r->course);
-    } else {
-        double z[DEA_PRONY_MAX];
-        dea_modes_branches(&r->now->modes, &r->course.place, z);
-        r->course = dea_modes_split(&next->modes, r->motion.u, r->motion.v, z, force);
-    }
-    r->now = next;
-    r->force = force;
 }
 
 /* Without mass and damper an edge moves the film at once, the branches held: the work is what the springs take. */
 static void audit_jump(run *r, double to, double branches)
 {
     r->audit.branch += branches;
-    r->audit.work += branches + 0.5 * r->chain.stiffness * (to - r->motion.u) * (to + r->motion.u);
+    r->audit.work += branches + 0.5 * r->walk.chain.stiffness * (to - r->walk.motion.u) * (to + r->walk.motion.u);
 }
 
 /* Begins a segment behind the edge in front of it. */
 static dea_status enter(run *r, const dea_segment *segment, dea_error *error)
 {
-    const double square = segment->start * segment->start;
-    const double softened = r->linear.softening == 0.0 ? 0.0 : r->linear.softening * square;
-    const double force = r->linear.force * square;
-    const cached *next;
-    const dea_status status = find_modes(r, r->chain.stiffness + softened, &next, error);
+    const double branches = r->walk.now ? branch_energy(r) : 0.0;
+    const dea_status status = dea_walk_enter(&r->walk, segment, error);
     if (status != DEA_OK) {
         return status;
     }
-    if (!next || (!r->now && !begin_motion(r, next, force))) {
+    if (r->walk.lost) {
         refuse_rest(r);
         return DEA_OK;
     }
-    r->now = r->now ? r->now : next;
-    const double branches = branch_energy(r);
-    cross_edge(r, next, force);
-    if (next->modes.prompt > 0.0) {
-        const dea_forcing now = {force, 0.0, 0.0};
-        const double to = dea_modes_displacement(&next->modes, &r->course, &now);
+    const dea_modes *modes = &r->walk.now->modes;
+    if (modes->prompt > 0.0) {
+        const dea_forcing now = {r->walk.force, 0.0, 0.0};
+        const double to = dea_modes_displacement(modes, &r->walk.course, &now);
         audit_jump(r, to, branch_energy(r) - branches);
-        r->motion.u = to;
+        r->walk.motion.u = to;
     }
     return DEA_OK;
 }
@@ -283,10 +197,10 @@ static dea_status enter(run *r, const dea_segment *segment, dea_error *error)
 /* Adds what a segment takes; @p first and @p branches: motion and energy of the branches at its begin. */
 static void audit_piece(run *r, const dea_piece *piece, const dea_course *start, dea_motion first, double branches)
 {
-    const dea_spent spent = dea_piece_spend(piece, &r->now->modes, start);
+    const dea_spent spent = dea_piece_spend(piece, &r->walk.now->modes, start);
     const double leak = r->dynamics.conductance * spent.square;
-    const double softened = r->now->modes.chain.stiffness - r->chain.stiffness;
-    const double u = r->motion.u;
+    const double softened = r->walk.now->modes.chain.stiffness - r->walk.chain.stiffness;
+    const double u = r->walk.motion.u;
     r->audit.work += spent.push - 0.5 * softened * (u - first.u) * (u + first.u) + leak;
     r->audit.dissipated += spent.damper + leak;
     r->audit.branch += spent.branches + branch_energy(r) - branches;
@@ -295,7 +209,7 @@ static void audit_piece(run *r, const dea_piece *piece, const dea_course *start,
 
 static void count_turns(run *r, const dea_piece *piece)
 {
-    const dea_modes *modes = &r->now->modes;
+    const dea_modes *modes = &r->walk.now->modes;
     const double ring = modes->pair && modes->square < 0.0 ? sqrt(-modes->square) : 0.0;
     const double lasts = fmin(piece->length, 1.0 / fmax(-modes->sigma, 1e-300));
     r->turns = fmax(r->turns, fmax(ring * lasts, piece->omega * piece->segment->to));
@@ -318,27 +232,18 @@ static bool at_resonance(const dea_piece *piece, const dea_modes *modes)
 static dea_status run_segment(run *r, const dea_segment *segment, bool last, dea_error *error)
 {
     const dea_status status = enter(r, segment, error);
-    if (status != DEA_OK || r->lost) {
+    if (status != DEA_OK || r->walk.lost) {
         return status;
     }
-    const dea_modes *modes = &r->now->modes;
-    const dea_piece piece = dea_piece_make(&r->signal, segment, &r->linear, modes);
-    if (at_resonance(&piece, modes)) {
+    const double branches = branch_energy(r);
+    const dea_motion first = r->walk.motion;
+    dea_course start;
+    const dea_piece piece = dea_walk_piece(&r->walk, segment, &start);
+    if (at_resonance(&piece, &r->walk.now->modes)) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the sine drives the film at an undamped resonance");
     }
-    const double branches = branch_energy(r);
-    const dea_motion first = r->motion;
-    dea_course start = r->course;
-    dea_piece_shift(&piece, modes, 0.0, -1.0, &start);
     write_rows(r, &piece, &start, last);
-
-    dea_advance whole;
-    r->course = start;
-    dea_advance_make(modes, piece.length, &whole);
-    dea_advance_take(modes, &whole, &piece.force, &r->course);
-    r->motion = dea_piece_motion(&piece, modes, &r->course, piece.length);
-    dea_piece_shift(&piece, modes, piece.length, 1.0, &r->course);
-    r->force = r->linear.force * segment->end * segment->end;
+    dea_walk_pass(&r->walk, &piece, &start);
     audit_piece(r, &piece, &start, first, branches);
     count_turns(r, &piece);
     return DEA_OK;
@@ -349,13 +254,13 @@ static double error_of(const run *r)
 {
     const double epsilon = 2.3e-16;
     const double parts = r->peak > 0.0 ? r->parts / r->peak : 0.0;
-    return epsilon * (100.0 * r->cancellation + 20.0 * r->turns + 4.0 * parts);
+    return epsilon * (100.0 * r->walk.cancellation + 20.0 * r->turns + 4.0 * parts);
 }
 
 static double resonance_of(run *r)
 {
     dea_modes modes;
-    if (r->chain.mass == 0.0 || dea_modes_find(&r->chain, &modes) == DEA_MODES_UNSTABLE || !modes.pair) {
+    if (r->walk.chain.mass == 0.0 || dea_modes_find(&r->walk.chain, &modes) == DEA_MODES_UNSTABLE || !modes.pair) {
         return NAN;
     }
     return modes.square < 0.0 ? sqrt(-modes.square) / (2.0 * DEA_PI) : NAN;
@@ -364,8 +269,8 @@ static double resonance_of(run *r)
 /* Branch states as the dynamics have them: the stress S = K z that each has relaxed to. */
 static void stresses(const run *r, double *z)
 {
-    for (size_t i = 0; i < r->chain.count; i++) {
-        z[i] *= r->chain.stiffness;
+    for (size_t i = 0; i < r->walk.chain.count; i++) {
+        z[i] *= r->walk.chain.stiffness;
     }
 }
 
@@ -373,13 +278,13 @@ static void close_audit(run *r, const dea_moment *first, dea_summary *summary)
 {
     double first_z[DEA_PRONY_MAX], last_z[DEA_PRONY_MAX];
     const dea_segment *end = &r->signal.segments[r->signal.count - 1];
-    for (size_t i = 0; i < r->chain.count; i++) {
+    for (size_t i = 0; i < r->walk.chain.count; i++) {
         first_z[i] = first->u;
     }
-    dea_modes_branches(&r->now->modes, &r->course.place, last_z);
+    dea_modes_branches(&r->walk.now->modes, &r->walk.course.place, last_z);
     stresses(r, first_z);
     stresses(r, last_z);
-    const dea_moment last = {.voltage = end->end, .u = r->motion.u, .v = r->motion.v};
+    const dea_moment last = {.voltage = end->end, .u = r->walk.motion.u, .v = r->walk.motion.v};
     dea_audit_close(&r->audit, &r->dynamics, first, first_z, &last, last_z, summary);
 }
 
@@ -387,17 +292,18 @@ static dea_status run_segments(run *r, dea_summary *summary, dea_error *error)
 {
     dea_status status = DEA_OK;
     dea_moment first = {0};
-    for (size_t i = 0; i < r->signal.count && status == DEA_OK && !r->lost; i++) {
+    for (size_t i = 0; i < r->signal.count && status == DEA_OK && !r->walk.lost; i++) {
         const dea_segment *segment = &r->signal.segments[i];
         if (i == 0 && r->scene->transient.from_bias) {
             const double square = segment->start * segment->start;
-            first = (dea_moment){.voltage = segment->start,
-                                 .u = r->linear.force * square / (r->chain.stiffness + r->linear.softening * square)};
+            first =
+                (dea_moment){.voltage = segment->start,
+                             .u = r->walk.linear.force * square / (r->walk.chain.stiffness + r->walk.linear.softening * square)};
         }
         status = run_segment(r, segment, i + 1 == r->signal.count, error);
     }
     *summary = dea_summary_failed();
-    if (status == DEA_OK && !r->lost) {
+    if (status == DEA_OK && !r->walk.lost) {
         close_audit(r, &first, summary);
     }
     summary->error = error_of(r);

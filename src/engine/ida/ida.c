@@ -130,6 +130,8 @@ const dea_engine dea_engine_ida = {
     .patience = 0.5,
     .run_patience = 300.0,
     .block = 64,
+    .omits =
+        1u << DEA_PART_MASS | 1u << DEA_PART_BRANCH | 1u << DEA_PART_DAMPER | 1u << DEA_PART_SERIES | 1u << DEA_PART_SOFTENING,
     .refuses = refuses,
     .begin = begin,
     .sweep = sweep,

@@ -224,6 +224,7 @@ const dea_engine dea_engine_ngspice = {
     .patience = 0.004,
     .run_patience = 120.0,
     .block = 5000,
+    .omits = ~0u,
     .refuses = refuses,
     .begin = begin,
     .sweep = sweep,

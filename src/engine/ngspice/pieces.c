@@ -205,12 +205,12 @@ static void cut_segment(cutter *c, size_t index, bool quiet)
     }
 }
 
-dea_status dea_pieces_cut(const dea_signal *signal, const dea_pace *pace, double accuracy, bool quiet, dea_pieces *pieces,
-                          dea_error *error)
+dea_status dea_pieces_cut(const dea_signal *signal, const dea_pace *pace, double accuracy, double life, bool quiet,
+                          dea_pieces *pieces, dea_error *error)
 {
     cutter c = {.signal = signal, .pace = pace, .pieces = pieces};
     *pieces = (dea_pieces){0};
-    c.life = pace->decay > 0.0 ? log(10.0 / accuracy) / pace->decay : (double)INFINITY;
+    c.life = life > 0.0 ? life : pace->decay > 0.0 ? log(10.0 / accuracy) / pace->decay : (double)INFINITY;
     for (size_t i = 0; i < signal->count; i++) {
         const dea_segment *segment = &signal->segments[i];
         cut_segment(&c, i, i == 0 && quiet && !segment->sine && segment->start == segment->end);

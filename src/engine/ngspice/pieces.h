@@ -43,10 +43,10 @@ typedef struct dea_pieces {
 dea_pace dea_pace_of(dea_dynamics *dynamics, double u, double voltage);
 dea_matching dea_matching_of(dea_dynamics *dynamics, double u, double voltage, double step);
 
-/* Cuts the run; @p quiet: the film rests until the voltage changes first. A ring counts as dead once it has decayed by @p
- * accuracy. The caller frees pieces->pieces. DEA_ERROR_MEMORY. */
-dea_status dea_pieces_cut(const dea_signal *signal, const dea_pace *pace, double accuracy, bool quiet, dea_pieces *pieces,
-                          dea_error *error);
+/* Cuts the run; @p quiet: the film rests until the voltage changes first. A ring counts as dead @p life behind a corner of the
+ * voltage [s]; 0: once it has decayed by @p accuracy. The caller frees pieces->pieces. DEA_ERROR_MEMORY. */
+dea_status dea_pieces_cut(const dea_signal *signal, const dea_pace *pace, double accuracy, double life, bool quiet,
+                          dea_pieces *pieces, dea_error *error);
 
 /* Time in which the ring lives [s]. */
 double dea_pieces_ringing(const dea_pieces *pieces);

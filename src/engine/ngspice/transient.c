@@ -311,7 +311,8 @@ static dea_status run_on(dea_route *route, dea_sample *samples, dea_summary *sum
     const bool quiet = transient->from_bias || route->signal->segments[0].start == 0.0;
     dea_pieces pieces;
     levels l = {.error = INFINITY};
-    dea_status status = dea_pieces_cut(route->signal, &pace, route->scene->accuracy, quiet, &pieces, error);
+    dea_status status =
+        dea_pieces_cut(route->signal, &pace, route->scene->accuracy, route->scene->reduction.ring, quiet, &pieces, error);
     route->pieces = &pieces;
     route->omega = pace.omega;
     route->voltage = film_voltage(route->dynamics, transient, route->signal);

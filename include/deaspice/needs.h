@@ -1,0 +1,61 @@
+/** @file needs.h
+ * What a moving scene needs at its accuracy: which elements of the network cannot change its samples by more than that, and the
+ * cheapest model that is good enough.
+ *
+ * Displacement and film voltage count, each relative to its largest value over the samples. Every omission has a bound; the sum
+ * of the bounds stays below a quarter of the accuracy, and the engine gets the rest of it.
+ */
+#ifndef DEASPICE_NEEDS_H
+#define DEASPICE_NEEDS_H
+
+#include "deaspice/engine.h"
+#include "deaspice/scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** One omission. */
+typedef struct dea_omission {
+    dea_part part;
+    size_t branch;        /**< of the material's prony, from 0, where the part is a branch */
+    dea_branch_form form; /**< of that branch */
+    double from;          /**< time behind a corner of the voltage from which on [s], where the part is the ring */
+    double bound;         /**< of what it changes [1] */
+} dea_omission;
+
+enum { DEA_OMISSIONS = DEA_PRONY_MAX + 8 };
+
+/** What is left out of one run. */
+typedef struct dea_needs {
+    dea_omission omissions[DEA_OMISSIONS];
+    size_t count;
+    double bound; /**< sum of theirs [1], below accuracy/4 */
+} dea_needs;
+
+/** Finds what a transient leaves out; nothing for other studies and for parts that cost the engine nothing. All axes of @p scene
+ * are at their place; its reduction is not looked at.
+ * @return DEA_OK, also where nothing can be told and so nothing is left out; DEA_ERROR_MEMORY */
+DEA_API dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const dea_engine *engine, dea_needs *needs,
+                                  dea_error *error);
+/** The reduction that leaves out @p count omissions. */
+DEA_API dea_reduction dea_needs_reduction(const dea_omission *omissions, size_t count);
+
+/** A model chosen for `model: auto`. */
+typedef struct dea_model_choice {
+    const dea_model *model; /**< NULL: none is good enough that the engine can do */
+    const dea_model *truth; /**< what it is held against */
+    double bound;           /**< of its model error [1], 0 for the truth itself */
+    const dea_model *next;  /**< where model is NULL: the best that the engine can do, NULL: there is none; bound is its */
+} dea_model_choice;
+
+/** Chooses the cheapest model whose error is below half the scene's accuracy at every point of the study, from probes over its
+ * axes. The truth is `field` in statics and `coverage`, whose small-strain limit `lumped` is, in time and frequency. The error
+ * is that of the strain relative to itself, of the displacement relative to its peak in time, of the response relative to itself.
+ * @param engine NULL: of all models, whoever can do them */
+DEA_API dea_status dea_needs_model(const dea_scene *scene, const dea_engine *engine, dea_model_choice *choice, dea_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,319 @@
+/* What a transient leaves out. An element goes where the stand-in says that the samples hardly change without it; the elements
+ * are tried one after the other, each on what those before it have left, so that the sum of the changes bounds the whole. */
+#include "deaspice/needs.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "needs/surrogate.h"
+
+static const double budget = 0.25;     /* of the accuracy: all omissions */
+static const double one_share = 0.5;   /* most that one omission takes of what is left of it */
+static const double safe_linear = 1.5; /* bound over what the stand-in says, where it is the film itself */
+static const double safe_nonlinear = 4.0;
+static const double missed = 0.01; /* share of the static displacement that counts as peak where the samples see less */
+
+enum { MANY_BRANCHES = 8 };
+
+typedef struct planner {
+    dea_surrogate surrogate;
+    dea_surrogate_answer now, next; /* owned: with what is left out so far, and with one more */
+    dea_reduction reduction;
+    const dea_engine *engine;
+    dea_needs *needs;
+    double left; /* of the budget [1] */
+    double safety;
+    double peaks[DEA_SURROGATE_POINTS];
+} planner;
+
+static bool pays(const planner *p, dea_part part)
+{
+    return (p->engine->omits & 1u << part) != 0;
+}
+
+static void omit(planner *p, dea_omission omission)
+{
+    p->needs->omissions[p->needs->count++] = omission;
+    p->needs->bound += omission.bound;
+    p->left -= omission.bound;
+    p->reduction = dea_needs_reduction(p->needs->omissions, p->needs->count);
+}
+
+/* Change of the displacement at a probe over its peak, the larger of the operating points. */
+static double change_at(const planner *p, size_t probe)
+{
+    double change = 0.0;
+    for (int i = 0; i < p->surrogate.point_count; i++) {
+        const size_t k = (size_t)i * p->surrogate.count + probe;
+        const double here = fabs(p->next.u[k] - p->now.u[k]) / p->peaks[i];
+        change = here <= change ? change : isnan(here) ? (double)INFINITY : here;
+    }
+    return p->safety * change;
+}
+
+static double change_of(const planner *p)
+{
+    double change = 0.0;
+    for (size_t i = 0; i < p->surrogate.count; i++) {
+        change = fmax(change, change_at(p, i));
+    }
+    return change;
+}
+
+/* Solves with one omission more, into `next`; false where that has no answer. */
+static bool solve_with(planner *p, const dea_omission *omission)
+{
+    dea_omission all[DEA_OMISSIONS];
+    memcpy(all, p->needs->omissions, p->needs->count * sizeof *all);
+    all[p->needs->count] = *omission;
+    const dea_reduction reduction = dea_needs_reduction(all, p->needs->count + 1);
+    return dea_surrogate_solve(&p->surrogate, &reduction, p->next);
+}
+
+/* Leaves something out if it fits into the budget. */
+static bool try(planner *p, dea_omission omission)
+{
+    if (!pays(p, omission.part) || !solve_with(p, &omission)) {
+        return false;
+    }
+    omission.bound = change_of(p);
+    if (!(omission.bound <= one_share * p->left)) {
+        return false;
+    }
+    const dea_surrogate_answer before = p->now;
+    p->now = p->next;
+    p->next = before;
+    omit(p, omission);
+    return true;
+}
+
+/* Amplitude of the ring at a probe, over the peak of the displacement: whatever its phase there. */
+static double ring_at(const planner *p, double omega, size_t probe)
+{
+    double ring = 0.0;
+    for (int i = 0; i < p->surrogate.point_count; i++) {
+        const size_t k = (size_t)i * p->surrogate.count + probe;
+        const double here = hypot(p->next.u[k] - p->now.u[k], (p->next.v[k] - p->now.v[k]) / omega) / p->peaks[i];
+        ring = here <= ring ? ring : isnan(here) ? (double)INFINITY : here;
+    }
+    return p->safety * ring;
+}
+
+/* The mass from that time behind a corner on from which no sample sees its ring any more. */
+static void try_ring(planner *p)
+{
+    const dea_surrogate *s = &p->surrogate;
+    const dea_omission mass = {.part = DEA_PART_MASS};
+    const double omega = sqrt(s->points[0].passive * (1.0 + s->dynamics.total_share) / s->dynamics.mass);
+    const double wanted = one_share * p->left;
+    dea_omission ring = {.part = DEA_PART_RING};
+    double last = (double)INFINITY; /* amplitude at the last probe that sees it */
+    double next = (double)INFINITY; /* the first age of those that do not */
+    if (!pays(p, DEA_PART_RING) || !solve_with(p, &mass)) {
+        return;
+    }
+    for (size_t i = 0; i < s->count; i++) {
+        const double here = ring_at(p, omega, i);
+        if (!(here <= wanted) && s->ages[i] >= ring.from) {
+            last = s->ages[i] > ring.from ? here : fmax(last, here);
+            ring.from = s->ages[i];
+        }
+    }
+    for (size_t i = 0; i < s->count; i++) {
+        if (s->ages[i] > ring.from) {
+            next = fmin(next, s->ages[i]);
+            ring.bound = fmax(ring.bound, ring_at(p, omega, i));
+        }
+    }
+    if (!isfinite(next)) {
+        return;
+    }
+    /* between the two it falls exponentially */
+    const double fallen = log(last / wanted) / log(last / fmin(ring.bound, wanted));
+    ring.from += (next - ring.from) * (isfinite(last) ? fallen : 1.0);
+    ring.bound = wanted;
+    omit(p, ring);
+}
+
+/* Could a branch be out, or stand for something simpler? Spares a film of many branches the trial. */
+static bool may_go(const planner *p, const dea_prony *prony)
+{
+    const dea_transient *transient = &p->surrogate.scene->transient;
+    return p->surrogate.scene->material.prony_count <= MANY_BRANCHES || prony->tau > 10.0 * transient->until ||
+           prony->tau < transient->every || prony->g < p->left;
+}
+
+static void try_branch(planner *p, size_t branch)
+{
+    const dea_scene *scene = p->surrogate.scene;
+    const dea_prony *prony = &scene->material.prony[branch];
+    const bool slow = prony->tau > scene->transient.until;
+    dea_omission omission = {.part = DEA_PART_BRANCH, .branch = branch, .form = DEA_BRANCH_OUT};
+    if (!may_go(p, prony) || try(p, omission)) {
+        return;
+    }
+    /* one that is held counts from rest, where its spring is not strained */
+    omission.form = slow ? DEA_BRANCH_SPRING : DEA_BRANCH_DAMPER;
+    if (!slow || !scene->transient.from_bias) {
+        (void)try(p, omission);
+    }
+}
+
+static void try_branches(planner *p)
+{
+    const dea_material *material = &p->surrogate.scene->material;
+    bool tried[DEA_PRONY_MAX] = {false};
+    for (size_t n = 0; n < material->prony_count; n++) {
+        size_t fastest = DEA_PRONY_MAX;
+        for (size_t i = 0; i < material->prony_count; i++) {
+            const bool faster = fastest == DEA_PRONY_MAX || material->prony[i].tau < material->prony[fastest].tau;
+            fastest = !tried[i] && faster ? i : fastest;
+        }
+        tried[fastest] = true;
+        try_branch(p, fastest);
+    }
+}
+
+/* Behind R_s the film's voltage lags by R_s C, and the mean of its square by 3/2 of that; a jump reaches it as exp(-t/(R_s C)).
+ */
+static double lag_at(const planner *p, double lag, size_t segment, size_t probe)
+{
+    const dea_surrogate *s = &p->surrogate;
+    const dea_segment *here = &s->signal.segments[segment];
+    const double time = dea_layout_place(s->scene, s->probes[probe]);
+    const double before = segment > 0 ? s->signal.segments[segment - 1].end : s->scene->transient.from_bias ? here->start : 0.0;
+    const double jump = fabs(here->start - before) * exp(-s->ages[probe] / lag);
+    double change = (2.0 * lag * fabs(dea_segment_slope(&s->signal, here, time)) + 2.0 * jump) / s->signal.largest;
+    for (int i = 0; i < s->point_count; i++) {
+        change = fmax(change, 1.5 * lag * fabs(p->now.v[(size_t)i * s->count + probe]) / p->peaks[i]);
+    }
+    /* a corner of the slope is still on its way too */
+    const double rise = segment > 0 ? fabs(s->signal.segments[segment - 1].end - s->signal.segments[segment - 1].start) : 0.0;
+    return change + 2.0 * rise / s->signal.largest * exp(-s->ages[probe] / lag);
+}
+
+static void try_series(planner *p)
+{
+    const dea_surrogate *s = &p->surrogate;
+    const dea_drive *drive = &s->scene->drive;
+    dea_omission omission = {.part = DEA_PART_SERIES};
+    const double lag = s->dynamics.series * s->capacitance;
+    size_t segment = 0;
+    for (size_t i = 0; i < s->count; i++) {
+        segment = dea_signal_find(&s->signal, segment, dea_layout_place(s->scene, s->probes[i]));
+        omission.bound = fmax(omission.bound, 2.0 * lag_at(p, lag, segment, i));
+    }
+    omission.bound += isnan(drive->leakage_resistance) ? 0.0 : 2.0 * drive->series_resistance / drive->leakage_resistance;
+    if (pays(p, DEA_PART_SERIES) && omission.bound <= one_share * p->left) {
+        omit(p, omission);
+    }
+}
+
+/* Peaks of the displacement over the probes. */
+static void set_peaks(planner *p)
+{
+    const dea_surrogate *s = &p->surrogate;
+    for (int i = 0; i < s->point_count; i++) {
+        const dea_surrogate_point *point = &s->points[i];
+        p->peaks[i] = missed * fabs(point->push) * s->signal.largest * s->signal.largest / point->passive;
+        for (size_t k = 0; k < s->count; k++) {
+            p->peaks[i] = fmax(p->peaks[i], fabs(p->now.u[(size_t)i * s->count + k]));
+        }
+    }
+}
+
+static void try_all(planner *p)
+{
+    const dea_surrogate *s = &p->surrogate;
+    const double softening = s->points[0].push_slope;
+    if (s->dynamics.linear && softening != 0.0) {
+        (void)try(p, (dea_omission){.part = DEA_PART_SOFTENING});
+    }
+    const bool heavy = s->dynamics.mass > 0.0;
+    const bool weightless = heavy && try(p, (dea_omission){.part = DEA_PART_MASS});
+    try_branches(p);
+    if (!isnan(s->scene->material.retardation)) {
+        (void)try(p, (dea_omission){.part = DEA_PART_DAMPER});
+    }
+    if (s->dynamics.series > 0.0) {
+        try_series(p);
+    }
+    if (heavy && !weightless) {
+        try_ring(p);
+    }
+}
+
+static dea_status make_room(planner *p, dea_error *error)
+{
+    const size_t count = (size_t)p->surrogate.point_count * p->surrogate.count;
+    double *room = malloc(4 * count * sizeof *room);
+    if (!room) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a run is planned");
+    }
+    p->now = (dea_surrogate_answer){room, room + count};
+    p->next = (dea_surrogate_answer){room + 2 * count, room + 3 * count};
+    return DEA_OK;
+}
+
+static dea_status plan(planner *p, dea_error *error)
+{
+    const dea_status status = make_room(p, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    double *room = p->now.u;
+    if (dea_surrogate_solve(&p->surrogate, &p->reduction, p->now)) {
+        set_peaks(p);
+        try_all(p);
+    }
+    free(room);
+    return DEA_OK;
+}
+
+dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const dea_engine *engine, dea_needs *needs,
+                          dea_error *error)
+{
+    planner p = {.engine = engine, .needs = needs, .left = budget * scene->accuracy};
+    bool usable;
+    *needs = (dea_needs){.count = 0};
+    if (scene->study != DEA_STUDY_TRANSIENT || engine->omits == 0) {
+        return DEA_OK;
+    }
+    dea_status status = dea_surrogate_open(scene, model, &p.surrogate, &usable, error);
+    if (status == DEA_OK && usable && p.surrogate.signal.largest > 0.0) {
+        p.safety = p.surrogate.dynamics.linear ? safe_linear : safe_nonlinear;
+        status = plan(&p, error);
+    }
+    dea_surrogate_close(&p.surrogate);
+    return status == DEA_ERROR_MEMORY ? status : DEA_OK;
+}
+
+dea_reduction dea_needs_reduction(const dea_omission *omissions, size_t count)
+{
+    dea_reduction reduction = {0};
+    for (size_t i = 0; i < count; i++) {
+        const dea_omission *omission = &omissions[i];
+        switch (omission->part) {
+        case DEA_PART_MASS:
+            reduction.mass = true;
+            break;
+        case DEA_PART_RING:
+            reduction.ring = omission->from;
+            break;
+        case DEA_PART_BRANCH:
+            reduction.branches[omission->branch] = omission->form;
+            break;
+        case DEA_PART_DAMPER:
+            reduction.damper = true;
+            break;
+        case DEA_PART_SERIES:
+            reduction.series = true;
+            break;
+        case DEA_PART_SOFTENING:
+            reduction.softening = true;
+            break;
+        }
+    }
+    return reduction;
+}

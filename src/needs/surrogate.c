@@ -1,0 +1,167 @@
+#include "needs/surrogate.h"
+
+#include <stdlib.h>
+
+enum { ALL_BEHIND_A_CORNER = 32 };
+
+static const double thinning = 0.06; /* from one probe to the next, later behind a corner: share of the samples since it */
+
+static bool add_probe(dea_surrogate *s, size_t index, double age)
+{
+    if (s->count == s->room) {
+        const size_t room = s->room ? 2 * s->room : 256;
+        size_t *probes = realloc(s->probes, room * sizeof *probes);
+        s->probes = probes ? probes : s->probes;
+        double *ages = realloc(s->ages, room * sizeof *ages);
+        s->ages = ages ? ages : s->ages;
+        if (!probes || !ages) {
+            return false;
+        }
+        s->room = room;
+    }
+    s->probes[s->count] = index;
+    s->ages[s->count++] = age;
+    return true;
+}
+
+/* The last sample at or before a time. */
+static size_t sample_at(const dea_scene *scene, size_t rows, double time)
+{
+    size_t index = (size_t)fmin(time / scene->transient.every, (double)(rows - 1));
+    while (index > 0 && dea_layout_place(scene, index) > time) {
+        index--;
+    }
+    while (index + 1 < rows && dea_layout_place(scene, index + 1) <= time) {
+        index++;
+    }
+    return index;
+}
+
+/* The first samples behind every corner, then fewer and fewer, and the last before the next one. */
+static bool place_probes(dea_surrogate *s)
+{
+    const size_t rows = dea_layout_of(s->scene).rows;
+    size_t first = 1; /* the first sample is the start */
+    for (size_t i = 0; i < s->signal.count; i++) {
+        const dea_segment *segment = &s->signal.segments[i];
+        const size_t last = sample_at(s->scene, rows, segment->to);
+        size_t next = first;
+        while (next <= last) {
+            if (!add_probe(s, next, dea_layout_place(s->scene, next) - segment->from)) {
+                return false;
+            }
+            const size_t behind = next + 1 - first;
+            const size_t step = behind < ALL_BEHIND_A_CORNER ? 1 : (size_t)(thinning * (double)behind);
+            next = next < last && next + step > last ? last : next + step;
+        }
+        first = last + 1;
+    }
+    return true;
+}
+
+static void add_point(dea_surrogate *s, double u, double voltage)
+{
+    const dea_edge e = dea_dynamics_edge(&s->dynamics, u);
+    s->points[s->point_count++] = (dea_surrogate_point){.passive = e.area * e.stress_slope + e.area_slope * e.stress,
+                                                        .viscous = e.area * e.stress_slope,
+                                                        .push = e.push,
+                                                        .push_slope = e.push_slope,
+                                                        .square = s->dynamics.linear ? 0.0 : voltage * voltage};
+    s->capacitance = fmax(s->capacitance, e.capacitance);
+}
+
+/* False where the film would pull in, or already is unstable at rest. */
+static bool place_points(dea_surrogate *s)
+{
+    double u;
+    const double largest = s->signal.largest;
+    if (!dea_dynamics_equilibrium(&s->dynamics, largest, &u)) {
+        return false;
+    }
+    add_point(s, 0.0, 0.0);
+    if (!s->dynamics.linear && largest > 0.0) {
+        add_point(s, u, largest);
+    }
+    return dea_dynamics_stiffness(&s->dynamics, 0.0, 0.0, true) > 0.0 &&
+           dea_dynamics_stiffness(&s->dynamics, u, largest, true) > 0.0;
+}
+
+dea_status dea_surrogate_open(const dea_scene *scene, const dea_model *model, dea_surrogate *s, bool *usable, dea_error *error)
+{
+    dea_scene full = *scene; /* borrows what the scene owns */
+    full.reduction = (dea_reduction){0};
+    *s = (dea_surrogate){.scene = scene};
+    *usable = false;
+    dea_status status = dea_dynamics_open(&full, model, &s->dynamics, error);
+    if (status == DEA_OK) {
+        status = dea_signal_open(scene, &s->signal, error);
+    }
+    if (status != DEA_OK) {
+        return status;
+    }
+    s->walk = malloc(sizeof *s->walk);
+    if (!s->walk || !place_probes(s)) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a run is planned");
+    }
+    *usable = s->count > 0 && place_points(s);
+    return DEA_OK;
+}
+
+void dea_surrogate_close(dea_surrogate *s)
+{
+    dea_dynamics_close(&s->dynamics);
+    dea_signal_close(&s->signal);
+    free(s->walk);
+    free(s->probes);
+    free(s->ages);
+}
+
+static void set_walk(dea_surrogate *s, const dea_reduction *reduction, const dea_surrogate_point *point)
+{
+    dea_scene reduced = *s->scene;
+    dea_dynamics d = s->dynamics; /* borrows its tapes */
+    reduced.reduction = *reduction;
+    (void)dea_dynamics_relax(&d, &reduced);
+    d.mass = reduction->mass ? 0.0 : d.mass;
+    const double whole = 1.0 + d.held;
+    const double slope = reduction->softening ? 0.0 : point->push_slope;
+    *s->walk = (dea_walk){.signal = &s->signal,
+                          .every = s->scene->transient.every,
+                          .from_bias = s->scene->transient.from_bias,
+                          .chain = dea_walk_chain(&d, whole * point->viscous)};
+    s->walk->chain.stiffness = whole * point->passive - slope * point->square;
+    s->walk->linear.softening = point->square > 0.0 || !s->dynamics.linear ? 0.0 : -slope;
+    s->walk->linear.force = point->push;
+}
+
+static bool walk_probes(dea_surrogate *s, double *u, double *v)
+{
+    dea_walk *walk = s->walk;
+    size_t probe = 0;
+    for (size_t i = 0; i < s->signal.count; i++) {
+        const dea_segment *segment = &s->signal.segments[i];
+        if (dea_walk_enter(walk, segment, NULL) != DEA_OK || walk->lost) {
+            return false;
+        }
+        dea_course start;
+        const dea_piece piece = dea_walk_piece(walk, segment, &start);
+        for (; probe < s->count && dea_layout_place(s->scene, s->probes[probe]) <= segment->to; probe++) {
+            const dea_motion motion = dea_walk_motion(walk, &piece, &start, s->ages[probe]);
+            u[probe] = motion.u;
+            v[probe] = motion.v;
+        }
+        dea_walk_pass(walk, &piece, &start);
+    }
+    return probe == s->count;
+}
+
+bool dea_surrogate_solve(dea_surrogate *s, const dea_reduction *reduction, dea_surrogate_answer answer)
+{
+    for (int i = 0; i < s->point_count; i++) {
+        set_walk(s, reduction, &s->points[i]);
+        if (!walk_probes(s, answer.u + (size_t)i * s->count, answer.v + (size_t)i * s->count)) {
+            return false;
+        }
+    }
+    return true;
+}

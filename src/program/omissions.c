@@ -1,0 +1,61 @@
+#include "program/omissions.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "output/label.h"
+#include "support/number.h"
+
+const char *dea_bound_text(double bound, char text[32])
+{
+    const double power = bound > 0.0 ? pow(10.0, floor(log10(bound))) : 1.0;
+    snprintf(text, 32, "%.0e", ceil(bound / power * (1.0 - 1e-12)) * power);
+    return text;
+}
+
+/* "1.23 ms" */
+static const char *quantity(double value, const char *unit, char text[64])
+{
+    char number[DEA_NUMBER_LENGTH];
+    const dea_scale scale = dea_scale_choose(fabs(value), unit);
+    snprintf(text, 64, "%s %s", dea_number_text(number, value * scale.factor, 3), scale.unit);
+    return text;
+}
+
+const char *dea_omission_text(const dea_omission *omission, const dea_scene *scene, char text[DEA_OMISSION_LENGTH])
+{
+    static const char *const names[] = {[DEA_PART_MASS] = "mass",
+                                        [DEA_PART_RING] = "mass",
+                                        [DEA_PART_BRANCH] = "branch",
+                                        [DEA_PART_DAMPER] = "damper",
+                                        [DEA_PART_SERIES] = "series resistance",
+                                        [DEA_PART_SOFTENING] = "softening"};
+    static const char *const forms[] = {[DEA_BRANCH_WHOLE] = "",
+                                        [DEA_BRANCH_OUT] = "",
+                                        [DEA_BRANCH_SPRING] = ", kept as a spring",
+                                        [DEA_BRANCH_DAMPER] = ", kept as a damper"};
+    char time[64], bound[32];
+    dea_bound_text(omission->bound, bound);
+    if (omission->part == DEA_PART_BRANCH) {
+        snprintf(text, DEA_OMISSION_LENGTH, "branch %zu (tau %s%s, <= %s)", omission->branch + 1,
+                 quantity(scene->material.prony[omission->branch].tau, "s", time), forms[omission->form], bound);
+    } else if (omission->part == DEA_PART_RING) {
+        snprintf(text, DEA_OMISSION_LENGTH, "mass from %.40s behind each corner of the voltage on (<= %s)",
+                 quantity(omission->from, "s", time), bound);
+    } else {
+        snprintf(text, DEA_OMISSION_LENGTH, "%s (<= %s)", names[omission->part], bound);
+    }
+    return text;
+}
+
+dea_scene dea_scene_of_run(const dea_scene *scene, size_t number)
+{
+    dea_scene placed = *scene;
+    size_t rest = number;
+    for (size_t i = scene->axis_count; i-- > 0; rest /= scene->axes[i].count) {
+        const double value = scene->axes[i].values[rest % scene->axes[i].count];
+        memcpy((char *)&placed + scene->axes[i].offset, &value, sizeof value);
+    }
+    return placed;
+}

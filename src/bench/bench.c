@@ -141,7 +141,7 @@ static dea_status refer_all(dea_bench_work *work, dea_error *error)
 {
     const size_t models = work->bench->model_count;
     const bool sweep = work->bench->scene->study == DEA_STUDY_SWEEP;
-    const double allowance = reference_share * work->options->budget / (double)(models + 1);
+    const double allowance = reference_share * work->options->budget / (double)(models + sweep);
     dea_status status = DEA_OK;
     for (size_t i = 0; i < models + sweep && status == DEA_OK; i++) {
         status = dea_bench_refer(work, i, allowance, error);

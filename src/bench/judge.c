@@ -5,9 +5,11 @@
 
 #include "bench/work.h"
 
-/* Steps of the climb to a reference, what a step costs at least over the one before, and at most. */
+/* Rungs of a long step of the climb to a reference. */
 enum { CLIMB = 3 };
-static const double climb_guess = 4.0, climb_least = 2.0, climb_most = 30.0;
+
+/* What a rung costs over the one below it, as long as only one is known, and bounds of what is seen. */
+static const double growth_guess = 1.6, growth_least = 1.25, growth_most = 3.0;
 
 uint64_t dea_bench_digest(const dea_layout *layout, const char *points, size_t count)
 {
@@ -64,41 +66,84 @@ static void note_reference(dea_bench_work *work, size_t number, const dea_engine
     }
 }
 
+/* The climb to a reference: ever tighter runs of one engine, as long as time allows. */
+typedef struct ascent {
+    const dea_engine *engine;
+    size_t rungs, rung;     /* rungs that the engine takes; those that are climbed, 0: none yet */
+    size_t steps, alike;    /* runs, and those that gave the numbers of the one before */
+    size_t failed;          /* rows that the reference so far does not solve */
+    double seconds, growth; /* of the last run; what a rung costs over the one below it */
+    double allowance;       /* time that is left [s] */
+} ascent;
+
+/* Rung of the next run: a long step up, a short one where time allows no more, 0: none. Long steps end at the top. */
+static size_t next_rung(const ascent *up)
+{
+    if (up->rung == 0) {
+        return up->rungs % CLIMB > 0 ? up->rungs % CLIMB : up->rungs < CLIMB ? up->rungs : CLIMB;
+    }
+    for (size_t step = CLIMB; step > 0; step = step == CLIMB ? 1 : 0) {
+        if (up->rung + step <= up->rungs && up->seconds * pow(up->growth, (double)step) <= up->allowance) {
+            return up->rung + step;
+        }
+    }
+    return 0;
+}
+
+static size_t count_failed(const dea_bench_work *work)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < work->points * work->layout.rows; i++) {
+        const char *point = work->buffer + i / work->layout.rows * work->layout.point_size;
+        const char *row = point + i % work->layout.rows * work->layout.row_size;
+        failed += dea_layout_state(&work->layout, row) == DEA_STATE_FAILED;
+    }
+    return failed;
+}
+
+/* One run; ends the climb where it solves fewer rows than the reference that there is. */
+static dea_status climb(dea_bench_work *work, dea_bench_truth *truth, ascent *up, size_t rung, dea_error *error)
+{
+    double seconds;
+    dea_status status =
+        dea_bench_solve(work, up->engine, &truth->scene, dea_bench_accuracy(rung - 1), true, work->buffer, &seconds, error);
+    if (status == DEA_ERROR_INTERRUPTED || status == DEA_ERROR_MEMORY) {
+        return status;
+    }
+    const size_t failed = status == DEA_OK ? count_failed(work) : SIZE_MAX;
+    if (failed >= work->points * work->layout.rows || (up->steps > 0 && failed > up->failed)) {
+        *error = (dea_error){0}; /* the ladder will tell why */
+        up->rungs = 0;
+        return DEA_OK;
+    }
+    const uint64_t digest = dea_bench_digest(&work->layout, work->buffer, work->points);
+    up->alike += up->steps > 0 && digest == truth->digest;
+    if (up->steps > 0) {
+        const double growth = pow(seconds / up->seconds, 1.0 / (double)(rung - up->rung));
+        up->growth = fmin(fmax(growth, growth_least), growth_most);
+    }
+    up->steps++;
+    up->rung = rung;
+    up->failed = failed;
+    up->seconds = seconds;
+    up->allowance -= seconds;
+    return fill(work, truth, digest, error);
+}
+
 dea_status dea_bench_refer(dea_bench_work *work, size_t number, double allowance, dea_error *error)
 {
     dea_bench_truth *truth = &work->truths[number];
-    const dea_engine *engine = dea_bench_best(&truth->scene);
     const char *why;
-    const size_t rungs = engine ? dea_bench_rungs(engine, &truth->scene, &why) : 0;
-    double last = (double)NAN, expected = 0.0;
-    size_t steps = 0, alike = 0; /* steps that gave the numbers of the one before */
-    for (size_t rung = rungs % CLIMB; rung <= rungs && rungs > 0 && expected <= allowance; rung += CLIMB) {
-        if (rung == 0) {
-            continue;
-        }
-        double seconds;
-        const double accuracy = dea_bench_accuracy(rung - 1);
-        dea_status status = dea_bench_solve(work, engine, &truth->scene, accuracy, true, work->buffer, &seconds, error);
-        if (status == DEA_ERROR_INTERRUPTED || status == DEA_ERROR_MEMORY) {
-            return status;
-        }
-        if (status != DEA_OK) { /* the ladder will tell why */
-            *error = (dea_error){0};
-            break;
-        }
-        const uint64_t digest = dea_bench_digest(&work->layout, work->buffer, work->points);
-        alike += truth->known && digest == truth->digest;
-        steps++;
-        status = fill(work, truth, digest, error);
-        if (status != DEA_OK) {
-            return status;
-        }
-        note_reference(work, number, engine, accuracy, alike > 0 && alike + 1 == steps);
-        allowance -= seconds;
-        expected = seconds * (isnan(last) ? climb_guess : fmin(fmax(seconds / last, climb_least), climb_most));
-        last = seconds;
+    ascent up = {.engine = dea_bench_best(&truth->scene), .growth = growth_guess, .allowance = allowance};
+    up.rungs = up.engine ? dea_bench_rungs(up.engine, &truth->scene, &why) : 0;
+    dea_status status = DEA_OK;
+    for (size_t rung = next_rung(&up); rung > 0 && status == DEA_OK; rung = up.rungs > 0 ? next_rung(&up) : 0) {
+        status = climb(work, truth, &up, rung, error);
     }
-    return DEA_OK;
+    if (status == DEA_OK && truth->known) {
+        note_reference(work, number, up.engine, dea_bench_accuracy(up.rung - 1), up.alike > 0 && up.alike + 1 == up.steps);
+    }
+    return status;
 }
 
 void dea_bench_judge(dea_bench_work *work, dea_bench_setting *setting, uint64_t digest)
@@ -111,7 +156,7 @@ void dea_bench_judge(dea_bench_work *work, dea_bench_setting *setting, uint64_t 
     dea_comparison_forget(comparison);
     dea_comparison_take(comparison, 0, work->buffer, work->points, NULL);
     setting->reference = digest == truth->digest && setting->engine == work->bench->models[setting->model].reference;
-    setting->error = dea_comparison_worst(comparison);
+    setting->error = comparison->failed < work->bench->rows ? dea_comparison_worst(comparison) : (double)NAN;
     setting->states = comparison->states;
     setting->failed = comparison->failed;
 }
@@ -147,7 +192,8 @@ static void mark_broken(dea_bench *bench)
         const dea_bench_model *model = &bench->models[setting->model];
         const double allowed = setting->accuracy + (model->exact ? 0.0 : model->reference_accuracy);
         const bool judged = setting->state == DEA_BENCH_MEASURED && model->reference && !setting->reference;
-        setting->broken = judged && (setting->states > 0 || !(setting->error <= allowed));
+        const bool unsolved = isnan(setting->error) && setting->failed > 0;
+        setting->broken = judged && !unsolved && (setting->states > 0 || !(setting->error <= allowed));
     }
 }
 

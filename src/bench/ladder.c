@@ -109,17 +109,28 @@ static dea_status climb(ladder *l, double accuracy, dea_error *error)
     return DEA_OK;
 }
 
+/* Is the rung out of reach? Then says why. */
+static bool is_skipped(const ladder *l, size_t rung, char reason[DEA_BENCH_REASON])
+{
+    const dea_bench_model *model = &l->work->bench->models[l->model];
+    const double expected = predict(l);
+    if (l->engine == model->reference && dea_bench_accuracy(rung) < model->reference_accuracy) {
+        snprintf(reason, DEA_BENCH_REASON, "the budget affords no tighter reference than %.0e", model->reference_accuracy);
+        return true;
+    }
+    snprintf(reason, DEA_BENCH_REASON, "expected to take %.2g s, %.2g s of the budget are left for it", expected,
+             fmax(0.0, l->allowance));
+    return expected > l->allowance;
+}
+
 static dea_status walk_ladder(ladder *l, dea_error *error)
 {
     const size_t before = l->work->bench->setting_count;
     for (size_t rung = 0; rung < l->rungs; rung++) {
-        const double expected = predict(l);
-        if (expected > l->allowance) {
-            char reason[DEA_BENCH_REASON];
-            snprintf(reason, sizeof reason, "expected to take %.2g s, %.2g s of the budget are left for it", expected,
-                     fmax(0.0, l->allowance));
-            take_unmeasured(l, setting_of(l, dea_bench_accuracy(rung), dea_bench_accuracy(l->rungs - 1), DEA_BENCH_SKIPPED),
-                            reason);
+        char reason[DEA_BENCH_REASON];
+        if (is_skipped(l, rung, reason)) {
+            const double tightest = dea_bench_accuracy(l->rungs - 1);
+            take_unmeasured(l, setting_of(l, dea_bench_accuracy(rung), tightest, DEA_BENCH_SKIPPED), reason);
             return DEA_OK;
         }
         const dea_status status = climb(l, dea_bench_accuracy(rung), error);

@@ -108,6 +108,15 @@ static const dea_bench_setting *cheapest(const dea_bench *bench, size_t model)
     return best;
 }
 
+/* Its name with blanks. */
+static void model_name(const dea_model *model, char name[TEXT])
+{
+    snprintf(name, TEXT, "%s", model->name);
+    for (char *byte = name; *byte; byte++) {
+        *byte = *byte == '_' ? ' ' : *byte;
+    }
+}
+
 /* ---- ranges */
 
 static void widen(panel *part, double x, double y)
@@ -146,22 +155,31 @@ static void measure_work(sheet *page)
     settle(&page->work);
 }
 
+/* Where a model stands: time a point of its cheapest setting, and its median error; false where it has none. */
+static bool model_spot(const dea_bench *bench, size_t number, double *time, double *error)
+{
+    const dea_bench_model *model = &bench->models[number];
+    const dea_bench_setting *setting = cheapest(bench, number);
+    *time = setting ? time_of(bench, setting) : (double)NAN;
+    *error = fmax(model->error_median, 1e-4 * model->error_worst);
+    return setting && model->error_worst > 0.0;
+}
+
 static void measure_models(sheet *page)
 {
     const dea_bench *bench = page->bench;
+    double time, error;
     for (size_t i = 0; i < bench->model_count; i++) {
-        const dea_bench_model *model = &bench->models[i];
-        const dea_bench_setting *setting = cheapest(bench, i);
-        if (setting && model->error_worst > 0.0) {
+        if (model_spot(bench, i, &time, &error)) {
             page->statics = true;
-            widen(&page->models, time_of(bench, setting), fmax(model->error_median, 1e-4 * model->error_worst));
-            widen(&page->models, time_of(bench, setting), model->error_worst);
+            widen(&page->models, time, error);
+            widen(&page->models, time, bench->models[i].error_worst);
         }
     }
     for (size_t i = 0; page->statics && i < bench->model_count; i++) {
-        const dea_bench_setting *setting = cheapest(bench, i);
-        if (setting && isnan(bench->models[i].error_worst)) {
-            widen(&page->models, time_of(bench, setting), pow(10.0, page->models.low[1]));
+        (void)model_spot(bench, i, &time, &error);
+        if (bench->models[i].model->membrane && isfinite(time)) {
+            widen(&page->models, time, pow(10.0, page->models.low[1]));
         }
     }
     settle(&page->models);
@@ -490,15 +508,20 @@ static const char *error_label(const dea_bench *bench)
     return bench->scene->study == DEA_STUDY_TRANSIENT ? "Numerical error, relative to the peak" : "Numerical error, relative";
 }
 
+static void write_axes(FILE *script, const char *across, const char *up)
+{
+    fputs("set xlabel ", script);
+    dea_gnuplot_text(script, across);
+    fputs("\nset ylabel ", script);
+    dea_gnuplot_text(script, up);
+    fputc('\n', script);
+}
+
 static void write_work(sheet *page, FILE *script)
 {
     const dea_bench *bench = page->bench;
     dea_plot_place(script, WIDTH, page->height, page->work.box);
-    fputs("set xlabel ", script);
-    dea_gnuplot_text(script, time_label(bench));
-    fputs("\nset ylabel ", script);
-    dea_gnuplot_text(script, error_label(bench));
-    fputc('\n', script);
+    write_axes(script, time_label(bench), error_label(bench));
     write_ranges(script, &page->work);
     write_tics(script, "x", page->work.low[0], page->work.high[0], (int)(page->work.box.width / 62.0), false, time_text);
     const double low = page->references ? log10(page->floor) + 0.5 : page->work.low[1];
@@ -522,73 +545,79 @@ static void write_work(sheet *page, FILE *script)
 
 /* ---- the panel of models */
 
-static void write_models(sheet *page, FILE *script)
+/* A block for each model: time, median error, largest error. */
+static void write_model_data(sheet *page, FILE *script)
 {
     const dea_bench *bench = page->bench;
     const panel *part = &page->models;
-    page->mark_count = page->box_count = 0;
-    fputs("unset label\nset label 1 '(b)' at graph 0, graph 1.04 left\n", script);
-    page->label = 2;
-    dea_plot_place(script, WIDTH, page->height, part->box);
-    fputs("set xlabel ", script);
-    dea_gnuplot_text(script, "Wall time per point, fastest setting");
-    fputs("\nset ylabel ", script);
-    dea_gnuplot_text(script, "Error of the model’s strain against field");
-    fputc('\n', script);
-    write_ranges(script, part);
-    write_tics(script, "x", part->low[0], part->high[0], (int)(part->box.width / 62.0), false, time_text);
-    write_tics(script, "y", part->low[1], part->high[1], 10, true, percent_text);
     for (size_t i = 0; i < bench->model_count; i++) {
-        const dea_bench_model *model = &bench->models[i];
-        const dea_bench_setting *setting = cheapest(bench, i);
+        double time, error;
         fprintf(script, "$model%zu << END\nNaN NaN NaN\n", i);
-        if (setting && model->error_worst > 0.0) {
-            const double x = time_of(bench, setting), y = fmax(model->error_median, 1e-4 * model->error_worst);
-            dea_gnuplot_number(script, x);
+        if (model_spot(bench, i, &time, &error)) {
+            const double worst = bench->models[i].error_worst, across = place_x(part, time);
+            dea_gnuplot_number(script, time);
             fputc(' ', script);
-            dea_gnuplot_number(script, y);
+            dea_gnuplot_number(script, error);
             fputc(' ', script);
-            dea_gnuplot_number(script, model->error_worst);
+            dea_gnuplot_number(script, worst);
             fputc('\n', script);
-            const double across = place_x(part, x);
-            take_box(page, (taken){across - 5.0, place_y(part, y) + 5.0, across + 5.0, place_y(part, model->error_worst) - 3.0});
+            take_mark(page, across, place_y(part, error));
+            take_box(page, (taken){across - 5.0, place_y(part, error), across + 5.0, place_y(part, worst) - 3.0});
         }
         fputs("END\n", script);
     }
+}
+
+/* What a model without error costs: a line. */
+static void write_truth(sheet *page, FILE *script, const char *name, double time, const char *colour)
+{
+    fputs("set arrow from ", script);
+    dea_gnuplot_number(script, time);
+    fputs(", graph 0 to ", script);
+    dea_gnuplot_number(script, time);
+    fprintf(script, ", graph 1 nohead dashtype (6, 4) linewidth 1.4 linecolor '%s'\nset label %zu ", colour, ++page->label);
+    dea_gnuplot_text(script, name);
+    fputs(" at ", script);
+    dea_gnuplot_number(script, time);
+    fprintf(script, ", graph 0.04 right offset -0.8, 0 font ',9' textcolor '%s'\n", colour);
+}
+
+static void label_models(sheet *page, FILE *script)
+{
+    const dea_bench *bench = page->bench;
     for (size_t i = 0; i < bench->model_count; i++) {
-        const dea_bench_model *model = &bench->models[i];
-        const dea_bench_setting *setting = cheapest(bench, i);
-        char colour[8];
+        double time, error;
+        char colour[8], name[TEXT];
+        const bool marked = model_spot(bench, i, &time, &error);
         dea_plot_colour(i, bench->model_count, colour);
-        if (setting && model->error_worst > 0.0) {
-            char name[TEXT];
-            snprintf(name, sizeof name, "%s", model->model->name);
-            for (char *byte = name; *byte; byte++) {
-                *byte = *byte == '_' ? ' ' : *byte;
-            }
-            label_mark(page, script, part, time_of(bench, setting), fmax(model->error_median, 1e-4 * model->error_worst), name,
-                       colour);
-        } else if (setting && isnan(model->error_worst)) {
-            fputs("set arrow from ", script);
-            dea_gnuplot_number(script, time_of(bench, setting));
-            fputs(", graph 0 to ", script);
-            dea_gnuplot_number(script, time_of(bench, setting));
-            fprintf(script, ", graph 1 nohead dashtype (6, 4) linewidth 1.4 linecolor '%s'\n", colour);
-            fprintf(script, "set label %zu ", ++page->label);
-            dea_gnuplot_text(script, model->model->name);
-            fputs(" at ", script);
-            dea_gnuplot_number(script, time_of(bench, setting));
-            fprintf(script, ", graph 0.04 right offset -0.8, 0 font ',9' textcolor '%s'\n", colour);
+        model_name(bench->models[i].model, name);
+        if (marked) {
+            label_mark(page, script, &page->models, time, error, name, colour);
+        } else if (bench->models[i].model->membrane && isfinite(time)) {
+            write_truth(page, script, name, time, colour);
         }
     }
-    const char *before = "plot ";
-    for (size_t i = 0; i < bench->model_count; i++) {
+}
+
+static void write_models(sheet *page, FILE *script)
+{
+    const panel *part = &page->models;
+    page->mark_count = page->box_count = 0;
+    page->label = 2;
+    fputs("unset label\nset label 1 '(b)' at graph 0, graph 1.04 left\n", script);
+    dea_plot_place(script, WIDTH, page->height, part->box);
+    write_axes(script, "Wall time per point, fastest setting", "Error of the model’s strain against field");
+    write_ranges(script, part);
+    write_tics(script, "x", part->low[0], part->high[0], (int)(part->box.width / 62.0), false, time_text);
+    write_tics(script, "y", part->low[1], part->high[1], 10, true, percent_text);
+    write_model_data(page, script);
+    label_models(page, script);
+    for (size_t i = 0; i < page->bench->model_count; i++) {
         char colour[8];
-        dea_plot_colour(i, bench->model_count, colour);
+        dea_plot_colour(i, page->bench->model_count, colour);
         fprintf(script,
                 "%s$model%zu using 1:2:2:3 with yerrorbars pointtype 7 pointsize 0.9 linewidth 1.4 linecolor '%s' notitle",
-                before, i, colour);
-        before = ", \\\n ";
+                i > 0 ? ", \\\n " : "plot ", i, colour);
     }
     fputs("\nunset arrow\n", script);
 }
@@ -599,9 +628,6 @@ static void entry_words(dea_legend *legend, const char *words, const char *colou
 {
     dea_legend_entry *entry = dea_legend_add(legend);
     snprintf(entry->label, sizeof entry->label, "%s", words);
-    for (char *byte = entry->label; *byte; byte++) {
-        *byte = *byte == '_' ? ' ' : *byte;
-    }
     snprintf(entry->colour, sizeof entry->colour, "%s", colour);
     entry->dash = dash;
     entry->symbol = symbol;
@@ -612,8 +638,10 @@ static void list_models(const sheet *page, dea_legend *legend)
     const dea_bench *bench = page->bench;
     for (size_t i = 0; bench->model_count > 1 && i < bench->model_count; i++) {
         char colour[8];
+        char name[TEXT];
         dea_plot_colour(i, bench->model_count, colour);
-        entry_words(legend, bench->models[i].model->name, colour, 1, 0);
+        model_name(bench->models[i].model, name);
+        entry_words(legend, name, colour, 1, 0);
     }
 }
 
@@ -655,32 +683,39 @@ static void list_marks(const sheet *page, dea_legend *legend)
     }
 }
 
-/* Centred rows of the legend from entry @p from on, below what is there; their height. */
-static double lay_row(dea_legend *legend, size_t from, double y)
+static double room_of(const dea_legend *legend, size_t from, size_t to)
 {
     double room = 0.0;
-    for (size_t i = from; i < legend->count; i++) {
+    for (size_t i = from; i < to; i++) {
         room += dea_legend_room(&legend->entries[i]);
     }
-    double x = 0.5 * (WIDTH + 20.0 - room);
-    for (size_t i = from; i < legend->count; i++) {
+    return room;
+}
+
+/* A centred row of entries; its height. */
+static double lay_row(dea_legend *legend, size_t from, size_t to, double y)
+{
+    double x = 0.5 * (WIDTH + 20.0 - room_of(legend, from, to));
+    for (size_t i = from; i < to; i++) {
         legend->entries[i].x = x;
         legend->entries[i].y = y;
         x += dea_legend_room(&legend->entries[i]);
     }
-    return legend->count > from ? DEA_LEGEND_ROW : 0.0;
+    return to > from ? DEA_LEGEND_ROW : 0.0;
 }
 
-/* Rows: models, then engines and marks. Places count upward from the lower edge of the canvas. */
+/* Rows: models, engines, marks; the last two in one where it has room for both. Its height. */
 static int make_legend(const sheet *page, dea_legend *legend)
 {
-    double y = 0.0;
     list_models(page, legend);
-    y -= lay_row(legend, 0, y);
     const size_t models = legend->count;
     list_engines(page, legend);
+    const size_t engines = legend->count;
     list_marks(page, legend);
-    y -= lay_row(legend, models, y);
+    const bool together = room_of(legend, models, legend->count) <= WIDTH;
+    double y = -lay_row(legend, 0, models, 0.0);
+    y -= lay_row(legend, models, together ? legend->count : engines, y);
+    y -= lay_row(legend, together ? legend->count : engines, legend->count, y);
     for (size_t i = 0; i < legend->count; i++) {
         legend->entries[i].y += 8.0 - y - DEA_LEGEND_ROW / 2.0;
     }

@@ -354,6 +354,7 @@ static void a_wrong_answer_breaks_the_promise_of_a_whole_study(void **state)
     bench.model_count = 1;
     bench.settings = &setting;
     bench.setting_count = 1;
+    bench.rows = 2;
     assert_int_equal(dea_comparison_open(&truth.comparison, &scene, NULL), DEA_OK);
     dea_comparison_take(&truth.comparison, 0, rows, 2, NULL);
     truth.comparison.filling = false;

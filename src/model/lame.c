@@ -7,7 +7,7 @@
  * stretch? */
 static bool is_taut(double rest, double a, double b, double d1, double d2)
 {
-    return (rest + (a * d1 + b * d2) > 0.0) & (rest + (b * d1 + a * d2) > 0.0);
+    return rest + (a * d1 + b * d2) > 0.0 && rest + (b * d1 + a * d2) > 0.0;
 }
 
 static void solve(const dea_point *point, double accuracy, dea_row *row)
@@ -43,8 +43,8 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     const double annulus_rest = film->tension - (dot ? 0.0 : maxwell);
     /* annulus: d1 = -c (F^2/R^2 + 1), d2 = c (F^2/R^2 - 1) with d2 = change at r_a; linear in F^2/R^2, so its ends decide */
     const double rim = -2.0 * change * b2 * inverse;
-    const bool taut = is_taut(disc_rest, disc1, disc2, change, change) &
-                      is_taut(annulus_rest, annulus1, annulus2, -q * change, change) &
+    const bool taut = is_taut(disc_rest, disc1, disc2, change, change) &&
+                      is_taut(annulus_rest, annulus1, annulus2, -q * change, change) &&
                       is_taut(annulus_rest, annulus1, annulus2, rim, 0.0);
     const double area = dot ? (1.0 + strain) * (1.0 + strain) : (1.0 - edge * edge) * inverse;
     const double force = 2.0 * DEA_PI * point->film_thickness * load * dea_point_divide(point);

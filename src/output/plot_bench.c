@@ -24,7 +24,7 @@ enum {
     TEXT = 96
 };
 
-static const double letter = 6.4, line_height = 12.0; /* of a label at a mark [1/100 inch] */
+static const double letter = 6.2, line_height = 12.0; /* of a label at a mark [1/100 inch] */
 static const double smallest = 1e-17;                 /* error that is drawn */
 static const double pad = 0.06;                       /* beyond the marks, of a panel's width or height */
 

@@ -92,12 +92,20 @@ DEA_API dea_status dea_bench_run(const dea_scene *scene, const dea_bench_options
 /** Frees what the study owns; NULL and a zeroed one are fine. */
 DEA_API void dea_bench_free(dea_bench *bench);
 
-/** Writes the study as CSV, a row a setting; "-" is standard output.
- * @return DEA_OK, DEA_ERROR_IO, DEA_ERROR_MEMORY */
-DEA_API dea_status dea_bench_write(const dea_bench *bench, const char *path, dea_error *error);
-/** Draws error over time, a curve an engine and model, and beside it, in statics, the models' errors over time a point.
- * Returns as dea_plot_finish() in plot.h. */
-DEA_API dea_status dea_bench_plot(const dea_bench *bench, const char *path, dea_error *error);
+typedef struct dea_bench_output dea_bench_output;
+
+/** Opens what a study is to be written to, before the work: a target that cannot be written fails here.
+ *
+ * @param table   CSV with a row a setting, "-" is standard output; NULL: none
+ * @param picture SVG or PNG through gnuplot: error over time, a curve for each engine and model, and beside it, in statics, the
+ *                models' errors over time a point; NULL: none
+ * @param[out] output the caller ends it with dea_bench_output_finish()
+ * @return DEA_OK, DEA_ERROR_USAGE (ending of the picture), DEA_ERROR_IO, DEA_ERROR_MISSING (no gnuplot), DEA_ERROR_MEMORY */
+DEA_API dea_status dea_bench_output_open(const char *table, const char *picture, dea_bench_output **output, dea_error *error);
+/** Writes the study and frees the output; where @p bench is NULL, nothing is written. A NULL output is fine.
+ * @return DEA_OK, DEA_ERROR_USAGE (nothing to draw), DEA_ERROR_IO, DEA_ERROR_ENGINE (gnuplot failed: its words),
+ * DEA_ERROR_MISSING, DEA_ERROR_MEMORY */
+DEA_API dea_status dea_bench_output_finish(dea_bench_output *output, const dea_bench *bench, dea_error *error);
 
 #ifdef __cplusplus
 }

@@ -3,8 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "deaspice/bench.h"
-#include "output/atomic.h"
+#include "output/bench.h"
 #include "support/number.h"
 
 enum { ROW_LENGTH = 1024 };
@@ -90,19 +89,13 @@ static void put_setting(line *row, const dea_bench *bench, const dea_bench_setti
     put(row, "\n");
 }
 
-dea_status dea_bench_write(const dea_bench *bench, const char *path, dea_error *error)
+dea_status dea_bench_table(const dea_bench *bench, dea_atomic *file, dea_error *error)
 {
-    dea_atomic file;
-    dea_status status = dea_atomic_open(&file, path, error);
-    if (status != DEA_OK) {
-        return status;
-    }
-    status = dea_atomic_write(&file, header, sizeof header - 1, error);
+    dea_status status = dea_atomic_write(file, header, sizeof header - 1, error);
     for (size_t i = 0; i < bench->setting_count && status == DEA_OK; i++) {
         line row = {.length = 0};
         put_setting(&row, bench, &bench->settings[i]);
-        status = dea_atomic_write(&file, row.text, row.length, error);
+        status = dea_atomic_write(file, row.text, row.length, error);
     }
-    const dea_status closed = dea_atomic_close(&file, status == DEA_OK, error);
-    return status != DEA_OK ? status : closed;
+    return status;
 }

@@ -5,8 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "deaspice/bench.h"
-#include "output/gnuplot.h"
+#include "output/bench.h"
 #include "output/legend.h"
 #include "output/picture.h"
 
@@ -722,7 +721,7 @@ static int make_legend(const sheet *page, dea_legend *legend)
     return (int)-y + 8;
 }
 
-static dea_status draw(const dea_bench *bench, dea_gnuplot *picture, dea_error *error)
+dea_status dea_bench_picture(const dea_bench *bench, dea_gnuplot *picture, dea_error *error)
 {
     const panel empty = {.low = {(double)INFINITY, (double)INFINITY}, .high = {-(double)INFINITY, -(double)INFINITY}};
     static const char nothing[] = "nothing to draw: no setting was measured against a reference";
@@ -749,16 +748,4 @@ static dea_status draw(const dea_bench *bench, dea_gnuplot *picture, dea_error *
     dea_legend_draw(&legend, picture->script, WIDTH, page.height);
     fputs("unset multiplot\nunset output\n", picture->script);
     return DEA_OK;
-}
-
-dea_status dea_bench_plot(const dea_bench *bench, const char *path, dea_error *error)
-{
-    dea_gnuplot picture;
-    dea_status status = dea_gnuplot_begin(&picture, path, error);
-    if (status != DEA_OK) {
-        return status;
-    }
-    status = draw(bench, &picture, error);
-    const dea_status finished = dea_gnuplot_finish(&picture, status == DEA_OK, status == DEA_OK ? error : NULL);
-    return status != DEA_OK ? status : finished;
 }

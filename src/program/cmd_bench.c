@@ -203,11 +203,8 @@ static bool has_table(const dea_arguments *arguments)
     return !arguments->quiet && !(arguments->output && strcmp(arguments->output, "-") == 0);
 }
 
-static dea_exit bench_scene(const dea_arguments *arguments, const char *path, const dea_scene *scene)
+static dea_bench_options options_of(const dea_arguments *arguments, dea_progress *progress)
 {
-    dea_error error = {0};
-    dea_bench bench;
-    dea_progress *progress = arguments->quiet ? NULL : dea_progress_begin();
     dea_bench_options options = dea_bench_options_default();
     options.engine = arguments->engine ? dea_engine_find(arguments->engine) : NULL;
     options.jobs = arguments->jobs ? arguments->jobs : options.jobs;
@@ -217,25 +214,30 @@ static dea_exit bench_scene(const dea_arguments *arguments, const char *path, co
     options.log = arguments->quiet ? NULL : take_log;
     options.stop = dea_signals_stop;
     options.user = progress;
+    return options;
+}
+
+static dea_exit bench_scene(const dea_arguments *arguments, const char *path, const dea_scene *scene)
+{
+    dea_error error = {0};
+    dea_bench bench = {0};
+    dea_bench_output *output;
     dea_signals_catch();
-    dea_status status = dea_bench_run(scene, &options, &bench, &error);
-    dea_progress_end(progress);
-    if (status != DEA_OK) {
-        if (dea_signals_caught() != 0 && !dea_signals_broken_pipe()) {
-            dea_complain("interrupted, nothing written");
-        }
-        return dea_complain_error(&error);
+    dea_status status = dea_bench_output_open(arguments->output, arguments->plot, &output, &error);
+    if (status == DEA_OK) {
+        dea_progress *progress = arguments->quiet ? NULL : dea_progress_begin();
+        const dea_bench_options options = options_of(arguments, progress);
+        status = dea_bench_run(scene, &options, &bench, &error);
+        dea_progress_end(progress);
     }
-    if (has_table(arguments)) {
+    const bool measured = status == DEA_OK;
+    if (measured && has_table(arguments)) {
         print_bench(path, &bench);
+    } else if (!measured && dea_signals_caught() != 0 && !dea_signals_broken_pipe()) {
+        dea_complain("interrupted, nothing written");
     }
-    if (arguments->output) {
-        status = dea_bench_write(&bench, arguments->output, &error);
-    }
-    if (status == DEA_OK && arguments->plot) {
-        status = dea_bench_plot(&bench, arguments->plot, &error);
-    }
-    const dea_exit outcome = status == DEA_OK ? tell(&bench) : dea_complain_error(&error);
+    const dea_status written = dea_bench_output_finish(output, measured ? &bench : NULL, measured ? &error : NULL);
+    const dea_exit outcome = measured && written == DEA_OK ? tell(&bench) : dea_complain_error(&error);
     dea_bench_free(&bench);
     return outcome;
 }

@@ -425,6 +425,7 @@ static size_t fields_of(const char *line)
 static void the_csv_has_a_row_a_setting_and_empty_fields_where_there_is_no_number(void **state)
 {
     (void)state;
+    dea_bench_output *output;
     static char text[TEXT_LENGTH];
     char path[] = "/tmp/deaspice-bench-XXXXXX";
     dea_scene scene = parse(sweep_scene);
@@ -450,7 +451,8 @@ static void the_csv_has_a_row_a_setting_and_empty_fields_where_there_is_no_numbe
     const int file = mkstemp(path);
     assert_true(file >= 0);
     close(file);
-    assert_int_equal(dea_bench_write(&bench, path, NULL), DEA_OK);
+    assert_int_equal(dea_bench_output_open(path, NULL, &output, NULL), DEA_OK);
+    assert_int_equal(dea_bench_output_finish(output, &bench, NULL), DEA_OK);
     read_text(path, text);
     unlink(path);
     assert_memory_equal(text, "model,engine,accuracy_loosest,accuracy,outcome,runs,time_s,", 59);
@@ -481,7 +483,9 @@ static void the_diagram_names_engines_models_and_accuracies(void **state)
     const int file = mkstemps(path, 4);
     assert_true(file >= 0);
     close(file);
-    if (dea_bench_plot(&bench, path, &error) != DEA_OK) {
+    dea_bench_output *output;
+    if (dea_bench_output_open(NULL, path, &output, &error) != DEA_OK ||
+        dea_bench_output_finish(output, &bench, &error) != DEA_OK) {
         fail_msg("%s", error.message);
     }
     FILE *picture = fopen(path, "r");
@@ -496,7 +500,9 @@ static void the_diagram_names_engines_models_and_accuracies(void **state)
             fail_msg("the picture has no \"%s\"", words[i]);
         }
     }
-    assert_int_equal(dea_bench_plot(&bench, "/tmp/bench.pdf", &error), DEA_ERROR_USAGE);
+    assert_int_equal(dea_bench_output_open(NULL, "/tmp/bench.pdf", &output, &error), DEA_ERROR_USAGE);
+    assert_int_equal(dea_bench_output_open("/nowhere/bench.csv", NULL, &output, &error), DEA_ERROR_IO);
+    assert_int_equal(dea_bench_output_finish(NULL, &bench, &error), DEA_OK);
     dea_bench_free(&bench);
     dea_scene_free(&scene);
 }

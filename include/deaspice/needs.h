@@ -30,7 +30,8 @@ enum { DEA_OMISSIONS = DEA_PRONY_MAX + 8 };
 typedef struct dea_needs {
     dea_omission omissions[DEA_OMISSIONS];
     size_t count;
-    double bound; /**< sum of theirs [1], below accuracy/4 */
+    double bound;     /**< sum of theirs [1], below accuracy/4 */
+    double resonance; /**< first resonance of the relaxed film at rest [Hz], NAN without mass or where nothing can be told */
 } dea_needs;
 
 /** Finds what a transient leaves out; nothing for other studies and for parts that cost the engine nothing. All axes of @p scene
@@ -41,14 +42,24 @@ DEA_API dea_status dea_needs_find(const dea_scene *scene, const dea_model *model
 /** The reduction that leaves out @p count omissions. */
 DEA_API dea_reduction dea_needs_reduction(const dea_omission *omissions, size_t count);
 
+/** Measures what each omission of a run truly changes on top of those before it, by running it with and without by an engine that
+ * can do both.
+ * @param[out] changes needs->count of them [1], NAN where no engine could tell
+ * @param[out] noise   error that the measured changes may have [1]
+ * @return DEA_OK, DEA_ERROR_MEMORY or what the engine's session said */
+DEA_API dea_status dea_needs_measure(const dea_scene *scene, const dea_model *model, const dea_needs *needs, double *changes,
+                                     double *noise, dea_error *error);
+
 /** A model chosen for `model: auto`. */
 typedef struct dea_model_choice {
-    const dea_model *model; /**< NULL: none is good enough that the engine can do */
+    const dea_model *model; /**< NULL: none that the engine can do is good enough */
     const dea_model *truth; /**< what it is held against */
     double bound;           /**< of its model error [1], 0 for the truth itself */
     const dea_model *next;  /**< where model is NULL: the best that the engine can do, NULL: there is none; bound is its */
 } dea_model_choice;
 
+/** The finest model for a kind of study, which `model: auto` holds the others against. */
+DEA_API const dea_model *dea_needs_truth(dea_study_kind study);
 /** Chooses the cheapest model whose error is below half the scene's accuracy at every point of the study, from probes over its
  * axes. The truth is `field` in statics and `coverage`, whose small-strain limit `lumped` is, in time and frequency. The error
  * is that of the strain relative to itself, of the displacement relative to its peak in time, of the response relative to itself.

@@ -197,7 +197,7 @@ static dea_status run_transient(const dea_plan *plan, void *session, dea_scene *
 {
     const dea_engine *engine = plan->engine;
     dea_summary *summary = dea_layout_summary(&plan->layout, result);
-    dea_needs needs = {.count = 0};
+    dea_needs needs;
     if (plan->options->full) {
         here->reduction.ring = (double)INFINITY;
         return engine->transient(session, here, model, result, summary, error);
@@ -208,6 +208,7 @@ static dea_status run_transient(const dea_plan *plan, void *session, dea_scene *
         here->accuracy -= needs.bound;
         status = engine->transient(session, here, model, result, summary, error);
     }
+    summary->resonance = isnan(summary->resonance) ? needs.resonance : summary->resonance;
     summary->omitted = needs.bound;
     summary->error += needs.bound;
     return status;

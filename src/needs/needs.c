@@ -14,6 +14,8 @@ static const double safe_linear = 1.5; /* bound over what the stand-in says, whe
 static const double safe_nonlinear = 4.0;
 static const double missed = 0.01; /* share of the static displacement that counts as peak where the samples see less */
 
+static const double rounding = 1e-12; /* of a stand-in's answer, relative to its peak */
+
 enum { MANY_BRANCHES = 8 };
 
 typedef struct planner {
@@ -77,7 +79,7 @@ static bool try(planner *p, dea_omission omission)
     if (!pays(p, omission.part) || !solve_with(p, &omission)) {
         return false;
     }
-    omission.bound = change_of(p);
+    omission.bound = change_of(p) + rounding;
     if (!(omission.bound <= one_share * p->left)) {
         return false;
     }
@@ -100,12 +102,18 @@ static double ring_at(const planner *p, double omega, size_t probe)
     return p->safety * ring;
 }
 
+/* Angular frequency of the film at rest, its branches held [rad/s]. */
+static double omega_of(const dea_surrogate *s)
+{
+    return sqrt(s->points[0].passive * (1.0 + s->dynamics.total_share) / s->dynamics.mass);
+}
+
 /* The mass from that time behind a corner on from which no sample sees its ring any more. */
 static void try_ring(planner *p)
 {
     const dea_surrogate *s = &p->surrogate;
     const dea_omission mass = {.part = DEA_PART_MASS};
-    const double omega = sqrt(s->points[0].passive * (1.0 + s->dynamics.total_share) / s->dynamics.mass);
+    const double omega = omega_of(s);
     const double wanted = one_share * p->left;
     dea_omission ring = {.part = DEA_PART_RING};
     double last = (double)INFINITY; /* amplitude at the last probe that sees it */
@@ -195,17 +203,22 @@ static double lag_at(const planner *p, double lag, size_t segment, size_t probe)
 
 static void try_series(planner *p)
 {
-    const dea_surrogate *s = &p->surrogate;
+    dea_surrogate *s = &p->surrogate;
     const dea_drive *drive = &s->scene->drive;
-    dea_omission omission = {.part = DEA_PART_SERIES};
     const double lag = s->dynamics.series * s->capacitance;
+    double late = 0.0;
     size_t segment = 0;
-    for (size_t i = 0; i < s->count; i++) {
+    s->drag = s->dynamics.series;
+    const bool solved = pays(p, DEA_PART_SERIES) && dea_surrogate_solve(s, &p->reduction, p->next);
+    s->drag = 0.0;
+    for (size_t i = 0; i < s->count && solved; i++) {
         segment = dea_signal_find(&s->signal, segment, dea_layout_place(s->scene, s->probes[i]));
-        omission.bound = fmax(omission.bound, 2.0 * lag_at(p, lag, segment, i));
+        late = fmax(late, lag_at(p, lag, segment, i));
     }
-    omission.bound += isnan(drive->leakage_resistance) ? 0.0 : 2.0 * drive->series_resistance / drive->leakage_resistance;
-    if (pays(p, DEA_PART_SERIES) && omission.bound <= one_share * p->left) {
+    const double leak = isnan(drive->leakage_resistance) ? 0.0 : 2.0 * drive->series_resistance / drive->leakage_resistance;
+    const dea_omission omission = {.part = DEA_PART_SERIES,
+                                   .bound = solved ? 2.0 * (late + change_of(p) + leak) : (double)INFINITY};
+    if (omission.bound <= one_share * p->left) {
         omit(p, omission);
     }
 }
@@ -262,6 +275,9 @@ static dea_status plan(planner *p, dea_error *error)
     if (status != DEA_OK) {
         return status;
     }
+    if (p->surrogate.dynamics.mass > 0.0) {
+        p->needs->resonance = omega_of(&p->surrogate) / (2.0 * DEA_PI);
+    }
     double *room = p->now.u;
     if (dea_surrogate_solve(&p->surrogate, &p->reduction, p->now)) {
         set_peaks(p);
@@ -276,7 +292,7 @@ dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const 
 {
     planner p = {.engine = engine, .needs = needs, .left = budget * scene->accuracy};
     bool usable;
-    *needs = (dea_needs){.count = 0};
+    *needs = (dea_needs){.resonance = (double)NAN};
     if (scene->study != DEA_STUDY_TRANSIENT || engine->omits == 0) {
         return DEA_OK;
     }

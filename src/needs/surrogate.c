@@ -41,7 +41,7 @@ static size_t sample_at(const dea_scene *scene, size_t rows, double time)
 static bool place_probes(dea_surrogate *s)
 {
     const size_t rows = dea_layout_of(s->scene).rows;
-    size_t first = 1; /* the first sample is the start */
+    size_t first = 0; /* sees a jump at the start */
     for (size_t i = 0; i < s->signal.count; i++) {
         const dea_segment *segment = &s->signal.segments[i];
         const size_t last = sample_at(s->scene, rows, segment->to);
@@ -67,7 +67,6 @@ static void add_point(dea_surrogate *s, double u, double voltage)
                                                         .push = e.push,
                                                         .push_slope = e.push_slope,
                                                         .square = s->dynamics.linear ? 0.0 : voltage * voltage};
-    s->capacitance = fmax(s->capacitance, e.capacitance);
 }
 
 /* False where the film would pull in, or already is unstable at rest. */
@@ -78,6 +77,7 @@ static bool place_points(dea_surrogate *s)
     if (!dea_dynamics_equilibrium(&s->dynamics, largest, &u)) {
         return false;
     }
+    s->capacitance = fmax(dea_dynamics_edge(&s->dynamics, 0.0).capacitance, dea_dynamics_edge(&s->dynamics, u).capacitance);
     add_point(s, 0.0, 0.0);
     if (!s->dynamics.linear && largest > 0.0) {
         add_point(s, u, largest);
@@ -129,6 +129,9 @@ static void set_walk(dea_surrogate *s, const dea_reduction *reduction, const dea
                           .every = s->scene->transient.every,
                           .from_bias = s->scene->transient.from_bias,
                           .chain = dea_walk_chain(&d, whole * point->viscous)};
+    /* the current dC/du U v through R_s takes R_s of itself off the voltage, and so (dC/du U)^2 R_s v off the force */
+    const double transduction = 2.0 * point->push * s->signal.largest;
+    s->walk->chain.damping += s->drag * transduction * transduction;
     s->walk->chain.stiffness = whole * point->passive - slope * point->square;
     s->walk->linear.softening = point->square > 0.0 || !s->dynamics.linear ? 0.0 : -slope;
     s->walk->linear.force = point->push;

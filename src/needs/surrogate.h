@@ -25,7 +25,8 @@ typedef struct dea_surrogate {
     size_t count, room;
     dea_surrogate_point points[DEA_SURROGATE_POINTS];
     int point_count;
-    double capacitance; /* largest of these points [F] */
+    double capacitance; /* larger one of rest and of the loaded film [F] */
+    double drag;        /* set by the user: series resistance over which the film's own motion moves charge [Ohm], 0: none */
 } dea_surrogate;
 
 /* Answers at the probes, operating point after operating point: room for point_count * count. */

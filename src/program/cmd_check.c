@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "program/check_omissions.h"
 #include "program/program.h"
 #include "result/compare.h"
 
@@ -12,6 +13,7 @@ enum { MOST_ROWS = DEA_SAMPLES_MAX };
 /* Figures of one check over all its scenes. */
 typedef struct dea_tally {
     size_t disagreed, failed, unusable;
+    size_t broken; /* bounds of what is left out */
 } dea_tally;
 
 static dea_status take_points(void *user, size_t first, const void *points, size_t count, dea_error *error)
@@ -93,6 +95,7 @@ static bool check_engine(const dea_arguments *arguments, const dea_engine *engin
 {
     dea_error error = {0};
     const dea_run_options options = {.jobs = arguments->jobs ? arguments->jobs : 1,
+                                     .full = arguments->full,
                                      .points = take_points,
                                      .log = take_log,
                                      .stop = dea_signals_stop,
@@ -140,6 +143,16 @@ static void check_engines(const dea_arguments *arguments, dea_comparison *compar
     }
 }
 
+static void count_bounds(const char *path, dea_bounds bounds, dea_tally *tally)
+{
+    tally->broken += bounds.broken;
+    tally->failed += bounds.unjudged;
+    if (bounds.unjudged > 0) {
+        dea_complain("%s: what %zu omission%s change could not be measured", path, bounds.unjudged,
+                     bounds.unjudged == 1 ? "" : "s");
+    }
+}
+
 /* Checks the first model of the scene. */
 static void check_model(const dea_arguments *arguments, const char *path, const dea_scene *scene, double tolerance,
                         dea_tally *tally)
@@ -156,6 +169,9 @@ static void check_model(const dea_arguments *arguments, const char *path, const 
     }
     check_engines(arguments, &comparison, tolerance, tally);
     dea_comparison_close(&comparison);
+    if (!arguments->full && dea_signals_caught() == 0) {
+        count_bounds(path, dea_check_omissions(arguments, scene), tally);
+    }
 }
 
 static void check_scene(const dea_arguments *arguments, const char *path, dea_tally *tally)
@@ -175,6 +191,13 @@ static void check_scene(const dea_arguments *arguments, const char *path, dea_ta
         dea_scene_free(&scene);
         return;
     }
+    double bound;
+    const bool automatic = scene.automatic;
+    if (!dea_model_settle(&scene, NULL, arguments->quiet, &bound, &outcome)) {
+        tally->unusable++;
+        dea_scene_free(&scene);
+        return;
+    }
     const double both = scene.study == DEA_STUDY_TRANSIENT ? 2.0 : 1.0; /* each engine may be off by the accuracy */
     const double tolerance = isnan(arguments->tolerance) ? both * scene.accuracy : arguments->tolerance;
     for (size_t i = 0; i < scene.model_count && dea_signals_caught() == 0; i++) {
@@ -182,6 +205,9 @@ static void check_scene(const dea_arguments *arguments, const char *path, dea_ta
         alone.models[0] = scene.models[i];
         alone.model_count = 1;
         check_model(arguments, path, &alone, tolerance, tally);
+    }
+    if (automatic && dea_signals_caught() == 0) {
+        count_bounds(path, dea_check_choice(arguments, &scene, bound), tally);
     }
     dea_scene_free(&scene);
 }
@@ -195,6 +221,11 @@ static dea_exit run(const dea_arguments *arguments)
     }
     if (tally.disagreed > 0) {
         dea_complain("the engines disagree in %zu comparison%s", tally.disagreed, tally.disagreed == 1 ? "" : "s");
+    }
+    if (tally.broken > 0) {
+        dea_complain("%zu bound%s of what is left out broken", tally.broken, tally.broken == 1 ? " is" : "s are");
+    }
+    if (tally.disagreed + tally.broken > 0) {
         return DEA_EXIT_DISAGREED;
     }
     return tally.failed > 0 ? DEA_EXIT_FAILED : tally.unusable > 0 ? DEA_EXIT_USAGE : DEA_EXIT_DONE;
@@ -212,6 +243,10 @@ const dea_command dea_command_check = {
             "of the run, and the columns estimate and balance show what the engine itself\n"
             "says of its error and of its energy balance. Phases differ in radian.\n"
             "\n"
+            "Of a transient that leaves out parts of the network, each omission is measured\n"
+            "against its bound; of a model that `auto` chose, its model error.\n"
+            "\n"
+            "      --full            leave out nothing\n"
             "      --tolerance T     difference that still agrees; default: the scene's accuracy,\n"
             "                        in a transient twice that, as both engines may be off by it\n"
             "      --engine E        compare only this engine with the first\n"
@@ -224,11 +259,11 @@ const dea_command dea_command_check = {
             "  -V, --version         the version\n"
             "\n"
             "Exit status: 0 all agree, 1 an engine failed, 2 usage or a bad scene, 3 they\n"
-            "disagree.\n"
+            "disagree or a bound is broken.\n"
             "\n"
             "Example:\n"
             "  deaspice check examples/*.yaml\n",
-    .takes = DEA_TAKES_ENGINE | DEA_TAKES_SCENE | DEA_TAKES_JOBS | DEA_TAKES_QUIET | DEA_TAKES_TOLERANCE,
+    .takes = DEA_TAKES_ENGINE | DEA_TAKES_SCENE | DEA_TAKES_JOBS | DEA_TAKES_QUIET | DEA_TAKES_TOLERANCE | DEA_TAKES_FULL,
     .least = 1,
     .most = SIZE_MAX,
     .run = run,

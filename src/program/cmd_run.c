@@ -148,7 +148,8 @@ static dea_exit run(const dea_arguments *arguments)
     if (!engine || !dea_scene_open(arguments, arguments->operands[0].path, &scene, &outcome)) {
         return outcome;
     }
-    if (!dea_engine_unfit(engine, &scene)) {
+    double bound;
+    if (dea_model_settle(&scene, engine, arguments->quiet, &bound, &outcome) && !dea_engine_unfit(engine, &scene)) {
         outcome = run_scene(arguments, &scene, engine);
     }
     dea_scene_free(&scene);
@@ -167,7 +168,8 @@ const dea_command dea_command_run = {
             "      --format F        csv, nc or raw; default: from the ending of FILE\n"
             "      --plot FILE       draw the result, FILE ends in .svg or .png\n"
             "      --engine E        direct, ngspice (default) or ida\n"
-            "      --model M         model instead of the scene's; several with commas between\n"
+            "      --model M         model instead of the scene's; several with commas between;\n"
+            "                        auto: the cheapest that is within the accuracy of the finest\n"
             "      --set KEY=VALUE   change a value of the scene, e.g. actuator.prestretch=1.3;\n"
             "                        may be repeated\n"
             "      --full            a transient leaves out nothing, whatever its accuracy\n"

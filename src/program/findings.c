@@ -194,7 +194,7 @@ static void print_edges(const dea_findings *findings)
 static void print_omissions(const dea_findings *findings, const dea_engine *engine)
 {
     char text[DEA_OMISSION_LENGTH];
-    dea_needs needs = {.count = 0};
+    dea_needs needs;
     if (findings->reduced == 0) {
         return;
     }

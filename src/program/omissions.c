@@ -9,8 +9,8 @@
 
 const char *dea_bound_text(double bound, char text[32])
 {
-    const double power = bound > 0.0 ? pow(10.0, floor(log10(bound))) : 1.0;
-    snprintf(text, 32, "%.0e", ceil(bound / power * (1.0 - 1e-12)) * power);
+    const double power = bound > 0.0 ? pow(10.0, floor(log10(bound)) - 1.0) : 1.0;
+    snprintf(text, 32, "%.2g", ceil(bound / power * (1.0 - 1e-12)) * power);
     return text;
 }
 

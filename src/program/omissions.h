@@ -8,9 +8,9 @@
 
 enum { DEA_OMISSION_LENGTH = 128 };
 
-/** Writes e.g. "branch 4 (tau 215 s, <= 2e-05)"; returns @p text. */
+/** Writes e.g. "branch 4 (tau 215 s, <= 2.1e-05)"; returns @p text. */
 const char *dea_omission_text(const dea_omission *omission, const dea_scene *scene, char text[DEA_OMISSION_LENGTH]);
-/** Writes a bound rounded up to one digit, e.g. "2e-05"; returns @p text. */
+/** Writes a bound rounded up to two digits, e.g. "2.1e-05"; returns @p text. */
 const char *dea_bound_text(double bound, char text[32]);
 /** The scene of run number @p number of its study, all axes at their place; its lists still belong to @p scene. */
 dea_scene dea_scene_of_run(const dea_scene *scene, size_t number);

@@ -106,6 +106,10 @@ const dea_engine *dea_engine_choose(const char *name);
 bool dea_scene_open(const dea_arguments *arguments, const char *path, dea_scene *scene, dea_exit *outcome);
 /** Complains about an engine that refuses a model and names those that can do it; true where it does. */
 bool dea_engine_unfit(const dea_engine *engine, const dea_scene *scene);
+/** Settles `model: auto`: sets the first model and takes its error bound off the accuracy; says which unless @p quiet. False,
+ * with a complaint and @p outcome, where no model that the engine (NULL: any) can do is good enough. @p bound: of the model
+ * error, 0 where the scene names its models. */
+bool dea_model_settle(dea_scene *scene, const dea_engine *engine, bool quiet, double *bound, dea_exit *outcome);
 /** Seconds since some moment. */
 double dea_seconds(void);
 

@@ -1,6 +1,9 @@
 /* From the arguments to the scene and the engine that they ask for. */
+#include <math.h>
 #include <stdio.h>
 
+#include "deaspice/needs.h"
+#include "program/omissions.h"
 #include "program/program.h"
 
 enum { MOST_ENGINES = 16 };
@@ -59,6 +62,57 @@ bool dea_engine_unfit(const dea_engine *engine, const dea_scene *scene)
         if (can_do_all(dea_engine_at(i), scene)) {
             dea_complain("--engine %s can do it", dea_engine_at(i)->name);
         }
+    }
+    return true;
+}
+
+static void complain_choice(const dea_scene *scene, const dea_engine *engine, const dea_model_choice *choice)
+{
+    char bound[32];
+    const char *name = engine ? engine->name : "any engine";
+    const char *truth = choice->truth->name;
+    if (!choice->next) {
+        dea_complain("model auto: %s can do none of the models for this study", name);
+    } else if (isinf(choice->bound)) {
+        dea_complain("model auto: %s can do no model whose states are those of %s; name one with --model", name, truth);
+    } else {
+        dea_complain("model auto: %s can do no model that is within half the accuracy, %g, of %s; the best, %s, is within %s",
+                     name, scene->accuracy, truth, choice->next->name, dea_bound_text(choice->bound, bound));
+    }
+    for (size_t i = 0; i < dea_engine_count(); i++) {
+        if (!dea_engine_refuses(dea_engine_at(i), scene, choice->truth)) {
+            dea_complain("--engine %s can do %s", dea_engine_at(i)->name, truth);
+        }
+    }
+}
+
+bool dea_model_settle(dea_scene *scene, const dea_engine *engine, bool quiet, double *bound, dea_exit *outcome)
+{
+    char text[32];
+    dea_model_choice choice;
+    dea_error error = {0};
+    *bound = 0.0;
+    if (!scene->automatic) {
+        return true;
+    }
+    if (dea_needs_model(scene, engine, &choice, &error) != DEA_OK) {
+        *outcome = dea_complain_error(&error);
+        return false;
+    }
+    if (!choice.model) {
+        complain_choice(scene, engine, &choice);
+        *outcome = DEA_EXIT_USAGE;
+        return false;
+    }
+    scene->models[0] = choice.model;
+    scene->automatic = false;
+    scene->accuracy -= choice.bound;
+    *bound = choice.bound;
+    if (!quiet && choice.model == choice.truth) {
+        fprintf(stderr, "model auto: %s, nothing cheaper is good enough\n", choice.model->name);
+    } else if (!quiet) {
+        fprintf(stderr, "model auto: %s, within %s of %s\n", choice.model->name, dea_bound_text(choice.bound, text),
+                choice.truth->name);
     }
     return true;
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "deaspice/model.h"
+#include "deaspice/needs.h"
 #include "scene/reader.h"
 
 char *dea_reader_show(const dea_node *node, char out[DEA_TEXT_ROOM])
@@ -247,6 +248,8 @@ dea_status dea_read_later(dea_reader *reader, const dea_ref *ref, const dea_node
     return DEA_OK;
 }
 
+static const char automatic[] = "auto"; /* the name of no model: the cheapest that is good enough */
+
 /* What a model must be able to do. */
 typedef struct ability {
     bool lens, dynamic;
@@ -259,9 +262,10 @@ static void model_list(ability wanted, char *out, size_t room)
     for (size_t i = 0; i < dea_model_count() && used < room; i++) {
         const dea_model *model = dea_model_at(i);
         if ((!wanted.lens || model->lens) && (!wanted.dynamic || model->dynamic)) {
-            used += (size_t)snprintf(out + used, room - used, "%s%s", used ? ", " : "", model->name);
+            used += (size_t)snprintf(out + used, room - used, "%s, ", model->name);
         }
     }
+    snprintf(out + used, used < room ? room - used : 0, "%s", automatic);
 }
 
 static dea_status model_fail(dea_reader *reader, const dea_node *node, const char *what, ability wanted)
@@ -284,7 +288,10 @@ static dea_status model_fail(dea_reader *reader, const dea_node *node, const cha
 
 dea_status dea_models_finish(dea_reader *reader)
 {
-    const dea_scene *scene = reader->scene;
+    dea_scene *scene = reader->scene;
+    if (scene->automatic) {
+        scene->models[0] = dea_needs_truth(scene->study);
+    }
     const bool transient = scene->study == DEA_STUDY_TRANSIENT;
     for (size_t i = 0; i < scene->model_count && scene->study != DEA_STUDY_SWEEP; i++) {
         if (!scene->models[i]->dynamic) {
@@ -296,9 +303,22 @@ dea_status dea_models_finish(dea_reader *reader)
     return DEA_OK;
 }
 
+/* `auto` alone: the finest model stands in until one is chosen, once the study is known. */
+static dea_status model_auto(dea_reader *reader, const dea_node *node)
+{
+    reader->model_names[0] = node;
+    reader->scene->automatic = true;
+    reader->scene->models[0] = dea_needs_truth(DEA_STUDY_SWEEP);
+    reader->scene->model_count = 1;
+    return DEA_OK;
+}
+
 static dea_status model_add(dea_reader *reader, const dea_node *node)
 {
     dea_scene *scene = reader->scene;
+    if (scene->automatic || (node->kind == DEA_NODE_SCALAR && strcmp(node->text, automatic) == 0)) {
+        return scene->model_count == 0 ? model_auto(reader, node) : model_fail(reader, node, "auto stands alone", (ability){0});
+    }
     const dea_model *model = node->kind == DEA_NODE_SCALAR ? dea_model_find(node->text) : NULL;
     if (!model) {
         return model_fail(reader, node, "unknown model", (ability){0});
@@ -326,6 +346,7 @@ dea_status dea_read_model(dea_reader *reader, const dea_ref *ref, const dea_node
         return DEA_OK;
     }
     reader->scene->model_count = 0;
+    reader->scene->automatic = false;
     if (node->kind == DEA_NODE_SCALAR) {
         return model_add(reader, node);
     }

@@ -119,4 +119,31 @@ static inline void random_transient(uint64_t *seed, dea_scene *scene)
     }
 }
 
+/* Runs sampled so coarsely, or behind so long a wait, that much of the film's physics cannot be seen. */
+static inline void random_blur(uint64_t *seed, dea_scene *scene)
+{
+    dea_material *material = &scene->material;
+    if (!isnan(material->density)) {
+        const double longer = random_decades(seed, 1.0, scene->models[0]->linear ? 1e3 : 10.0);
+        scene->transient.until *= longer;
+        scene->transient.every *= longer;
+        scene->drive.waveform.step.on *= longer;
+        scene->drive.waveform.step.off *= longer;
+        scene->drive.waveform.sine.frequency /= longer;
+        scene->drive.waveform.sine.delay *= longer;
+        for (size_t i = 0; scene->drive.waveform.kind == DEA_WAVE_POINTS && i < scene->drive.waveform.point_count; i++) {
+            scene->drive.waveform.times[i] *= longer;
+        }
+        material->retardation =
+            isnan(material->retardation) ? material->retardation : random_decades(seed, 0.02, 30.0) / random_frequency(scene);
+    }
+    for (size_t i = 0; i < material->prony_count; i++) {
+        material->prony[i].tau = scene->transient.until * random_decades(seed, 1e-7, 1e6);
+        material->prony[i].g *= random_decades(seed, 1e-4, 1.0);
+    }
+    if (scene->drive.series_resistance > 0.0) {
+        scene->drive.series_resistance *= random_decades(seed, 1e-7, 1.0);
+    }
+}
+
 #endif

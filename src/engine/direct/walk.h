@@ -1,4 +1,5 @@
-/* A linear network on its way through the segments of the source voltage: exact on each, joined at the edges. */
+/* A linear network on its way through the segments of the source voltage: exact on each, joined at the edges. Where the voltage
+ * softens the film, its stiffness is that under the largest voltage of the segment: exact where that rests. */
 #ifndef DEA_DIRECT_WALK_H
 #define DEA_DIRECT_WALK_H
 

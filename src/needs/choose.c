@@ -1,0 +1,254 @@
+/* The cheapest model that is good enough, for `model: auto`: models are held against the finest one at probes of the study. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "deaspice/needs.h"
+#include "engine/line.h"
+#include "needs/surrogate.h"
+
+static const double share = 0.5;  /* of the accuracy that a model error may take */
+static const double safety = 1.5; /* bound over the largest error of the probes */
+
+enum { VOLTAGES = 4, MOST_MODELS = 16 };
+
+/* ---- probes: places spread evenly over every axis, its ends included */
+
+static size_t probes_of_axis(const dea_scene *scene, size_t axis)
+{
+    static const size_t many[] = {17, 17, 9, 5};
+    const size_t wanted = scene->axis_count < 4 ? many[scene->axis_count] : scene->axis_count < 7 ? 3 : 2;
+    return wanted < scene->axes[axis].count ? wanted : scene->axes[axis].count;
+}
+
+static size_t probe_count(const dea_scene *scene)
+{
+    size_t count = 1;
+    for (size_t i = 0; i < scene->axis_count; i++) {
+        count *= probes_of_axis(scene, i);
+    }
+    return count;
+}
+
+/* The scene at a probe; shares what the scene owns. */
+static dea_scene scene_at(const dea_scene *scene, size_t probe)
+{
+    dea_scene here = *scene;
+    for (size_t i = scene->axis_count; i-- > 0;) {
+        const dea_axis *axis = &scene->axes[i];
+        const size_t count = probes_of_axis(scene, i);
+        const size_t place = count > 1 ? probe % count * (axis->count - 1) / (count - 1) : 0;
+        dea_axis_set(axis, &here, axis->values[place]);
+        probe /= count;
+    }
+    return here;
+}
+
+/* ---- statics */
+
+static dea_row row_of(const dea_scene *scene, const dea_model *model)
+{
+    dea_point point;
+    dea_row row = dea_row_failed();
+    dea_film_prepare(scene, &point.film);
+    dea_point_place(scene, &point);
+    if (dea_point_valid(&point)) {
+        model->solve(&point, 1e-3 * scene->accuracy, &row);
+    }
+    return row;
+}
+
+/* Relative error of the strain; infinite where the states differ. */
+static double static_error(const dea_scene *scene, const dea_model *model, const dea_model *truth)
+{
+    const dea_row row = row_of(scene, model), wanted = row_of(scene, truth);
+    if (row.state != wanted.state) {
+        return (double)INFINITY;
+    }
+    if (isnan(wanted.strain) || row.strain == wanted.strain) {
+        return 0.0;
+    }
+    return fabs(row.strain - wanted.strain) / fabs(wanted.strain);
+}
+
+/* ---- in time: the static error up to the largest voltage, and what the film's change of stiffness does on the way: the
+ * stand-ins about rest and about the loaded film differ by it */
+
+static dea_status stiffness_error(const dea_scene *scene, const dea_model *truth, double *change, double *largest,
+                                  dea_error *error)
+{
+    dea_surrogate s;
+    bool usable;
+    const dea_reduction nothing = {0};
+    *change = (double)INFINITY;
+    dea_status status = dea_surrogate_open(scene, truth, &s, &usable, error);
+    *largest = status == DEA_OK ? s.signal.largest : 0.0;
+    double *u = status == DEA_OK && usable ? malloc(2 * DEA_SURROGATE_POINTS * s.count * sizeof *u) : NULL;
+    if (status == DEA_OK && usable && !u) {
+        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a model is chosen");
+    }
+    if (u && s.point_count < DEA_SURROGATE_POINTS) {
+        *change = 0.0;
+    } else if (u && dea_surrogate_solve(&s, &nothing, (dea_surrogate_answer){u, u + DEA_SURROGATE_POINTS * s.count})) {
+        double peak = 0.0;
+        *change = 0.0;
+        for (size_t i = 0; i < s.count; i++) {
+            peak = fmax(peak, fabs(u[i]));
+            *change = fmax(*change, fabs(u[i] - u[s.count + i]));
+        }
+        *change = *change > 0.0 ? *change / peak : 0.0;
+    }
+    free(u);
+    dea_surrogate_close(&s);
+    return status;
+}
+
+static dea_status moving_error(const dea_scene *scene, const dea_model *model, const dea_model *truth, double *change,
+                               dea_error *error)
+{
+    double largest;
+    dea_scene still = *scene;
+    const dea_status status = stiffness_error(scene, truth, change, &largest, error);
+    for (int i = 1; i <= VOLTAGES; i++) {
+        still.drive.voltage = largest * i / VOLTAGES;
+        *change = fmax(*change, static_error(&still, model, truth));
+    }
+    return status;
+}
+
+/* ---- in frequency: the responses themselves */
+
+static double response_error(const dea_response *a, const dea_response *b, size_t count)
+{
+    double change = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        const double turns[2] = {a[i].displacement_phase - b[i].displacement_phase, a[i].impedance_phase - b[i].impedance_phase};
+        const double here[] = {fabs(a[i].displacement / b[i].displacement - 1.0), fabs(a[i].impedance / b[i].impedance - 1.0),
+                               fabs(remainder(turns[0], 360.0)) * DEA_PI / 180.0,
+                               fabs(remainder(turns[1], 360.0)) * DEA_PI / 180.0};
+        for (size_t k = 0; k < sizeof here / sizeof *here; k++) {
+            change = here[k] <= change ? change : (double)fmax(here[k], isnan(here[k]) ? (double)INFINITY : 0.0);
+        }
+    }
+    return change;
+}
+
+/* By the first engine that has a frequency domain. */
+static dea_status small_error(const dea_scene *scene, const dea_model *model, const dea_model *truth, double *change,
+                              dea_error *error)
+{
+    const size_t rows = dea_layout_of(scene).rows;
+    const dea_engine *engine = NULL;
+    for (size_t i = 0; i < dea_engine_count() && !engine; i++) {
+        const dea_engine *here = dea_engine_at(i);
+        engine = here->ac && !here->isolated ? here : NULL;
+    }
+    dea_response *responses = malloc(2 * rows * sizeof *responses);
+    if (!responses || !engine) {
+        free(responses);
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a model is chosen");
+    }
+    void *session = NULL;
+    dea_status status = engine->begin(&session, error);
+    if (status == DEA_OK) {
+        status = engine->ac(session, scene, model, responses, error);
+        status = status == DEA_OK ? engine->ac(session, scene, truth, responses + rows, error) : status;
+        engine->end(session);
+    }
+    *change = status == DEA_OK ? response_error(responses, responses + rows, rows) : (double)INFINITY;
+    free(responses);
+    return status;
+}
+
+/* ---- the choice */
+
+static dea_status error_at(const dea_scene *here, const dea_model *model, const dea_model *truth, double *change,
+                           dea_error *error)
+{
+    if (here->study == DEA_STUDY_TRANSIENT) {
+        return moving_error(here, model, truth, change, error);
+    }
+    if (here->study == DEA_STUDY_AC) {
+        return small_error(here, model, truth, change, error);
+    }
+    *change = static_error(here, model, truth);
+    return DEA_OK;
+}
+
+/* Bound of a model's error over the study. A probe whose numbers are out of range says nothing. */
+static dea_status bound_of(const dea_scene *scene, const dea_model *model, const dea_model *truth, double *bound,
+                           dea_error *error)
+{
+    const size_t count = probe_count(scene);
+    *bound = 0.0;
+    for (size_t i = 0; model != truth && i < count; i++) {
+        double change = 0.0;
+        const dea_scene here = scene_at(scene, i);
+        const dea_status status = error_at(&here, model, truth, &change, error);
+        if (status != DEA_OK && status != DEA_ERROR_USAGE) {
+            return status;
+        }
+        *bound = fmax(*bound, status == DEA_OK ? safety * change : 0.0);
+    }
+    return DEA_OK;
+}
+
+/* Cost in kind: a closed form, linear springs, hyperelastic ones, a membrane. */
+static int rank(const dea_model *model)
+{
+    return model->membrane ? 3 : model->linear ? 1 : model->network ? 2 : 0;
+}
+
+static bool fits(const dea_scene *scene, const dea_engine *engine, const dea_model *model)
+{
+    const bool kind = (model->lens || scene->actuator.kind == DEA_DOT) && (model->dynamic || scene->study == DEA_STUDY_SWEEP);
+    return kind && (!engine || !dea_engine_refuses(engine, scene, model));
+}
+
+/* Models that fit, the cheapest first. */
+static size_t list_models(const dea_scene *scene, const dea_engine *engine, const dea_model *list[MOST_MODELS])
+{
+    size_t count = 0;
+    for (int cost = 0; cost <= 3; cost++) {
+        for (size_t i = 0; i < dea_model_count() && count < MOST_MODELS; i++) {
+            const dea_model *model = dea_model_at(i);
+            if (rank(model) == cost && fits(scene, engine, model)) {
+                list[count++] = model;
+            }
+        }
+    }
+    return count;
+}
+
+const dea_model *dea_needs_truth(dea_study_kind study)
+{
+    const dea_model *truth = NULL;
+    for (size_t i = 0; i < dea_model_count(); i++) {
+        const dea_model *model = dea_model_at(i);
+        const bool finer = !truth || rank(model) > rank(truth);
+        truth = finer && (study == DEA_STUDY_SWEEP || model->dynamic) ? model : truth;
+    }
+    return truth;
+}
+
+dea_status dea_needs_model(const dea_scene *scene, const dea_engine *engine, dea_model_choice *choice, dea_error *error)
+{
+    const dea_model *list[MOST_MODELS];
+    const size_t count = list_models(scene, engine, list);
+    *choice = (dea_model_choice){.truth = dea_needs_truth(scene->study), .bound = (double)INFINITY};
+    for (size_t i = 0; i < count && !choice->model; i++) {
+        double bound;
+        const dea_status status = bound_of(scene, list[i], choice->truth, &bound, error);
+        if (status != DEA_OK) {
+            return status;
+        }
+        if (bound < choice->bound || !choice->next) {
+            choice->next = list[i];
+            choice->bound = bound;
+        }
+        if (bound <= share * scene->accuracy) {
+            choice->model = list[i];
+        }
+    }
+    return DEA_OK;
+}

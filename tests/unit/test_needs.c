@@ -1,0 +1,239 @@
+/* What a run leaves out changes its samples by no more than the bound says. */
+#include <math.h>
+#include <string.h>
+
+#include "deaspice/needs.h"
+#include "random_transients.h"
+
+enum { SCENES = 200, BY_INTEGRATION = 6 };
+
+/* An engine to which everything costs time. */
+static const dea_engine *thrifty(void)
+{
+    return dea_engine_find("ngspice");
+}
+
+/* Omissions of random scenes, each measured; how many there were. */
+static size_t check_scene(int number, const dea_scene *scene)
+{
+    double changes[DEA_OMISSIONS], noise = 0.0;
+    dea_needs needs;
+    dea_error error = {0};
+    assert_int_equal(dea_needs_find(scene, scene->models[0], thrifty(), &needs, &error), DEA_OK);
+    assert_true(needs.bound <= 0.25 * scene->accuracy);
+    assert_int_equal(dea_needs_measure(scene, scene->models[0], &needs, changes, &noise, &error), DEA_OK);
+    for (size_t i = 0; i < needs.count; i++) {
+        const dea_omission *o = &needs.omissions[i];
+        if (changes[i] > o->bound + noise) {
+            fail_msg("scene %d, %s, accuracy %.2g: part %d, branch %zu, form %d, from %g: bound %.3g, measured %.3g", number,
+                     scene->models[0]->name, scene->accuracy, (int)o->part, o->branch, (int)o->form, o->from, o->bound,
+                     changes[i]);
+        }
+    }
+    return needs.count;
+}
+
+/* True where the closed form can judge; the others are judged by integration, which takes its time. */
+static bool is_quick(const dea_scene *scene)
+{
+    dea_scene still = *scene;
+    still.reduction.series = true;
+    return !dea_engine_refuses(dea_engine_find("direct"), &still, scene->models[0]) && !(scene->drive.series_resistance > 0.0);
+}
+
+static void bounds_of_random_scenes_hold(void **state)
+{
+    (void)state;
+    size_t omissions = 0, integrated = 0;
+    for (int i = 0; i < SCENES; i++) {
+        uint64_t seed = 7000003u * (uint64_t)(i + 1);
+        dea_scene scene;
+        random_transient(&seed, &scene);
+        random_blur(&seed, &scene);
+        scene.accuracy = random_decades(&seed, 1e-6, 1e-2);
+        if (is_quick(&scene) || integrated++ < BY_INTEGRATION) {
+            omissions += check_scene(i, &scene);
+        }
+    }
+    assert_true(omissions > SCENES / 4);
+}
+
+static const char *const base =
+    "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+    "material: {yeoh: {C1: 178426 Pa}, permittivity: 2.8, density: 1080 kg/m^3, retardation: 1 ms,\n"
+    "           prony: [{g: 0.1, tau: 1 us}, {g: 0.1, tau: 2 s}, {g: 0.1, tau: 1e9 s}]}\n"
+    "drive: {waveform: {step: {on: 0.1 s, voltage: 3 kV, rise: 1 us}}, series_resistance: 1 Ohm}\n"
+    "model: lumped\naccuracy: 1e-4\nstudy: {transient: {until: 10 s, every: 20 ms}}\n";
+
+static dea_scene scene_of(const char *setting)
+{
+    dea_scene scene;
+    dea_error error = {0};
+    const dea_setting settings[] = {{setting}};
+    if (dea_scene_parse(base, strlen(base), "needs", ".", settings, setting ? 1 : 0, NULL, &scene, &error) != DEA_OK) {
+        fail_msg("%s", error.message);
+    }
+    return scene;
+}
+
+static bool leaves_out(const dea_needs *needs, dea_part part, size_t branch, dea_branch_form form)
+{
+    for (size_t i = 0; i < needs->count; i++) {
+        const dea_omission *o = &needs->omissions[i];
+        if (o->part == part && o->branch == branch && o->form == form) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static dea_needs needs_of(const dea_scene *scene, const char *engine)
+{
+    dea_needs needs;
+    assert_int_equal(dea_needs_find(scene, scene->models[0], dea_engine_find(engine), &needs, NULL), DEA_OK);
+    return needs;
+}
+
+/* Samples every 20 ms behind a wait of 0.1 s: neither the ring, nor a branch of 1 us, nor 1 Ohm shows, and one of 30 years is a
+ * spring. */
+static void samples_decide_what_is_left_out(void **state)
+{
+    (void)state;
+    dea_scene scene = scene_of(NULL);
+    dea_needs needs = needs_of(&scene, "ngspice");
+    assert_true(leaves_out(&needs, DEA_PART_MASS, 0, DEA_BRANCH_WHOLE));
+    assert_true(leaves_out(&needs, DEA_PART_BRANCH, 0, DEA_BRANCH_OUT));
+    assert_false(leaves_out(&needs, DEA_PART_BRANCH, 1, DEA_BRANCH_OUT));
+    assert_true(leaves_out(&needs, DEA_PART_BRANCH, 2, DEA_BRANCH_SPRING));
+    assert_true(leaves_out(&needs, DEA_PART_SERIES, 0, DEA_BRANCH_WHOLE));
+    dea_scene_free(&scene);
+
+    scene = scene_of("every=20 us");
+    needs = needs_of(&scene, "ngspice");
+    assert_false(leaves_out(&needs, DEA_PART_MASS, 0, DEA_BRANCH_WHOLE));
+    dea_scene_free(&scene);
+
+    scene = scene_of("transient.start=bias");
+    needs = needs_of(&scene, "ngspice");
+    assert_false(leaves_out(&needs, DEA_PART_BRANCH, 2, DEA_BRANCH_SPRING));
+    dea_scene_free(&scene);
+}
+
+static void what_costs_an_engine_nothing_stays(void **state)
+{
+    (void)state;
+    dea_scene scene = scene_of(NULL);
+    assert_int_equal(needs_of(&scene, "direct").count, 0);
+    dea_scene_free(&scene);
+}
+
+typedef struct taken {
+    dea_sample samples[501];
+    dea_summary summary;
+} taken;
+
+static dea_status take(void *user, size_t first, const void *points, size_t count, dea_error *error)
+{
+    (void)first, (void)count, (void)error;
+    memcpy(user, points, sizeof(taken));
+    return DEA_OK;
+}
+
+static void run(const dea_scene *scene, const char *engine, bool full, taken *result)
+{
+    dea_error error = {0};
+    const dea_run_options options = {.jobs = 1, .full = full, .points = take, .user = result};
+    assert_int_equal(dea_layout_of(scene).point_size, sizeof *result);
+    if (dea_study_run(scene, dea_engine_find(engine), &options, &error) != DEA_OK) {
+        fail_msg("%s", error.message);
+    }
+}
+
+/* The bound is part of the estimated error, and both engines without the film's mass agree with one that keeps all. */
+static void reduced_runs_keep_the_accuracy(void **state)
+{
+    (void)state;
+    static taken whole, reduced[2];
+    dea_scene scene = scene_of(NULL);
+    run(&scene, "ida", true, &whole);
+    run(&scene, "ida", false, &reduced[0]);
+    run(&scene, "ngspice", false, &reduced[1]);
+    assert_true(whole.summary.omitted == 0.0);
+    for (int k = 0; k < 2; k++) {
+        const taken *r = &reduced[k];
+        assert_true(r->summary.omitted > 0.0 && r->summary.omitted <= 0.25e-4);
+        assert_true(r->summary.error > r->summary.omitted && r->summary.error <= 1e-4);
+        assert_near(r->summary.resonance, whole.summary.resonance, 1e-9 * whole.summary.resonance);
+        for (size_t i = 0; i < 501; i++) {
+            assert_near(r->samples[i].displacement, whole.samples[i].displacement, 2e-4 * whole.samples[500].displacement);
+        }
+    }
+    dea_scene_free(&scene);
+}
+
+/* A branch held as a spring adds c K to the film, one as a damper c K tau: as scenes that say so themselves. */
+static void simpler_forms_of_a_branch_are_springs_and_dampers(void **state)
+{
+    (void)state;
+    static taken form, said;
+    const double c = 0.1 / 0.7;
+    dea_scene scene = scene_of("drive.series_resistance=0 Ohm");
+    scene.reduction = (dea_reduction){.branches = {DEA_BRANCH_DAMPER, DEA_BRANCH_OUT, DEA_BRANCH_SPRING}};
+    run(&scene, "direct", true, &form);
+    dea_scene other = scene;
+    other.reduction = (dea_reduction){0};
+    other.material.prony_count = 0;
+    other.material.yeoh[0] *= 1.0 + c;
+    other.material.retardation = (1e-3 + c * 1e-6) / (1.0 + c);
+    run(&other, "direct", true, &said);
+    for (size_t i = 0; i < 501; i++) {
+        assert_near(form.samples[i].displacement, said.samples[i].displacement, 1e-12 * said.samples[500].displacement);
+    }
+    dea_scene_free(&scene);
+}
+
+static const char *const points =
+    "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+    "material: elastosil-2030\ndrive: {voltage: 4 kV}\nmodel: auto\n"
+    "study: {sweep: {coverage: {from: 0.2, to: 0.8, points: 61}, voltage: [100 V, 4 kV]}}\n";
+
+static dea_model_choice choice_at(double accuracy, double voltage, const char *engine)
+{
+    dea_scene scene;
+    dea_model_choice choice;
+    dea_error error = {0};
+    if (dea_scene_parse(points, strlen(points), "needs", ".", NULL, 0, NULL, &scene, &error) != DEA_OK) {
+        fail_msg("%s", error.message);
+    }
+    assert_true(scene.automatic);
+    scene.axes[1].values[1] = voltage;
+    scene.accuracy = accuracy;
+    assert_int_equal(dea_needs_model(&scene, engine ? dea_engine_find(engine) : NULL, &choice, &error), DEA_OK);
+    dea_scene_free(&scene);
+    return choice;
+}
+
+/* Small voltages leave the film linear; what no network reaches is left to the membrane, or to nobody. */
+static void accuracy_decides_which_model_is_chosen(void **state)
+{
+    (void)state;
+    assert_string_equal(choice_at(1e-6, 4000.0, NULL).model->name, "field");
+    assert_null(choice_at(1e-6, 4000.0, "ngspice").model);
+    assert_string_equal(choice_at(1e-6, 4000.0, "ngspice").next->name, "lame");
+    assert_string_equal(choice_at(0.3, 4000.0, "ngspice").model->name, "lame");
+    assert_string_equal(choice_at(1e-3, 200.0, NULL).model->name, "lame");
+    assert_true(choice_at(1e-3, 200.0, NULL).bound < choice_at(0.3, 4000.0, NULL).bound);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bounds_of_random_scenes_hold),
+        cmocka_unit_test(samples_decide_what_is_left_out),
+        cmocka_unit_test(what_costs_an_engine_nothing_stays),
+        cmocka_unit_test(reduced_runs_keep_the_accuracy),
+        cmocka_unit_test(simpler_forms_of_a_branch_are_springs_and_dampers),
+        cmocka_unit_test(accuracy_decides_which_model_is_chosen),
+    };
+    return cmocka_run_group_tests_name("needs", tests, NULL, NULL);
+}

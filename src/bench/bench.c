@@ -26,6 +26,7 @@ static bool can_do(const dea_scene *scene, const dea_model *model)
 void dea_bench_all_models(dea_scene *scene)
 {
     scene->model_count = 0;
+    scene->automatic = false;
     for (size_t i = 0; i < dea_model_count() && scene->model_count < DEA_SCENE_MODELS; i++) {
         if (can_do(scene, dea_model_at(i))) {
             scene->models[scene->model_count++] = dea_model_at(i);

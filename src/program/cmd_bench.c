@@ -254,7 +254,7 @@ static dea_exit run(const dea_arguments *arguments)
     if (!dea_scene_open(arguments, path, &scene, &outcome)) {
         return outcome;
     }
-    if (!arguments->model) {
+    if (!arguments->model || scene.automatic) {
         dea_bench_all_models(&scene);
     }
     outcome = bench_scene(arguments, path, &scene);

@@ -141,10 +141,11 @@ static void count_states(dea_bench_work *work, size_t number)
 static dea_status refer_all(dea_bench_work *work, dea_error *error)
 {
     const size_t models = work->bench->model_count;
-    const bool sweep = work->bench->scene->study == DEA_STUDY_SWEEP;
-    const double allowance = reference_share * work->options->budget / (double)(models + sweep);
+    const bool alone = dea_bench_membrane(work) == &work->truths[models];
+    const size_t count = models + (work->bench->scene->study == DEA_STUDY_SWEEP && alone);
+    const double allowance = reference_share * work->options->budget / (double)count;
     dea_status status = DEA_OK;
-    for (size_t i = 0; i < models + sweep && status == DEA_OK; i++) {
+    for (size_t i = 0; i < count && status == DEA_OK; i++) {
         status = dea_bench_refer(work, i, allowance, error);
         if (i < models) {
             count_states(work, i);

@@ -5,8 +5,8 @@
 
 #include "bench/work.h"
 
-/* Rungs of a long step of the climb to a reference. */
-enum { CLIMB = 3 };
+/* Rungs of a long step of the climb to a reference; and rungs that are enough where only errors of models are judged, 1e-6. */
+enum { CLIMB = 3, MODEL_RUNGS = 5 };
 
 /* What a rung costs over the one below it, as long as only one is known, and bounds of what is seen. */
 static const double growth_guess = 1.6, growth_least = 1.25, growth_most = 3.0;
@@ -136,6 +136,9 @@ dea_status dea_bench_refer(dea_bench_work *work, size_t number, double allowance
     const char *why;
     ascent up = {.engine = dea_bench_best(&truth->scene), .growth = growth_guess, .allowance = allowance};
     up.rungs = up.engine ? dea_bench_rungs(up.engine, &truth->scene, &why) : 0;
+    if (number == work->bench->model_count && up.rungs > MODEL_RUNGS) {
+        up.rungs = MODEL_RUNGS;
+    }
     dea_status status = DEA_OK;
     for (size_t rung = next_rung(&up); rung > 0 && status == DEA_OK; rung = up.rungs > 0 ? next_rung(&up) : 0) {
         status = climb(work, truth, &up, rung, error);
@@ -233,10 +236,21 @@ static dea_row row_of(const dea_bench_truth *truth, size_t i)
     return row;
 }
 
+dea_bench_truth *dea_bench_membrane(const dea_bench_work *work)
+{
+    const size_t models = work->bench->model_count;
+    for (size_t i = 0; i < models; i++) {
+        if (work->bench->models[i].model == work->truths[models].scene.models[0]) {
+            return &work->truths[i];
+        }
+    }
+    return &work->truths[models];
+}
+
 static void judge_model(const dea_bench_work *work, size_t number, double *errors)
 {
     dea_bench_model *model = &work->bench->models[number];
-    const dea_bench_truth *own = &work->truths[number], *field = &work->truths[work->bench->model_count];
+    const dea_bench_truth *own = &work->truths[number], *field = dea_bench_membrane(work);
     for (size_t i = 0; i < work->points; i++) {
         const dea_row row = row_of(own, i), exact = row_of(field, i);
         if (row.state != DEA_STATE_OK || exact.state != DEA_STATE_OK) {
@@ -256,8 +270,8 @@ static void judge_model(const dea_bench_work *work, size_t number, double *error
 dea_status dea_bench_judge_models(dea_bench_work *work, dea_error *error)
 {
     const dea_bench *bench = work->bench;
-    const dea_bench_truth *field = &work->truths[bench->model_count];
-    if (!field->known) {
+    const dea_bench_truth *field = dea_bench_membrane(work);
+    if (bench->scene->study != DEA_STUDY_SWEEP || !field->known) {
         return DEA_OK;
     }
     double *errors = malloc(work->points * sizeof *errors);

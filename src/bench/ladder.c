@@ -5,8 +5,8 @@
 
 #include "bench/work.h"
 
-/* Part of the budget that the first runs may take; the rest repeats them. */
-static const double first_share = 0.6;
+/* Part of the budget that the first runs may take, the rest repeats them; and what each ladder may take in any case. */
+static const double first_share = 0.6, least_share = 0.01;
 /* What a step of the ladder costs over the one before it, as long as only one is known, and bounds of what is seen. */
 static const double growth_guess = 2.0, growth_least = 1.0, growth_most = 10.0;
 
@@ -174,7 +174,7 @@ dea_status dea_bench_walk(dea_bench_work *work, size_t model, dea_error *error)
                     .engine = engine,
                     .model = model,
                     .rungs = dea_bench_rungs(engine, scene, &why),
-                    .allowance = fmax(0.0, share) / (double)left--,
+                    .allowance = fmax(least_share * work->options->budget, share / (double)left--),
                     .last = none,
                     .before = none,
                     .start = none};

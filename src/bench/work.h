@@ -31,7 +31,7 @@ typedef struct dea_bench_work {
     dea_layout layout;
     size_t points;           /* of one model */
     char *buffer;            /* points of one run */
-    dea_bench_truth *truths; /* of each model, and of model `field` behind them */
+    dea_bench_truth *truths; /* of each model, and behind them of `field`, where that is none of them */
     dea_bench_times *times;  /* of each setting */
     size_t setting_room;
     double begun;       /* [s] */
@@ -81,7 +81,9 @@ dea_status dea_bench_refer(dea_bench_work *work, size_t truth, double allowance,
 void dea_bench_judge(dea_bench_work *work, dea_bench_setting *setting, uint64_t digest);
 /* Marks broken promises and dominated settings, and finds for each model who else comes near its reference. */
 void dea_bench_conclude(dea_bench *bench);
-/* Errors of the models' strains relative to model `field`. */
+/* The truth that is model `field`: one of the models, or the one behind them. */
+dea_bench_truth *dea_bench_membrane(const dea_bench_work *work);
+/* Errors of the models' strains relative to it. */
 dea_status dea_bench_judge_models(dea_bench_work *work, dea_error *error);
 
 #endif

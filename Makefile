@@ -90,7 +90,7 @@ $(BUILD)/fuzz/scene_fuzz: tests/fuzz/scene_fuzz.c $(LIBRARY_SOURCES)
 # Takes 6 to 7 minutes.
 bench:
 	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/bench
-	@$(BUILD)/bench $(BUILD)/deaspice tests/peers
+	@$(BUILD)/bench $(BUILD)/deaspice tests/peers examples
 	@$(MAKE) --no-print-directory work-precision
 
 work-precision:
@@ -100,7 +100,7 @@ work-precision:
 
 $(BUILD)/bench: $(wildcard tests/bench/*.[ch]) $(BUILD)/libdeaspice.a
 	@echo "CC $@"
-	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) -Itests/bench $(filter %.c,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) $(LIBS)
+	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) -Itests/bench $(filter %.c,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) -lcmocka $(LIBS)
 
 # The ready-made parts for circuit simulators; a unit test finds what is checked in and differs.
 netlists: $(BUILD)/make_netlists

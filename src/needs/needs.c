@@ -10,6 +10,7 @@
 
 static const double budget = 0.25;     /* of the accuracy: all omissions */
 static const double one_share = 0.5;   /* most that one omission takes of what is left of it */
+static const double ring_share = 0.02; /* of the accuracy: what is left of a ring hides how fast the steps converge */
 static const double safe_linear = 1.5; /* bound over what the stand-in says, where it is the film itself */
 static const double safe_nonlinear = 4.0;
 static const double missed = 0.01; /* share of the static displacement that counts as peak where the samples see less */
@@ -114,7 +115,7 @@ static void try_ring(planner *p)
     const dea_surrogate *s = &p->surrogate;
     const dea_omission mass = {.part = DEA_PART_MASS};
     const double omega = omega_of(s);
-    const double wanted = one_share * p->left;
+    const double wanted = fmin(one_share * p->left, ring_share * p->surrogate.scene->accuracy);
     dea_omission ring = {.part = DEA_PART_RING};
     double last = (double)INFINITY; /* amplitude at the last probe that sees it */
     double next = (double)INFINITY; /* the first age of those that do not */

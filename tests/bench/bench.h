@@ -40,6 +40,7 @@ void bench_engines(const char *peers);
 void bench_workers(void);
 void bench_program(const char *program);
 void bench_transients(const char *program, const char *peers);
+void bench_omissions(const char *examples);
 void bench_peers(const char *peers);
 
 #endif

@@ -118,7 +118,8 @@ static void lame_row(void)
     }
     char measured[64];
     snprintf(measured, sizeof measured, "%+.1f to %+.1f %%", 100.0 * low, 100.0 * high);
-    bench_row("lame against field, 4.5 kV, 1.1-1.3, coverage 0.1-0.9", "-8 to +8 %, rounded", fmax(-low, high) < 0.085, measured, "");
+    bench_row("lame against field, 4.5 kV, 1.1-1.3, coverage 0.1-0.9", "-8 to +8 %, rounded", fmax(-low, high) < 0.085, measured,
+              "");
 }
 
 void bench_agreement(void)

@@ -24,12 +24,15 @@ LIBRARY_OBJECTS := $(LIBRARY_SOURCES:%.c=$(BUILD)/%.o)
 PROGRAM_OBJECTS := $(PROGRAM_SOURCES:%.c=$(BUILD)/%.o)
 UNIT_SOURCES    := $(sort $(wildcard tests/unit/test_*.c))
 UNIT_PROGRAMS   := $(UNIT_SOURCES:tests/unit/%.c=$(BUILD)/tests/%)
+STABILITY_SOURCES := $(filter-out %/main.c,$(sort $(wildcard tests/stability/*.c))) tests/bench/measure.c tests/bench/reference.c
+STABILITY_PARTS := $(STABILITY_SOURCES:%.c=$(BUILD)/%.o)
 
+CLANG    := $(shell command -v clang 2>/dev/null)
 JOBS     ?= $(shell nproc 2>/dev/null || echo 1)
 SANITIZE := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 
 .DELETE_ON_ERROR:
-.PHONY: all unit demo check test asan fuzz clang bench work-precision netlists examples-agree asan-run install uninstall clean packages packages-check
+.PHONY: all unit demo check test asan fuzz clang bench work-precision stability promises netlists examples-agree compilers-agree asan-run install uninstall clean packages packages-check
 
 all: $(BUILD)/deaspice $(BUILD)/libdeaspice.so
 
@@ -49,7 +52,7 @@ demo: packages
 # Everything that must hold: unit tests, engines against each other, examples, bad input, sanitizers, fuzzing, a second compiler.
 check: packages-check
 	@rm -f $(BUILD)/tally; mkdir -p $(BUILD)
-	@TALLY=$(abspath $(BUILD))/tally $(MAKE) --no-print-directory -k test examples-agree clang asan fuzz; \
+	@TALLY=$(abspath $(BUILD))/tally $(MAKE) --no-print-directory -k test examples-agree clang compilers-agree asan fuzz; \
 	status=$$?; \
 	awk -v status=$$status '{p += $$1; f += $$2} END {if (status && !f) f = 1; printf "%d passed, %d failed\n", p, f}' $(BUILD)/tally; \
 	exit $$status
@@ -64,6 +67,12 @@ examples-agree:
 
 clang:
 	@$(MAKE) --no-print-directory BUILD=$(BUILD)/clang CC=clang CFLAGS="-O1 -Werror" -j$(JOBS) all unit
+
+# The examples by both compilers.
+compilers-agree: clang
+	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/stability
+	@$(BUILD)/stability --compilers examples gcc=$(BUILD)/deaspice clang=$(BUILD)/clang/deaspice >$(BUILD)/compilers \
+	&& echo "1 0" >>$${TALLY:-/dev/null} || { cat $(BUILD)/compilers; echo "0 1" >>$${TALLY:-/dev/null}; exit 1; }
 
 asan:
 	@$(MAKE) --no-print-directory BUILD=$(BUILD)/asan CFLAGS="$(SANITIZE)" asan-run
@@ -101,6 +110,33 @@ work-precision:
 $(BUILD)/bench: $(wildcard tests/bench/*.[ch]) $(BUILD)/libdeaspice.a
 	@echo "CC $@"
 	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) -Itests/bench $(filter %.c,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) -lcmocka $(LIBS)
+
+# Orders, conditioning, freedom of units, other compilers and flags, as Markdown. Takes 3 minutes after the builds.
+stability:
+	@{ $(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/stability; \
+	$(MAKE) --no-print-directory -j$(JOBS) BUILD=$(BUILD)/o0 CFLAGS=-O0 $(BUILD)/o0/deaspice; \
+	$(MAKE) --no-print-directory -j$(JOBS) BUILD=$(BUILD)/o3 CFLAGS=-O3 $(BUILD)/o3/deaspice; \
+	$(MAKE) --no-print-directory -j$(JOBS) BUILD=$(BUILD)/fma CFLAGS="-O2 -march=native -ffp-contract=fast" $(BUILD)/fma/deaspice; \
+	$(if $(CLANG),$(MAKE) --no-print-directory -j$(JOBS) BUILD=$(BUILD)/clang CC=clang CFLAGS="-O1 -Werror" $(BUILD)/clang/deaspice;) } >&2
+	@$(BUILD)/stability examples "$(CC) $(CFLAGS)=$(BUILD)/deaspice" "-O0=$(BUILD)/o0/deaspice" "-O3=$(BUILD)/o3/deaspice" \
+	"-O2 -march=native -ffp-contract=fast=$(BUILD)/fma/deaspice" $(if $(CLANG),"clang -O1=$(BUILD)/clang/deaspice")
+
+$(BUILD)/stability: $(STABILITY_PARTS) $(BUILD)/tests/stability/main.o $(BUILD)/libdeaspice.a
+	@echo "LD $@"
+	@$(CC) $(CFLAGS) $(LDFLAGS) $^ -o $@ $(LIBS)
+
+# Random scenes by all engines and accuracies against truths found another way: broken promises of accuracy. About 15 minutes;
+# SCENES=n, SEED=s for others.
+SCENES ?= 500
+SEED   ?= 1
+promises:
+	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/promises
+	@$(BUILD)/promises --scenes $(SCENES) --seed $(SEED)
+
+PROMISES := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tests/promises/*.c)))
+$(BUILD)/promises: $(PROMISES) $(BUILD)/libdeaspice.a
+	@echo "LD $@"
+	@$(CC) $(CFLAGS) $(LDFLAGS) $^ -o $@ -lcmocka $(LIBS)
 
 # The ready-made parts for circuit simulators; a unit test finds what is checked in and differs.
 netlists: $(BUILD)/make_netlists
@@ -150,8 +186,11 @@ $(BUILD)/deaspice: $(PROGRAM_OBJECTS) $(BUILD)/libdeaspice.a
 $(BUILD)/tests/%: tests/unit/%.c $(BUILD)/libdeaspice.a Makefile
 	@mkdir -p $(@D)
 	@echo "CC $@"
-	@$(CC) $(ALL_CFLAGS) -Itests/unit $< $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) -lcmocka $(LIBS)
+	@$(CC) $(ALL_CFLAGS) -Itests/unit $< $(filter %.o,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) -lcmocka $(LIBS)
+
+$(BUILD)/tests/test_stability: $(STABILITY_PARTS)
+$(BUILD)/tests/test_promises: $(filter-out %/main.o,$(PROMISES))
 
 unit: $(UNIT_PROGRAMS)
 
--include $(LIBRARY_OBJECTS:.o=.d) $(PROGRAM_OBJECTS:.o=.d) $(wildcard $(BUILD)/tests/*.d)
+-include $(LIBRARY_OBJECTS:.o=.d) $(PROGRAM_OBJECTS:.o=.d) $(STABILITY_PARTS:.o=.d) $(PROMISES:.o=.d) $(wildcard $(BUILD)/tests/*.d)

@@ -29,6 +29,8 @@ typedef struct dea_engine {
     double run_patience; /**< the same for one transient or frequency response [s] */
     size_t block;        /**< points that one call of sweep() takes best */
     unsigned omits;      /**< parts of a moving network that cost it time: 1 << dea_part */
+    /** Writes name and version of the foreign library whose numbers these are. NULL: there is none. */
+    void (*library)(char *text, size_t size);
     /** NULL where the engine can do this model and scene, else why not (one phrase, static). */
     const char *(*refuses)(const dea_scene *scene, const dea_model *model);
     /** Starts a session; the caller ends it with end(). */
@@ -61,10 +63,15 @@ DEA_API const dea_engine *dea_engine_find(const char *name);
 /** How a study is run and who listens. Every callback may be NULL except points. */
 typedef struct dea_run_options {
     size_t jobs; /**< worker processes, >= 1; 1 keeps an engine that is not isolated in this process */
-    bool full;   /**< transients leave out nothing (see needs.h) */
     /** Takes the results of @p count points in order, each as the scene's dea_layout says; @p first counts over models (slowest)
      * and points. A failure ends the run with its status. */
     dea_status (*points)(void *user, size_t first, const void *points, size_t count, dea_error *error);
+    /** False: the points of block @p block of the study are neither computed nor handed over. Which points a block has depends on
+     * scene and engine alone (src/engine/cut.h). NULL: all are wanted. The answer must stay the same until the block is handed
+     * over. */
+    bool (*wanted)(void *user, size_t block);
+    bool any_order; /**< points() takes blocks as they are finished, not in order */
+    /** Points handed over so far, of those that are wanted. */
     void (*progress)(void *user, size_t done, size_t total);
     void (*log)(void *user, const char *line); /**< what engines say about points that failed */
     bool (*stop)(void *user);                  /**< polled at least 10 times a second: true ends the run as interrupted */

@@ -144,6 +144,7 @@ typedef struct dea_scene {
     const struct dea_model *models[DEA_SCENE_MODELS]; /**< models to run one after the other, model_count of them */
     size_t model_count;                               /**< >= 1 */
     bool automatic;          /**< `model: auto`: the first model is the finest there is until dea_needs_model() has chosen one */
+    bool full;               /**< a transient leaves out nothing (see needs.h), default false; never read from a file */
     dea_reduction reduction; /**< never read from a file: set by dea_needs_find() */
     double accuracy;         /**< wanted relative error of the solution [1], 0 < accuracy < 1, default 1e-6 */
     dea_study_kind study;    /**< sweep, transient or AC */

@@ -64,12 +64,12 @@ dea_status dea_bench_solve(const dea_bench_work *work, const dea_engine *engine,
     dea_scene here = *scene;
     audience listener = {work, points};
     const dea_run_options options = {.jobs = work->options->jobs,
-                                     .full = full,
                                      .points = take_points,
                                      .log = points && work->options->log ? take_log : NULL,
                                      .stop = work->options->stop ? poll_stop : NULL,
                                      .user = &listener};
     here.accuracy = accuracy;
+    here.full = scene->full || full;
     const double from = dea_bench_now();
     const dea_status status = dea_study_run(&here, engine, &options, error);
     *seconds = dea_bench_now() - from;

@@ -5,7 +5,6 @@
 
 #include <math.h>
 #include <stdarg.h>
-#include <stdint.h>
 #include <stdio.h>
 
 enum {
@@ -14,48 +13,24 @@ enum {
     HOPELESS_LOSSES = 32,
     HOPELESS_STREAK = 16,
     MOST_LINES = 200,
-    LINE_LENGTH = DEA_ERROR_LENGTH + 512,
-    MOST_HERE = 1024,   /* points of an engine that may run in this process, which cannot be stopped inside a block */
-    SMALLEST_SHARE = 16 /* a block is not cut below this fraction of what the engine takes best */
+    LINE_LENGTH = DEA_ERROR_LENGTH + 512
 };
-
-static size_t divide_up(size_t a, size_t b)
-{
-    return a / b + (a % b != 0);
-}
-
-static size_t block_size(const dea_scene *scene, const dea_engine *engine, size_t jobs, size_t points, size_t total)
-{
-    if (scene->study != DEA_STUDY_SWEEP)
-        return 1; /* a point is a whole run */
-    size_t best = engine->block > 0 ? engine->block : 1;
-    size_t block = best;
-    if (jobs > 1) {
-        size_t share = divide_up(total, jobs > SIZE_MAX / 2 ? jobs : 2 * jobs);
-        size_t least = divide_up(best, SMALLEST_SHARE);
-        if (share < least)
-            share = least;
-        if (share < block)
-            block = share;
-    }
-    if (!engine->isolated && block > MOST_HERE)
-        block = MOST_HERE;
-    return block < points ? block : points;
-}
 
 dea_status dea_plan_make(const dea_scene *scene, const dea_engine *engine, const dea_run_options *options, dea_plan *plan,
                          dea_error *error)
 {
-    size_t points = dea_scene_point_count(scene);
-    if (scene->model_count == 0 || points == 0)
-        return dea_fail(error, DEA_ERROR_USAGE, "the study has no point");
-    if (points > SIZE_MAX / sizeof(dea_row) / scene->model_count)
-        return dea_fail(error, DEA_ERROR_USAGE, "the study has more points than this machine can count");
-    *plan = (dea_plan){.scene = scene, .engine = engine, .options = options, .layout = dea_layout_of(scene), .points = points};
-    plan->total = points * scene->model_count;
-    plan->block = block_size(scene, engine, options->jobs, points, plan->total);
-    plan->blocks_per_model = divide_up(points, plan->block);
-    plan->blocks = plan->blocks_per_model * scene->model_count;
+    *plan = (dea_plan){.scene = scene, .engine = engine, .options = options, .layout = dea_layout_of(scene)};
+    const dea_status status = dea_cut_make(scene, engine, &plan->cut, error);
+    if (status != DEA_OK)
+        return status;
+    plan->blocks = plan->cut.blocks;
+    plan->points = plan->cut.total;
+    for (size_t i = 0; options->wanted && i < plan->cut.blocks; i++) {
+        if (!options->wanted(options->user, i)) {
+            plan->blocks--;
+            plan->points -= dea_cut_range(&plan->cut, i).count;
+        }
+    }
     return DEA_OK;
 }
 
@@ -64,15 +39,14 @@ bool dea_plan_here(const dea_plan *plan)
     return !plan->engine->isolated && (plan->options->jobs == 1 || plan->blocks == 1);
 }
 
-dea_span dea_plan_span(const dea_plan *plan, size_t block)
+dea_span dea_plan_next(const dea_plan *plan, size_t *block)
 {
-    size_t model = block / plan->blocks_per_model;
-    size_t first = (block % plan->blocks_per_model) * plan->block;
-    size_t left = plan->points - first;
-    return (dea_span){.model = plan->scene->models[model],
-                      .first = first,
-                      .place = model * plan->points + first,
-                      .count = left < plan->block ? left : plan->block};
+    const dea_run_options *options = plan->options;
+    while (options->wanted && *block + 1 < plan->cut.blocks && !options->wanted(options->user, *block))
+        ++*block;
+    const dea_range range = dea_cut_range(&plan->cut, (*block)++);
+    return (dea_span){
+        .model = plan->scene->models[range.model], .first = range.first, .place = range.place, .count = range.count};
 }
 
 dea_attempt dea_attempt_start(size_t count)
@@ -198,7 +172,7 @@ static dea_status run_transient(const dea_plan *plan, void *session, dea_scene *
     const dea_engine *engine = plan->engine;
     dea_summary *summary = dea_layout_summary(&plan->layout, result);
     dea_needs needs;
-    if (plan->options->full) {
+    if (here->full) {
         here->reduction.ring = (double)INFINITY;
         return engine->transient(session, here, model, result, summary, error);
     }
@@ -225,7 +199,7 @@ static dea_status run_point(const dea_plan *plan, void *session, const dea_model
         status = run_transient(plan, session, &here, model, result, error);
     else
         status = plan->engine->ac(session, &here, model, result, error);
-    if (status == DEA_ERROR_USAGE && plan->total > 1) {
+    if (status == DEA_ERROR_USAGE && plan->cut.total > 1) {
         dea_layout_fail(plan->scene, &plan->layout, result);
         return DEA_OK;
     }
@@ -275,12 +249,13 @@ void dea_attempt_failed(dea_attempt *attempt, const dea_plan *plan, const dea_sp
     try_next_range(attempt);
 }
 
-dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const void *points, dea_error *error)
+dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const void *points, size_t *done, dea_error *error)
 {
     const dea_run_options *options = plan->options;
     dea_status status = options->points(options->user, span->place, points, span->count, error);
+    *done += span->count;
     if (status == DEA_OK && options->progress)
-        options->progress(options->user, span->place + span->count, plan->total);
+        options->progress(options->user, *done, plan->points);
     return status;
 }
 

@@ -4,19 +4,17 @@
 #ifndef DEA_ENGINE_PLAN_H
 #define DEA_ENGINE_PLAN_H
 
-#include "deaspice/engine.h"
+#include "engine/cut.h"
 
-/** A study cut into blocks that never cross from one model to the next. */
+/** A study and what of it is to be computed. */
 typedef struct dea_plan {
     const dea_scene *scene;
     const dea_engine *engine;
     const dea_run_options *options;
     dea_layout layout; /**< of a point's result */
-    size_t points;     /**< points of one model */
-    size_t total;      /**< points of the study: of all models */
-    size_t block;      /**< most points in a block */
-    size_t blocks_per_model;
-    size_t blocks; /**< of the study */
+    dea_cut cut;
+    size_t blocks; /**< that are wanted */
+    size_t points; /**< in those */
 } dea_plan;
 
 /** One block. */
@@ -43,13 +41,13 @@ typedef struct dea_damage {
     size_t lines;  /**< lines written to the log */
 } dea_damage;
 
-/** Cuts the study for @p options->jobs workers. */
+/** Cuts the study and counts what of it is wanted. */
 dea_status dea_plan_make(const dea_scene *scene, const dea_engine *engine, const dea_run_options *options, dea_plan *plan,
                          dea_error *error);
 /** True where the study runs in this process, not in workers. */
 bool dea_plan_here(const dea_plan *plan);
-/** Block number @p block. */
-dea_span dea_plan_span(const dea_plan *plan, size_t block);
+/** The first wanted block from number *@p block on, which steps behind it. There is one as long as not all were taken. */
+dea_span dea_plan_next(const dea_plan *plan, size_t *block);
 
 /** Starts a block of @p count points; the whole of it is tried first. */
 dea_attempt dea_attempt_start(size_t count);
@@ -72,8 +70,8 @@ void dea_plan_fail(const dea_plan *plan, void *points, size_t count);
  * range, as a grid can hold, costs only its own rows where it is one of many. */
 dea_status dea_plan_solve(const dea_plan *plan, void *session, const dea_model *model, size_t first, size_t count, void *points,
                           dea_error *error);
-/** Hands a block to the points callback and tells progress. */
-dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const void *points, dea_error *error);
+/** Hands a block to the points callback, adds its points to *@p done and tells progress. */
+dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const void *points, size_t *done, dea_error *error);
 /** Time that a worker may take for so many points before it hangs, beyond what every worker gets [s]. */
 double dea_plan_patience(const dea_plan *plan, size_t count);
 /** True when the caller wants the run to end. */

@@ -15,12 +15,13 @@ enum { SLOTS_PER_WORKER = 4, MOST_WORKERS = 1024, WAIT_MS = 50, MOST_MEMORY = 25
 static const double longest_tick = 1; /* [s] the pool's clock stands still while this process is stopped */
 static const double start_time = 30;  /* [s] an engine may take to begin a session */
 
-/* Block number n lives in slot n % slot_count from its first attempt until its points are handed over. */
+/* The n-th wanted block lives in slot n % slot_count from its first attempt until it and all before it are handed over. */
 typedef struct dea_slot {
     dea_span span;
     dea_attempt attempt;
     char *points; /* shared memory */
     bool busy;    /* a worker has its current range */
+    bool given;   /* its points are handed over */
 } dea_slot;
 
 typedef struct dea_pool {
@@ -32,8 +33,10 @@ typedef struct dea_pool {
     struct pollfd *polls;
     dea_slot *slots;
     size_t slot_count;
+    size_t next;      /* number in the study from which on blocks have no slot yet */
     size_t opened;    /* blocks that have a slot or had one */
-    size_t delivered; /* blocks handed over */
+    size_t delivered; /* blocks whose slot is free again */
+    size_t done;      /* points handed over */
     dea_damage damage;
     double clock, last; /* [s] */
     void *memory;       /* shared: points of the slots, then errors of the workers */
@@ -67,7 +70,7 @@ static size_t larger(size_t a, size_t b)
 
 static dea_status pool_share_memory(dea_pool *pool, dea_error *error)
 {
-    size_t block = pool->plan->block * pool->plan->layout.point_size;
+    size_t block = pool->plan->cut.block * pool->plan->layout.point_size;
     size_t points = pool->slot_count * block;
     pool->memory_size = points + pool->worker_count * sizeof(dea_error);
     pool->memory = mmap(NULL, pool->memory_size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -86,7 +89,7 @@ static dea_status pool_init(dea_pool *pool, const dea_plan *plan, double beyond,
 {
     size_t workers = smaller(smaller(plan->options->jobs, plan->blocks), MOST_WORKERS);
     *pool = (dea_pool){.plan = plan, .beyond = beyond, .worker_count = workers, .limit = workers, .memory = MAP_FAILED};
-    const size_t affordable = MOST_MEMORY / (plan->block * plan->layout.point_size);
+    const size_t affordable = MOST_MEMORY / (plan->cut.block * plan->layout.point_size);
     pool->slot_count = smaller(plan->blocks, larger(workers, smaller(workers * SLOTS_PER_WORKER, affordable)));
     pool->workers = calloc(workers, sizeof *pool->workers);
     pool->polls = calloc(workers, sizeof *pool->polls);
@@ -118,9 +121,10 @@ static void pool_open_blocks(dea_pool *pool)
 {
     while (pool->opened < pool->plan->blocks && pool->opened - pool->delivered < pool->slot_count) {
         dea_slot *slot = slot_of(pool, pool->opened);
-        slot->span = dea_plan_span(pool->plan, pool->opened);
+        slot->span = dea_plan_next(pool->plan, &pool->next);
         slot->attempt = dea_attempt_start(slot->span.count);
         slot->busy = false;
+        slot->given = false;
         pool->opened++;
     }
 }
@@ -301,18 +305,24 @@ static dea_status pool_listen(dea_pool *pool, dea_error *error)
     return status;
 }
 
-/* Hands over the blocks that are settled, in order. */
+/* Hands over the blocks that are settled: in order, or all of them. */
 static dea_status pool_deliver(dea_pool *pool, dea_error *error)
 {
-    while (pool->delivered < pool->opened) {
-        const dea_slot *slot = slot_of(pool, pool->delivered);
-        if (slot->busy || !dea_attempt_over(&slot->attempt))
-            return DEA_OK;
-        dea_status status = dea_plan_deliver(pool->plan, &slot->span, slot->points, error);
+    const bool in_order = !pool->plan->options->any_order;
+    for (size_t block = pool->delivered; block < pool->opened; block++) {
+        dea_slot *slot = slot_of(pool, block);
+        const bool settled = !slot->busy && dea_attempt_over(&slot->attempt);
+        if (!settled && in_order)
+            break;
+        if (!settled || slot->given)
+            continue;
+        const dea_status status = dea_plan_deliver(pool->plan, &slot->span, slot->points, &pool->done, error);
         if (status != DEA_OK)
             return status;
-        pool->delivered++;
+        slot->given = true;
     }
+    while (pool->delivered < pool->opened && slot_of(pool, pool->delivered)->given)
+        pool->delivered++;
     return DEA_OK;
 }
 

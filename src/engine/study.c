@@ -56,17 +56,18 @@ static dea_status solve_block(const dea_plan *plan, const dea_span *span, void *
 
 static dea_status run_here(const dea_plan *plan, dea_error *error)
 {
-    char *points = malloc(plan->block * plan->layout.point_size);
+    char *points = malloc(plan->cut.block * plan->layout.point_size);
     if (!points)
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for a block of %zu points", plan->block);
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for a block of %zu points", plan->cut.block);
     void *session = NULL;
     dea_damage damage = {0};
     dea_status status = plan->engine->begin(&session, error);
-    for (size_t i = 0; status == DEA_OK && i < plan->blocks; i++) {
-        dea_span span = dea_plan_span(plan, i);
+    size_t next = 0, done = 0;
+    while (status == DEA_OK && done < plan->points) {
+        dea_span span = dea_plan_next(plan, &next);
         status = solve_block(plan, &span, &session, points, &damage, error);
         if (status == DEA_OK)
-            status = dea_plan_deliver(plan, &span, points, error);
+            status = dea_plan_deliver(plan, &span, points, &done, error);
     }
     plan->engine->end(session);
     free(points);
@@ -79,7 +80,7 @@ dea_status dea_study_run(const dea_scene *scene, const dea_engine *engine, const
     dea_status status = check_request(scene, engine, options, error);
     if (status == DEA_OK)
         status = dea_plan_make(scene, engine, options, &plan, error);
-    if (status != DEA_OK)
+    if (status != DEA_OK || plan.blocks == 0)
         return status;
     return dea_plan_here(&plan) ? run_here(&plan, error) : dea_pool_run(&plan, patience_beyond, error);
 }

@@ -68,7 +68,7 @@ static dea_expr capacitance(const dea_symbols *symbols, dea_expr strain)
     }
     const dea_expr radius = MUL(symbols->coverage, symbols->frame_radius);
     const dea_expr front = MUL(symbols->permittivity, DIV(SQUARE(MUL(radius, symbols->prestretch)), symbols->film_thickness));
-    const bool wide = dea_expr_constant(pool, symbols->coverage) < 0.9; /* false too where the coverage is a symbol */
+    const bool wide = dea_expr_constant(pool, symbols->coverage) < 0.7; /* false too where the coverage is a symbol */
     const dea_expr push = wide ? push_by_logarithm(symbols, strain) : push_by_rule(symbols, strain);
     return SUB(rest, MUL(SCALE(4.0 * DEA_PI, front), push));
 }

@@ -8,6 +8,7 @@
  */
 #include <float.h>
 
+#include "model/field.h"
 #include "model/film_balance.h"
 
 enum { GBS_COLUMNS = 7 };
@@ -36,7 +37,7 @@ typedef struct membrane {
     double disc_k;    /* Maxwell pressure in the disc: M of a dot, 0 of a lens [Pa] */
     double annulus_k; /* and in the annulus [Pa] */
     double length;    /* ln(1/B) */
-    double step;      /* longest in x */
+    dea_field_mesh mesh;
 } membrane;
 
 /* What an integration collects for the limits of the film and the force on the edge. */
@@ -98,7 +99,7 @@ static bool advance(const membrane *m, radial_state start, double step, radial_s
         row[k] = value;
     }
     *end = row[GBS_COLUMNS - 1];
-    return change <= little * fabs(start.d);
+    return change <= m->mesh.change * fabs(start.d);
 }
 
 /* p1(l - d, l) - p1(l, l), factored in d. */
@@ -166,7 +167,7 @@ static double miss_at_frame(const membrane *m, double edge, extremes *x)
         *x = (extremes){disc, lens ? (l - s.d) * l : l * l, lens ? (l - s.d) * l * l : l * l * l};
         note(m, s, x);
     }
-    const double longest = m->length / ceil(m->length / m->step);
+    const double longest = m->length / ceil(m->length / m->mesh.step);
     double step = longest;
     for (double rest = m->length; rest > 0.0;) {
         const double now = fmin(step, rest);
@@ -374,14 +375,14 @@ static bool trace(const membrane *full, double sign, double end, double *edge)
     return false;
 }
 
-static void solve(const dea_point *point, double accuracy, dea_row *row)
+void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row)
 {
     const dea_film *film = &point->film;
     const bool dot = point->kind == DEA_DOT;
     const double nominal = dea_point_nominal_field(point);
     const double pressure = film->permittivity * nominal * nominal; /* M */
     const double b = point->coverage;
-    const membrane m = {film, dot ? pressure : 0.0, dot ? 0.0 : pressure, -log(b), step_for(accuracy)};
+    const membrane m = {film, dot ? pressure : 0.0, dot ? 0.0 : pressure, -log(b), mesh};
     const double sign = dea_point_sign(point);
     double edge = 0.0;
 
@@ -400,6 +401,11 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     const double force =
         sign * 2.0 * DEA_PI * point->film_thickness * pressure * x.edge_force * dea_point_divide(point) / film->prestretch;
     dea_row_fill(row, point, edge / film->prestretch, force, x.largest_area, x.least_stress > 0.0);
+}
+
+static void solve(const dea_point *point, double accuracy, dea_row *row)
+{
+    dea_field_solve(point, (dea_field_mesh){step_for(accuracy), little}, row);
 }
 
 const dea_model dea_model_field = {

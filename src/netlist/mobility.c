@@ -296,7 +296,9 @@ static void write_analysis(const writer *w)
     /* rounding of the velocity: of that of a ring, or where no mass holds it, of differences of u over a step */
     const double ring = p->mass > 0.0 ? 1e-14 * sqrt(p->force * p->scale / p->mass) : 1e-11 * speed;
     const double noise = w->mobility->displaced ? 0.0 : ring;
-    fputs(".options method=trap trtol=1e30 itl4=50 pivtol=1e-60 pivrel=0.3 reltol=1e-7 vntol=", w->out);
+    fputs(".options method=trap trtol=1e30 itl4=50 pivtol=1e-60 pivrel=0.3 reltol=", w->out);
+    dea_netlist_number(w->out, p->tolerance);
+    fputs(" vntol=", w->out);
     dea_netlist_number(w->out, 1e-11 * fmin(speed, p->scale) + noise);
     fputs(" abstol=", w->out);
     dea_netlist_number(w->out, 1e-10 * p->force);
@@ -498,7 +500,7 @@ dea_status dea_mobility_write_small(dea_dynamics *dynamics, const dea_mobility_b
     fputs("* dielectric elastomer actuator about its bias: v(edge) = velocity [m/s], current = force [N]\n", out);
     write_transducer(out, dynamics, &edge, bias);
     write_small_mechanics(out, dynamics, &edge, bias);
-    fputs(".options noopac pivtol=1e-60\n.save i(lspring) i(vsource)\n.ac ", out);
+    fprintf(out, ".options noopac pivtol=1e-60\n.save i(lspring) %s\n.ac ", dynamics->series > 0.0 ? "v(film)" : "i(vsource)");
     if (band->points_per_decade > 0) {
         fprintf(out, "dec %zu ", band->points_per_decade);
     } else {

@@ -86,35 +86,6 @@ static void set_port(const dea_scene *scene, dea_dynamics *d)
     d->conductance = isnan(drive->leakage_resistance) ? 0.0 : 1.0 / drive->leakage_resistance;
 }
 
-/* The shortest time in which the source voltage changes [s]. */
-static double shortest_change(const dea_scene *scene)
-{
-    const dea_waveform *wave = &scene->drive.waveform;
-    double shortest = scene->transient.every;
-    if (scene->study == DEA_STUDY_AC) {
-        return 1.0 / (2.0 * DEA_PI * scene->ac.to);
-    }
-    if (wave->kind == DEA_WAVE_STEP && wave->step.rise > 0.0) {
-        shortest = fmin(shortest, wave->step.rise);
-    } else if (wave->kind == DEA_WAVE_SINE) {
-        shortest = fmin(shortest, 1.0 / (2.0 * DEA_PI * wave->sine.frequency));
-    }
-    for (size_t i = 1; wave->kind == DEA_WAVE_POINTS && i < wave->point_count; i++) {
-        shortest = fmin(shortest, wave->times[i] - wave->times[i - 1]);
-    }
-    return shortest;
-}
-
-/* A series resistance over which the film charges much faster than the voltage changes moves nothing: the film follows with a
- * delay of R_s C. */
-static void drop_series(const dea_scene *scene, dea_dynamics *d)
-{
-    const double delay = d->series * dea_dynamics_edge(d, 0.0).capacitance;
-    if (delay <= 0.3 * scene->accuracy * shortest_change(scene)) {
-        d->series = 0.0;
-    }
-}
-
 dea_expr dea_dynamics_stress(const dea_dynamics *d, dea_network *network)
 {
     const dea_expr stress = dea_network_stress(network);
@@ -193,7 +164,6 @@ dea_status dea_dynamics_open(const dea_scene *scene, const dea_model *model, dea
     set_port(scene, d);
     d->radius = d->point.coverage * d->point.frame_radius;
     d->mass = scene->reduction.mass ? 0.0 : dea_point_mass(scene, &d->point);
-    drop_series(scene, d);
     if (!isnan(d->focal_length) && !(d->focal_length * (d->refractive_index - 1.0) >= d->radius)) {
         return dea_fail(error, DEA_ERROR_USAGE,
                         "the cap of the lens cannot have so short a focal length: its radius of curvature, "
@@ -302,16 +272,27 @@ static bool newton(dea_dynamics *d, double voltage, const double *z, double want
     return last <= 1e-12 * longest;
 }
 
+/* Square of the voltage that holds u, with the branches where they are [V^2]. */
+static double holding_square(dea_dynamics *d, double u, const double *z)
+{
+    const dea_edge e = dea_dynamics_edge(d, u);
+    const double square = e.area * (e.stress + branch_stress(d, e.stress, z)) / e.push;
+    return square > 0.0 ? square : 0.0;
+}
+
+/* The load grows from what holds u now: under the full one a film that stiffens later on need not be stable here. */
 bool dea_dynamics_follow(dea_dynamics *dynamics, double voltage, const double *z, double *u)
 {
     double slope;
-    const double start = imbalance(dynamics, *u, voltage, z, &slope);
-    double at = 0.0; /* share of the imbalance that is taken off */
+    const double before = holding_square(dynamics, *u, z);
+    const double start = imbalance(dynamics, *u, sqrt(before), z, &slope);
+    double at = 0.0; /* share of the change of the load that is made */
     double step = 1.0;
     while (at < 1.0) {
         const double next = fmin(1.0, at + step);
+        const double square = before + next * (voltage * voltage - before);
         double guess = *u;
-        if (newton(dynamics, voltage, z, (1.0 - next) * start, &guess)) {
+        if (newton(dynamics, next < 1.0 ? sqrt(square) : voltage, z, (1.0 - next) * start, &guess)) {
             *u = guess;
             at = next;
             step *= 2.0;
@@ -325,15 +306,28 @@ bool dea_dynamics_follow(dea_dynamics *dynamics, double voltage, const double *z
     return true;
 }
 
-double dea_dynamics_velocity(dea_dynamics *dynamics, double u, double voltage, double slope, const double *z)
+/* K v = 2 phi U U' + A sum c_i (S - z_i)/tau_i, U' = slope - reaction v. */
+static double velocity(dea_dynamics *d, double u, double voltage, double slope, double reaction, const double *z)
 {
     double stiffness;
-    const double force = imbalance(dynamics, u, voltage, z, &stiffness);
-    const dea_edge e = dea_dynamics_edge(dynamics, u);
-    if (dynamics->retardation > 0.0) {
-        return -force / (e.area * dynamics->retardation * e.stress_slope);
+    const double force = imbalance(d, u, voltage, z, &stiffness);
+    const dea_edge e = dea_dynamics_edge(d, u);
+    if (d->retardation > 0.0) {
+        return -force / (e.area * d->retardation * e.stress_slope);
     }
-    return (2.0 * e.push * voltage * slope + e.area * branch_loss(dynamics, e.stress, z)) / stiffness;
+    const double push = 2.0 * e.push * voltage;
+    return (push * slope + e.area * branch_loss(d, e.stress, z)) / (stiffness + push * reaction);
+}
+
+double dea_dynamics_velocity(dea_dynamics *dynamics, double u, double voltage, double slope, const double *z)
+{
+    return velocity(dynamics, u, voltage, slope, 0.0, z);
+}
+
+double dea_dynamics_velocity_charged(dea_dynamics *dynamics, double u, double voltage, double slope, const double *z)
+{
+    const dea_edge e = dea_dynamics_edge(dynamics, u);
+    return velocity(dynamics, u, voltage, slope, voltage * e.capacitance_slope / e.capacitance, z);
 }
 
 dea_sample dea_sample_refused(double time, double voltage, dea_state state)

@@ -68,6 +68,8 @@ double dea_dynamics_scale(dea_dynamics *dynamics, double voltage);
 bool dea_dynamics_follow(dea_dynamics *dynamics, double voltage, const double *z, double *u);
 /* Velocity that goes with u, the film voltage, its slope and z where there is no mass (with mass it is a state) [m/s]. */
 double dea_dynamics_velocity(dea_dynamics *dynamics, double u, double voltage, double slope, const double *z);
+/* The same behind a series resistance, where the film voltage has that @p slope only at constant u: U' = slope - U C'/C v. */
+double dea_dynamics_velocity_charged(dea_dynamics *dynamics, double u, double voltage, double slope, const double *z);
 
 /* State of the moving network at one time. */
 typedef struct dea_moment {

@@ -12,6 +12,7 @@ enum { BAR_WIDTH = 30, TEXT_LENGTH = 320 };
 struct dea_progress {
     bool coloured;      /* false where NO_COLOR is set */
     bool shown;         /* a bar stands on the line */
+    size_t before;      /* work that was done before the bar began */
     double begun, last; /* times of the start and of the latest bar [s] */
 };
 
@@ -37,6 +38,13 @@ dea_progress *dea_progress_begin(void)
         *bar = (dea_progress){.coloured = !plain || !*plain, .begun = clock_now()};
     }
     return bar;
+}
+
+void dea_progress_from(dea_progress *bar, size_t done)
+{
+    if (bar) {
+        bar->before = done;
+    }
 }
 
 static void bar_write(const char *text, size_t length)
@@ -70,8 +78,8 @@ void dea_progress_show(dea_progress *bar, size_t done, size_t total)
     const double share = done < total ? (double)done / (double)total : 1.0;
     const int full = (int)(share * BAR_WIDTH);
     char left[32] = "?", text[TEXT_LENGTH], filled[BAR_WIDTH + 1], rest[BAR_WIDTH + 1];
-    if (done > 0) {
-        duration_text(spent * (1.0 - share) / share, left);
+    if (done > bar->before) {
+        duration_text(spent * (double)(total - done) / (double)(done - bar->before), left);
     }
     memset(filled, '=', sizeof filled);
     memset(rest, ' ', sizeof rest);

@@ -13,6 +13,8 @@ typedef struct dea_progress dea_progress;
 
 /** A bar, NULL where standard error is not a terminal that can erase a line. The caller ends it with dea_progress_end(). */
 DEA_API dea_progress *dea_progress_begin(void);
+/** Tells that @p done was done before: the time that is left goes by what comes now. */
+DEA_API void dea_progress_from(dea_progress *bar, size_t done);
 /** Shows how far the work is, at most ten times a second, and not within the first moments of it. */
 DEA_API void dea_progress_show(dea_progress *bar, size_t done, size_t total);
 /** Erases the bar before other text goes to the terminal; the next dea_progress_show() draws it anew. */

@@ -31,7 +31,7 @@ enum {
     RAW_PIECE = 512, /* most bytes that go to the buffer at once: a line, or a row */
     RAW_TITLE = 240, /* room for the scene's title, and for what tells the run */
     RAW_TRACES = DEA_LAYOUT_COLUMNS + 2,
-    DATE_ROOM = 32
+    DATE_ROOM = 64
 };
 
 /* Where the number of a vector comes from. */
@@ -129,14 +129,15 @@ static void traces_choose(raw *out)
     trace_add(out, TRACE_STATE, "state", "notype");
 }
 
-/* Seconds since 1970 that the environment wants as the date of reproducible files, or the clock's. */
+/* Seconds since 1970 that the environment wants as the date of reproducible files, or 0: the same study gives the same bytes, now
+ * or in parts, today or tomorrow, and some readers count on the line. */
 static time_t date_wanted(void)
 {
     const char *wanted = getenv("SOURCE_DATE_EPOCH");
     char *end = NULL;
     const long long seconds = wanted ? strtoll(wanted, &end, 10) : 0;
     const long long most = 253402300799; /* end of the year 9999 */
-    return wanted && end != wanted && *end == '\0' && seconds >= 0 && seconds <= most ? (time_t)seconds : time(NULL);
+    return wanted && end != wanted && *end == '\0' && seconds >= 0 && seconds <= most ? (time_t)seconds : 0;
 }
 
 /* Universal time in English, whatever the locale. */

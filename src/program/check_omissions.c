@@ -93,11 +93,9 @@ static bool run_model(const dea_arguments *arguments, const dea_scene *scene, co
 {
     dea_scene here = *scene;
     here.models[0] = model;
-    const dea_run_options options = {.jobs = arguments->jobs ? arguments->jobs : 1,
-                                     .full = true,
-                                     .points = take_points,
-                                     .stop = dea_signals_stop,
-                                     .user = comparison};
+    here.full = true;
+    const dea_run_options options = {
+        .jobs = arguments->jobs ? arguments->jobs : 1, .points = take_points, .stop = dea_signals_stop, .user = comparison};
     for (size_t i = 0; i < dea_engine_count(); i++) {
         if (!dea_engine_refuses(dea_engine_at(i), &here, model)) {
             return dea_study_run(&here, dea_engine_at(i), &options, NULL) == DEA_OK;

@@ -95,7 +95,6 @@ static bool check_engine(const dea_arguments *arguments, const dea_engine *engin
 {
     dea_error error = {0};
     const dea_run_options options = {.jobs = arguments->jobs ? arguments->jobs : 1,
-                                     .full = arguments->full,
                                      .points = take_points,
                                      .log = take_log,
                                      .stop = dea_signals_stop,

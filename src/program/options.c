@@ -12,7 +12,7 @@
 #include "scene/quantity.h"
 #include "support/text.h"
 
-enum { MOST_JOBS = 1024, MOST_RUNS = 1000 };
+enum { MOST_JOBS = 1024, MOST_SHARDS = 1000000, MOST_RUNS = 1000 };
 
 /* An option of any command: what takes it, and what it does with its value; false when the value is wrong. */
 typedef struct option_entry {
@@ -206,6 +206,33 @@ static bool set_budget(dea_arguments *arguments, const char *value)
     return true;
 }
 
+static bool set_shard(dea_arguments *arguments, const char *value)
+{
+    char number[16];
+    const size_t digits = strcspn(value, "/");
+    snprintf(number, sizeof number, "%.*s", (int)digits, value);
+    const long shards = value[digits] == '/' ? whole_number(value + digits + 1, MOST_SHARDS) : -1;
+    const long shard = digits < sizeof number ? whole_number(number, shards) : -1;
+    if (shard < 1) {
+        dea_complain("--shard %.40s: needs I/N with whole numbers 1 <= I <= N <= %d, for example 3/10", value, MOST_SHARDS);
+        return false;
+    }
+    if (arguments->shard > 0) {
+        dea_complain("--shard is given twice");
+        return false;
+    }
+    arguments->shard = (size_t)shard;
+    arguments->shards = (size_t)shards;
+    return true;
+}
+
+static bool set_resume(dea_arguments *arguments, const char *value)
+{
+    (void)value;
+    arguments->resume = true;
+    return true;
+}
+
 static bool add_operand(dea_arguments *arguments, const char *path, dea_given_mode mode)
 {
     arguments->operands[arguments->operand_count++] = (dea_operand){path, mode};
@@ -245,6 +272,8 @@ static const option_entry entries[] = {
     {"analogy", 0, true, DEA_TAKES_EXPORT, set_analogy},
     {"runs", 0, true, DEA_TAKES_BENCH, set_runs},
     {"budget", 0, true, DEA_TAKES_BENCH, set_budget},
+    {"shard", 0, true, DEA_TAKES_JOURNAL, set_shard},
+    {"resume", 0, false, DEA_TAKES_JOURNAL, set_resume},
     {"help", 'h', false, 0, NULL},
     {"version", 'V', false, 0, NULL},
 };
@@ -329,7 +358,8 @@ static dea_parsed take_option(const dea_command *command, int code, char **argv,
 static dea_parsed count_operands(const dea_command *command, const dea_arguments *arguments)
 {
     if (arguments->operand_count < command->least)
-        dea_complain("%s needs a file; see deaspice %s --help", command->name, command->name);
+        dea_complain("%s needs %s; see deaspice %s --help", command->name,
+                     command->least > 1 ? "a scene and its parts" : "a file", command->name);
     else if (arguments->operand_count > command->most)
         dea_complain("%s takes one operand, \"%s\" is one too many", command->name, arguments->operands[command->most].path);
     else

@@ -28,6 +28,7 @@ bool dea_scene_open(const dea_arguments *arguments, const char *path, dea_scene 
     dea_error error = {0};
     dea_status status = dea_scene_read(path, arguments->settings, arguments->setting_count, arguments->model, scene, &error);
     if (status == DEA_OK) {
+        scene->full = arguments->full;
         return true;
     }
     *outcome = dea_complain_error(&error);

@@ -287,6 +287,90 @@ static void jump_and_creep_close_the_energy_balance(void **state)
     }
 }
 
+/* The film softens, then stiffens: under the full voltage it would be unstable at rest, but the way up to it is stable
+ * throughout. */
+static void a_jump_of_the_voltage_passes_through_the_loads_between(void **state)
+{
+    (void)state;
+    const double z[2] = {0.0, 0.0}, full = 152.0;
+    dea_scene scene = paper_scene(DEA_LENS, 1.488, 0.8526, full);
+    dea_dynamics dynamics;
+    double at_once = 0.0, in_parts = 0.0;
+    scene.actuator.frame_radius = 2.7435e-3;
+    scene.actuator.film_thickness = 3.944e-6;
+    scene.material.yeoh[0] = 41229.6;
+    scene.material.yeoh[1] = -6087.9;
+    scene.material.yeoh[2] = 1730.9;
+    scene.material.permittivity = 6.526;
+    scene.material.prony_count = 2;
+    scene.material.prony[0] = (dea_prony){.g = 0.2836, .tau = 4.4};
+    scene.material.prony[1] = (dea_prony){.g = 0.0707, .tau = 1.6e-6};
+    open_dynamics(&scene, "coverage", &dynamics);
+    assert_true(dea_dynamics_stiffness(&dynamics, 0.0, full, false) < 0.0);
+    assert_true(dea_dynamics_follow(&dynamics, full, z, &at_once));
+    for (int i = 1; i <= 100; i++) {
+        assert_true(dea_dynamics_follow(&dynamics, full * sqrt(i / 100.0), z, &in_parts));
+    }
+    assert_relative(at_once, in_parts, 1e-12);
+    dea_dynamics_close(&dynamics);
+}
+
+/* The edge equation of a lens of coverage 0.69 to 0.95: near rest C = C_0 + 2 phi u + phi' u^2 to all digits. */
+static void capacitance_of_a_lens_keeps_its_digits(void **state)
+{
+    (void)state;
+    for (double coverage = 0.6; coverage < 0.96; coverage += 0.03) {
+        const dea_scene scene = paper_scene(DEA_LENS, 1.2, coverage, 4500.0);
+        dea_dynamics dynamics;
+        open_dynamics(&scene, "coverage", &dynamics);
+        const double u = -1e-6 * dynamics.radius;
+        const dea_edge rest = dea_dynamics_edge(&dynamics, 0.0);
+        const double wanted = rest.capacitance + u * (2.0 * rest.push + rest.push_slope * u);
+        assert_relative(dea_dynamics_edge(&dynamics, u).capacitance, wanted, 3e-13);
+        dea_dynamics_close(&dynamics);
+    }
+}
+
+static double series_left(const dea_scene *scene)
+{
+    dea_dynamics dynamics;
+    open_dynamics(scene, "lumped", &dynamics);
+    const double series = dynamics.series;
+    dea_dynamics_close(&dynamics);
+    return series;
+}
+
+/* R_s C is 25 us against edges of a second: left out, unless it damps a ring, a sample sees the film charge, or a leakage leaves
+ * the film less voltage. */
+static void a_series_resistance_is_left_out_where_nothing_shows_it(void **state)
+{
+    (void)state;
+    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, (double)NAN);
+    scene.study = DEA_STUDY_TRANSIENT;
+    scene.accuracy = 1e-3;
+    scene.transient = (dea_transient){.until = 10.0, .every = 1.0};
+    scene.drive.waveform = (dea_waveform){.kind = DEA_WAVE_STEP, .step = {0.5, (double)NAN, 4000.0, 1.0}, .period = (double)NAN};
+    scene.drive.series_resistance = 1e5;
+    assert_true(series_left(&scene) == 0.0);
+    scene.drive.leakage_resistance = 1e8;
+    assert_true(series_left(&scene) == 1e5);
+    scene.drive.leakage_resistance = (double)NAN;
+    scene.drive.waveform.step.rise = 0.0;
+    assert_true(series_left(&scene) == 0.0);
+    scene.drive.waveform.step.on = 0.9999; /* 0.1 ms before a sample */
+    assert_true(series_left(&scene) == 1e5);
+    scene.drive.waveform.step.on = 0.0; /* the first sample is of a film without charge */
+    assert_true(series_left(&scene) == 1e5);
+    scene.transient.from_bias = true;
+    assert_true(series_left(&scene) == 0.0);
+    scene.material.density = 1080.0;
+    assert_true(series_left(&scene) == 1e5);
+    scene.material.density = (double)NAN;
+    scene.study = DEA_STUDY_AC;
+    scene.ac = (dea_ac){.from = 1e-3, .to = 1e-2, .points_per_decade = 10, .bias = 4000.0};
+    assert_true(series_left(&scene) == 1e5);
+}
+
 static void times_and_frequencies_reach_their_ends(void **state)
 {
     (void)state;
@@ -318,6 +402,9 @@ int main(void)
         cmocka_unit_test(waveforms_have_their_voltages),
         cmocka_unit_test(swept_edges_out_of_order_are_refused),
         cmocka_unit_test(jump_and_creep_close_the_energy_balance),
+        cmocka_unit_test(a_jump_of_the_voltage_passes_through_the_loads_between),
+        cmocka_unit_test(capacitance_of_a_lens_keeps_its_digits),
+        cmocka_unit_test(a_series_resistance_is_left_out_where_nothing_shows_it),
         cmocka_unit_test(times_and_frequencies_reach_their_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

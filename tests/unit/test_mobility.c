@@ -562,6 +562,80 @@ static void frequency_responses_are_those_of_the_closed_form(void **state)
     }
 }
 
+/* A capacitor's phase of 1e-8 rad short of a right angle: the current is no difference of the voltages around the resistance. */
+static void a_large_resistance_keeps_the_phase_of_the_impedance(void **state)
+{
+    (void)state;
+    dea_scene scene = protocol("coverage");
+    scene.material.prony_count = 1;
+    scene.material.prony[0] = (dea_prony){0.2, 4e-6};
+    scene.drive.series_resistance = 1e12;
+    scene.study = DEA_STUDY_AC;
+    scene.accuracy = 1e-9;
+    scene.ac = (dea_ac){.from = 1e-8, .to = 1e-3, .points_per_decade = 3, .bias = 3000.0};
+    outcome a = run(&scene, "ngspice");
+    outcome b = run(&scene, "direct");
+    for (size_t k = 0; k < dea_layout_of(&scene).rows; k++) {
+        dea_response x, y;
+        memcpy(&x, a.point + k * sizeof x, sizeof x);
+        memcpy(&y, b.point + k * sizeof y, sizeof y);
+        assert_relative(x.impedance, y.impedance, 1e-9);
+        assert_true(angle_between(x.impedance_phase, y.impedance_phase) < 1e-9 * 180.0 / DEA_PI);
+    }
+    free(a.point);
+    free(b.point);
+}
+
+/* A step past the fold onto a film that stiffens beyond it: the damper carries it through where nothing holds it. */
+static void a_damped_film_snaps_through(void **state)
+{
+    (void)state;
+    dea_scene scene = protocol("coverage");
+    scene.actuator = paper_scene(DEA_DOT, 1.411, 0.326, 0.0).actuator;
+    scene.actuator.frame_radius = 0.0244;
+    scene.actuator.film_thickness = 7.37e-5;
+    scene.material.yeoh[0] = 196043.5;
+    scene.material.yeoh[1] = -2530.5;
+    scene.material.yeoh[2] = 4548.2;
+    scene.material.permittivity = 5.7475;
+    scene.material.retardation = 2.2e-5;
+    scene.material.prony_count = 0;
+    scene.material.density = (double)NAN;
+    scene.drive.waveform.step = (dea_step){4.7e-4, (double)NAN, 12651.5, 0.0};
+    scene.transient = (dea_transient){.until = 3.26e-3, .every = 1.36e-4};
+    scene.accuracy = 1e-4;
+    dea_scene finer = scene;
+    finer.accuracy = 1e-6;
+    check_run(&scene, &finer, "ida", finer.accuracy, 0);
+}
+
+/* Behind a resistance, right after a jump, far below what the film would reach at rest. */
+static void a_small_part_of_the_way_keeps_its_digits(void **state)
+{
+    (void)state;
+    dea_scene scene = protocol("lumped");
+    scene.actuator = paper_scene(DEA_DOT, 1.25134, 0.944696, 0.0).actuator;
+    scene.actuator.frame_radius = 1.34293e-3;
+    scene.actuator.film_thickness = 6.7743e-5;
+    scene.material.yeoh[0] = 374791.0;
+    scene.material.yeoh[1] = 0.0;
+    scene.material.yeoh[2] = 4121.0;
+    scene.material.permittivity = 8.66682;
+    scene.material.density = 924.82;
+    scene.material.retardation = (double)NAN;
+    scene.material.prony_count = 3;
+    scene.material.prony[0] = (dea_prony){0.237769, 3.48602e-5};
+    scene.material.prony[1] = (dea_prony){0.109613, 3.59957e-7};
+    scene.material.prony[2] = (dea_prony){0.186459, 0.699083};
+    scene.drive.series_resistance = 386822.7;
+    scene.drive.waveform.step = (dea_step){3.36343e-5, (double)NAN, 19283.05, 0.0};
+    scene.transient = (dea_transient){.until = 3.4796e-5, .every = 3.4796e-5 / 3.0, .from_bias = true};
+    scene.accuracy = 1e-6;
+    dea_scene finer = scene;
+    finer.accuracy = 1e-8;
+    check_run(&scene, &finer, "ida", finer.accuracy, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -578,6 +652,9 @@ int main(void)
         cmocka_unit_test(error_falls_with_the_square_of_the_step),
         cmocka_unit_test(run_in_pieces_is_the_run_in_one),
         cmocka_unit_test(frequency_responses_are_those_of_the_closed_form),
+        cmocka_unit_test(a_large_resistance_keeps_the_phase_of_the_impedance),
+        cmocka_unit_test(a_damped_film_snaps_through),
+        cmocka_unit_test(a_small_part_of_the_way_keeps_its_digits),
         cmocka_unit_test(linear_films_move_as_their_closed_form_says),
         cmocka_unit_test(films_of_every_model_move_as_by_another_integrator),
     };

@@ -423,6 +423,57 @@ static void the_jacobian_is_the_slope_of_the_rates(void **state)
     }
 }
 
+/* A linear film that rings under a slow ramp, 12 samples a period: the steps of the explicit method end at samples whatever the
+ * tolerance. */
+static void samples_that_cut_all_steps_hide_no_error(void **state)
+{
+    (void)state;
+    double times[] = {0.0, 1.0}, voltages[] = {1000.0, 4000.0};
+    dea_scene scene = moving_scene("lumped", DEA_DOT, 1e-3, 0.0);
+    scene.material.density = 1080.0;
+    scene.accuracy = 1e-3;
+    fly(&scene);
+    const double period = 1.0 / last.summary.resonance;
+    scene.transient = (dea_transient){.until = 1600.0 * period, .every = period / 12.0};
+    times[1] = scene.transient.until;
+    scene.drive.waveform =
+        (dea_waveform){.kind = DEA_WAVE_POINTS, .times = times, .voltages = voltages, .point_count = 2, .period = (double)NAN};
+    fly(&scene);
+    fly_by("direct", &scene, &other);
+    judge(0, scene.accuracy);
+}
+
+/* A ring of 100 periods behind a resistance over which the film charges within a thousandth of a sample: the resistance damps it.
+ */
+static void a_small_resistance_damps_a_ring(void **state)
+{
+    (void)state;
+    dea_scene scene = moving_scene("lumped", DEA_DOT, 6e-3, 8e-5);
+    scene.actuator = (dea_actuator){.kind = DEA_DOT,
+                                    .frame_radius = 1.5472e-3,
+                                    .coverage = 0.92522,
+                                    .divide_radius = (double)NAN,
+                                    .film_thickness = 3.0533e-4,
+                                    .prestretch = 1.05,
+                                    .electrode_mass = (double)NAN,
+                                    .focal_length = (double)NAN,
+                                    .refractive_index = (double)NAN};
+    scene.material.yeoh[0] = 52955.9;
+    scene.material.yeoh[1] = 3822.66;
+    scene.material.yeoh[2] = 0.0;
+    scene.material.permittivity = 3.3864;
+    scene.material.density = 1130.0;
+    scene.drive.series_resistance = 97e3;
+    scene.drive.waveform.step.voltage = 23697.0;
+    scene.transient.every = 4.3e-5;
+    scene.accuracy = 1e-6;
+    fly(&scene);
+    other = last;
+    scene.accuracy = 1e-2;
+    fly(&scene);
+    judge(0, scene.accuracy);
+}
+
 static void more_digits_than_it_has_are_refused(void **state)
 {
     (void)state;
@@ -487,6 +538,8 @@ int main(void)
         cmocka_unit_test(the_creep_behind_a_ring_is_that_of_a_film_without_mass),
         cmocka_unit_test(the_tail_of_a_ring_does_not_set_the_steps_behind_it),
         cmocka_unit_test(the_jacobian_is_the_slope_of_the_rates),
+        cmocka_unit_test(samples_that_cut_all_steps_hide_no_error),
+        cmocka_unit_test(a_small_resistance_damps_a_ring),
         cmocka_unit_test(more_digits_than_it_has_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -62,11 +62,14 @@ static int rates(sunrealtype time, N_Vector w, N_Vector wp, void *user)
     return 0;
 }
 
-/* Longest step in a frame that does not turn [rad]: samples cut steps, and where they alone did, a tighter tolerance would change
- * nothing that a comparison of two runs could see. */
-static double longest_angle(double tolerance)
+/* Longest step [s]: samples cut steps, and where they alone did, a tighter tolerance would change nothing that a comparison of
+ * two runs could see. In a frame that does not turn, no more than a part of the ring either. */
+static double longest_step(const dea_flight *flight)
 {
-    return fmin(1.2, 6.0 * pow(tolerance, 1.0 / 7.0));
+    const dea_ring *ring = flight->ring;
+    const double tolerance = flight->tolerance;
+    const double sampled = flight->scene->transient.every * pow(tolerance / flight->loosest, 1.0 / 7.0);
+    return ring->turns ? sampled : fmin(sampled, fmin(1.2, 6.0 * pow(tolerance, 1.0 / 7.0)) / ring->omega);
 }
 
 static bool begin(explicit_run *run)
@@ -93,8 +96,8 @@ static bool begin(explicit_run *run)
     ARKStepSetErrHandlerFn(run->ark, dea_sundials_ignore, NULL);
     ARKStepSetErrorBias(run->ark, 1.0); /* as SUNDIALS 7 has it */
 #endif
-    const double longest = flight->ring->turns ? 0.0 : longest_angle(flight->tolerance) / flight->ring->omega;
-    return DEA_ARK(SetMaxStep)(run->ark, longest) == ARK_SUCCESS && DEA_ARK(SetUserData)(run->ark, run) == ARK_SUCCESS &&
+    return DEA_ARK(SetMaxStep)(run->ark, longest_step(flight)) == ARK_SUCCESS &&
+           DEA_ARK(SetUserData)(run->ark, run) == ARK_SUCCESS &&
            DEA_ARK(SetMaxErrTestFails)(run->ark, MOST_FAILS) == ARK_SUCCESS &&
            ARKStepSetTableNum(run->ark, ARKODE_DIRK_NONE, ARKODE_VERNER_8_5_6) == ARK_SUCCESS &&
            DEA_ARK(SVtolerances)(run->ark, flight->tolerance, run->tolerance) == ARK_SUCCESS;

@@ -25,8 +25,9 @@ typedef struct dea_flight {
     dea_integrator integrator; /* owned */
     N_Vector between;          /* owned: w between two steps */
     size_t rows;
-    long spent;    /* steps of all runs */
-    dea_error why; /* what the last run that failed was about, "" before */
+    long spent;     /* steps of all runs */
+    double loosest; /* tolerance of the first run */
+    dea_error why;  /* what the last run that failed was about, "" before */
     /* of one run */
     double tolerance;
     dea_trace *trace;

@@ -1,5 +1,7 @@
 /* Engine `ida`: networks and the exact membrane by SUNDIALS. */
+#include <stdio.h>
 #include <stdlib.h>
+#include <sundials/sundials_version.h>
 
 #include "engine/engines.h"
 #include "engine/ida/sundials.h"
@@ -123,6 +125,13 @@ static dea_status transient(void *session, const dea_scene *scene, const dea_mod
     return dea_transient_solve(state->context, scene, model, samples, summary, error);
 }
 
+static void library(char *text, size_t size)
+{
+    char version[32] = "";
+    SUNDIALSGetVersion(version, sizeof version);
+    snprintf(text, size, "SUNDIALS %s", version);
+}
+
 const dea_engine dea_engine_ida = {
     .name = "ida",
     .summary = "the network, or the exact membrane, by SUNDIALS IDA",
@@ -132,6 +141,7 @@ const dea_engine dea_engine_ida = {
     .block = 64,
     .omits =
         1u << DEA_PART_MASS | 1u << DEA_PART_BRANCH | 1u << DEA_PART_DAMPER | 1u << DEA_PART_SERIES | 1u << DEA_PART_SOFTENING,
+    .library = library,
     .refuses = refuses,
     .begin = begin,
     .sweep = sweep,

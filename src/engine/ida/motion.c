@@ -13,6 +13,16 @@ typedef struct local_state {
     double force;         /* phi U^2 - A stress [N] */
 } local_state;
 
+/* Rate of all that relaxes and charges [1/s]; 1 where nothing does. */
+static double pace_of(const dea_dynamics *d, double capacitance)
+{
+    double sum = d->series > 0.0 ? 1.0 / (d->series * capacitance) : 0.0;
+    for (size_t i = 0; i < d->branch_count; i++) {
+        sum += 1.0 / d->branches[i].tau;
+    }
+    return sum > 0.0 ? sum : 1.0;
+}
+
 void dea_motion_open(dea_dynamics *d, const dea_signal *signal, dea_motion *m)
 {
     const dea_edge rest = dea_dynamics_edge(d, 0.0);
@@ -21,6 +31,7 @@ void dea_motion_open(dea_dynamics *d, const dea_signal *signal, dea_motion *m)
     *m = (dea_motion){.dynamics = d, .signal = signal, .segment = signal->segments, .v = -1, .q = -1, .z = heavy ? 2 : 1};
     m->stiffness = dea_dynamics_stiffness(d, 0.0, 0.0, false);
     m->algebraic = !heavy && !(d->retardation > 0.0);
+    m->pace = pace_of(d, rest.capacitance);
     m->size[0] = length;
     if (heavy) {
         m->v = 1;
@@ -97,7 +108,7 @@ bool dea_motion_rates(const dea_motion *m, double time, const double *y, double 
         f[0] = at.v / m->size[0];
         f[m->v] = (at.force - resistance(m, &at) * at.v) / (d->mass * m->size[m->v]);
     } else if (m->algebraic) {
-        f[0] = at.force / (m->stiffness * m->size[0]);
+        f[0] = at.force / (m->stiffness * m->size[0]) * m->pace;
     } else {
         f[0] = at.force / (resistance(m, &at) * m->size[0]);
     }
@@ -152,7 +163,7 @@ void dea_motion_jacobian(const dea_motion *m, double time, const double *y, doub
         jacobian[m->v * n + m->v] = -r / d->mass;
         jacobian[m->v * n] = m->size[m->v] / m->size[0];
     } else {
-        fill_edge_row(m, &at, 0, (m->algebraic ? m->stiffness : r) * m->size[0], jacobian);
+        fill_edge_row(m, &at, 0, (m->algebraic ? m->stiffness / m->pace : r) * m->size[0], jacobian);
         jacobian[0] -= m->algebraic ? 0.0 : at.force * at.edge.area_slope / (at.edge.area * r);
     }
     for (size_t i = 0; i < d->branch_count; i++) {
@@ -218,18 +229,15 @@ bool dea_motion_start(const dea_motion *m, bool from_bias, double *y)
     return true;
 }
 
-/* Velocity of a film without mass. An algebraic u that a charge moves, v = a + b U' with U' = (q' - U C' v)/C, is solved for v.
- */
+/* Velocity of a film without mass. */
 static double velocity(const dea_motion *m, double time, const local_state *at, const double *z)
 {
     dea_dynamics *d = m->dynamics;
-    if (m->q < 0 || !m->algebraic) {
+    if (m->q < 0) {
         return dea_dynamics_velocity(d, at->u, at->voltage, dea_motion_slope(m, time), z);
     }
-    const double a = dea_dynamics_velocity(d, at->u, at->voltage, 0.0, z);
-    const double b = dea_dynamics_velocity(d, at->u, at->voltage, 1.0, z) - a;
     const double current = (dea_motion_source(m, time) - at->voltage) / d->series - at->voltage * d->conductance;
-    return (a + b * current / at->edge.capacitance) / (1.0 - b * at->voltage_slope);
+    return dea_dynamics_velocity_charged(d, at->u, at->voltage, current / at->edge.capacitance, z);
 }
 
 dea_moment dea_motion_moment(const dea_motion *m, double time, const double *y)

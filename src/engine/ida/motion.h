@@ -22,6 +22,7 @@ typedef struct dea_motion {
     int count;        /* of unknowns */
     bool algebraic;   /* u is */
     double stiffness; /* at rest with the branches held [N/m] */
+    double pace;      /* of an algebraic u: makes its row as large as those of the states, whatever the unit of time [1/s] */
     double size[DEA_MOTION_MOST]; /* of the unknowns [m, m/s, Pa or N, C] */
 } dea_motion;
 

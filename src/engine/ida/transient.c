@@ -63,6 +63,7 @@ static bool refine(dea_flight *flight, double accuracy, dea_trace traces[2], dea
 {
     double tolerance = first_tolerance(flight, accuracy);
     double share = first_share;
+    flight->loosest = tolerance;
     dea_flight_run(flight, tolerance, &traces[1], NULL);
     for (int i = 0; i < MOST_FITS && dea_flight_fit(flight); i++) {
         dea_flight_run(flight, tolerance, &traces[1], NULL);

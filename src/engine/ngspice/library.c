@@ -1,5 +1,7 @@
+#define _GNU_SOURCE
 #include "engine/ngspice/library.h"
 
+#include <dlfcn.h>
 #include <locale.h>
 #include <math.h>
 #include <stdbool.h>
@@ -111,6 +113,19 @@ static void command(const char *text)
     char line[64];
     snprintf(line, sizeof line, "%s", text);
     ngSpice_Command(line);
+}
+
+void dea_ngspice_name(char *text, size_t size)
+{
+    Dl_info place = {0};
+    void *function;
+    int (*const start)(SendChar *, SendStat *, ControlledExit *, SendData *, SendInitData *, BGThreadRunning *, void *) =
+        ngSpice_Init;
+    memcpy(&function, &start, sizeof function);
+    char *path = dladdr(function, &place) != 0 ? realpath(place.dli_fname, NULL) : NULL;
+    const char *slash = path ? strrchr(path, '/') : NULL;
+    snprintf(text, size, "%s", slash ? slash + 1 : "libngspice");
+    free(path);
 }
 
 dea_status dea_ngspice_open(dea_ngspice **library, dea_error *error)

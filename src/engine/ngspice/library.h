@@ -22,6 +22,8 @@ typedef struct dea_ngspice_result {
     size_t count;   /* points that were solved, may be fewer than wanted */
 } dea_ngspice_result;
 
+/* Writes the file name of the library that is loaded, which tells its version ("libngspice.so.0.0.6"); in any process. */
+void dea_ngspice_name(char *text, size_t size);
 /* Starts the library with no start-up file of anybody. Ends with dea_ngspice_close(). */
 dea_status dea_ngspice_open(dea_ngspice **library, dea_error *error);
 void dea_ngspice_close(dea_ngspice *library);

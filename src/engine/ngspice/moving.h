@@ -4,7 +4,10 @@
 
 #include "deaspice/engine.h"
 #include "engine/ngspice/library.h"
+#include "engine/ngspice/units.h"
 
+/* Units in which a transient runs. */
+dea_status dea_ngspice_units(const dea_scene *scene, const dea_model *model, dea_units *units, dea_error *error);
 /* One transient, as dea_engine says. */
 dea_status dea_ngspice_transient(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_sample *samples,
                                  dea_summary *summary, dea_error *error);

@@ -225,6 +225,7 @@ const dea_engine dea_engine_ngspice = {
     .run_patience = 120.0,
     .block = 5000,
     .omits = ~0u,
+    .library = dea_ngspice_name,
     .refuses = refuses,
     .begin = begin,
     .sweep = sweep,

@@ -14,13 +14,48 @@ static void polar(double re, double im, double *magnitude, double *phase)
     *phase = angle <= -180.0 ? 180.0 : angle;
 }
 
-/* The flux of the spring is the displacement; the current into a voltage source is counted from its plus to its minus pole. */
-static void fill_row(const double *spring, const double *source, double stiffness, double frequency, dea_response *row)
+/* What a frequency response is computed from: where there is a series resistance, the current through it is a small difference of
+ * voltages, and what goes into the film the better number. */
+typedef struct film_port {
+    bool series;
+    double resistance, conductance;   /* R_s [Ohm], 1/R_p [S] */
+    double capacitance, transduction; /* C [F], 2 phi U [A s/m] */
+} film_port;
+
+static film_port port_of(dea_dynamics *d, const dea_mobility_bias *bias)
 {
-    const double square = source[0] * source[0] + source[1] * source[1];
+    const dea_edge e = dea_dynamics_edge(d, bias->u);
+    return (film_port){d->series > 0.0, d->series, d->conductance, e.capacitance, 2.0 * e.push * bias->voltage};
+}
+
+/* Input impedance: of the source of 1 V, whose current is counted from its plus to its minus pole; or R_s + U/i of the film with
+ * i = i w (C U + T u) + U/R_p. Numbers are pairs of real and imaginary part. */
+static void impedance_of(const film_port *port, const double *first, const double u[2], double frequency, double z[2])
+{
+    const double omega = 2.0 * DEA_PI * frequency;
+    double current[2] = {-first[0], -first[1]}, voltage[2] = {1.0, 0.0};
+    if (port->series) {
+        voltage[0] = first[0];
+        voltage[1] = first[1];
+        current[0] = port->conductance * first[0] - omega * (port->capacitance * first[1] + port->transduction * u[1]);
+        current[1] = port->conductance * first[1] + omega * (port->capacitance * first[0] + port->transduction * u[0]);
+    }
+    const double square = current[0] * current[0] + current[1] * current[1];
+    z[0] = (port->series ? port->resistance : 0.0) + (voltage[0] * current[0] + voltage[1] * current[1]) / square;
+    z[1] = (voltage[1] * current[0] - voltage[0] * current[1]) / square;
+}
+
+/* The flux of the spring is the displacement. */
+static void fill_row(const film_port *port, const dea_ngspice_table *table, size_t index, double stiffness, double frequency,
+                     dea_response *row)
+{
+    double z[2];
+    const double *spring = &table->columns[0][2 * index];
+    const double u[2] = {spring[0] / stiffness, spring[1] / stiffness};
+    impedance_of(port, &table->columns[1][2 * index], u, frequency, z);
     row->frequency = frequency;
-    polar(spring[0] / stiffness, spring[1] / stiffness, &row->displacement, &row->displacement_phase);
-    polar(-source[0] / square, source[1] / square, &row->impedance, &row->impedance_phase);
+    polar(u[0], u[1], &row->displacement, &row->displacement_phase);
+    polar(z[0], z[1], &row->impedance, &row->impedance_phase);
     row->state = DEA_STATE_OK;
 }
 
@@ -35,7 +70,8 @@ typedef struct response {
 /* Rows first ... first + count - 1, on one grid. */
 static dea_status run_band(const response *r, size_t first, size_t count, dea_error *error)
 {
-    static const char *const names[] = {"lspring#branch", "vsource#branch"};
+    const film_port port = port_of(r->dynamics, &r->bias);
+    const char *const names[] = {"lspring#branch", port.series ? "film" : "vsource#branch"};
     const dea_mobility_band band = {.from = dea_layout_place(r->scene, first),
                                     .to = dea_layout_place(r->scene, first + count - 1),
                                     .points_per_decade = count > 1 ? r->scene->ac.points_per_decade : 0};
@@ -50,8 +86,7 @@ static dea_status run_band(const response *r, size_t first, size_t count, dea_er
         status = dea_fail(error, DEA_ERROR_ENGINE, "ngspice gave %zu of %zu frequencies", table.count, count);
     }
     for (size_t i = 0; i < count && status == DEA_OK; i++) {
-        fill_row(&table.columns[0][2 * i], &table.columns[1][2 * i], stiffness, dea_layout_place(r->scene, first + i),
-                 &r->rows[first + i]);
+        fill_row(&port, &table, i, stiffness, dea_layout_place(r->scene, first + i), &r->rows[first + i]);
     }
     dea_ngspice_table_free(&table);
     free(netlist);
@@ -103,8 +138,8 @@ static dea_status run_bands(response *r, dea_error *error)
     return status;
 }
 
-dea_status dea_ngspice_ac(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_response *rows,
-                          dea_error *error)
+static dea_status run_inside(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_response *rows,
+                             dea_error *error)
 {
     dea_dynamics dynamics;
     dea_status status = dea_dynamics_open(scene, model, &dynamics, error);
@@ -113,5 +148,40 @@ dea_status dea_ngspice_ac(dea_ngspice *library, const dea_scene *scene, const de
         status = run_bands(&r, error);
     }
     dea_dynamics_close(&dynamics);
+    return status;
+}
+
+/* Units that suit the scene; its time is that of the middle of the band. */
+static dea_status find_units(const dea_scene *scene, const dea_model *model, dea_units *units, dea_error *error)
+{
+    dea_dynamics dynamics;
+    const dea_status status = dea_dynamics_open(scene, model, &dynamics, error);
+    if (status == DEA_OK) {
+        const dea_sizes sizes = {.displacement = dea_dynamics_scale(&dynamics, scene->ac.bias),
+                                 .voltage = fabs(scene->ac.bias),
+                                 .time = 1.0 / sqrt(scene->ac.from * scene->ac.to)};
+        *units = dea_units_of(&dynamics, &sizes);
+    }
+    dea_dynamics_close(&dynamics);
+    return status;
+}
+
+dea_status dea_ngspice_ac(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_response *rows,
+                          dea_error *error)
+{
+    dea_units units;
+    dea_scene inside;
+    dea_status status = find_units(scene, model, &units, error);
+    if (status == DEA_OK) {
+        status = dea_units_enter(&units, scene, &inside, error);
+    }
+    if (status != DEA_OK) {
+        return status;
+    }
+    status = run_inside(library, &inside, model, rows, error);
+    dea_units_leave(&inside);
+    for (size_t i = 0; status == DEA_OK && i < dea_layout_of(scene).rows; i++) {
+        dea_units_return_response(&units, &rows[i]);
+    }
     return status;
 }

@@ -53,16 +53,14 @@ static double acceleration(const dea_dynamics *d, const dea_edge *e, const node 
 }
 
 /* Velocity of a film without mass, or of one whose ring has died away: what is left of that would count too much over a long
- * step. Behind a series resistance the slope of U = q/C(u) depends on it, and it on that slope: both are linear in the other. */
+ * step. */
 static void set_velocity(dea_dynamics *d, const dea_edge *e, node *n)
 {
     dea_moment *m = &n->moment;
     if (d->series > 0.0) {
-        const double still = dea_dynamics_velocity(d, m->u, m->voltage, 0.0, n->state.z);
-        const double per_slope = dea_dynamics_velocity(d, m->u, m->voltage, 1.0, n->state.z) - still;
-        const double reaction = e->capacitance_slope * m->voltage / e->capacitance;
-        m->v = (still + per_slope * n->current / e->capacitance) / (1.0 + per_slope * reaction);
-        m->slope = n->current / e->capacitance - reaction * m->v;
+        const double slope = n->current / e->capacitance;
+        m->v = dea_dynamics_velocity_charged(d, m->u, m->voltage, slope, n->state.z);
+        m->slope = slope - e->capacitance_slope * m->voltage / e->capacitance * m->v;
     } else {
         m->v = dea_dynamics_velocity(d, m->u, m->voltage, m->slope, n->state.z);
     }
@@ -130,7 +128,17 @@ static node between(const runner *r, const node *a, const node *b, double time)
     return node_at(r, time, &s);
 }
 
-/* Takes the samples up to the point @p b. */
+/* The edge lies between centre and frame. A linear film knows no frame: of what it does there only the samples tell. */
+static bool is_inside(const dea_dynamics *d, const node *n)
+{
+    const double u = n->moment.u;
+    if (d->linear) {
+        return isfinite(u) && isfinite(n->moment.v);
+    }
+    return u > -d->radius && u < d->point.frame_radius - d->radius && isfinite(n->moment.v);
+}
+
+/* Takes the samples up to the point @p b, or up to where the film leaves its frame before that. */
 static void take_samples(runner *r, const node *b)
 {
     dea_track *track = r->track;
@@ -142,6 +150,9 @@ static void take_samples(runner *r, const node *b)
         node n = *b;
         if (time < b->moment.time) {
             n = between(r, &r->last, b, time);
+        }
+        if (!is_inside(r->route->dynamics, &n)) {
+            return;
         }
         track->points[track->reached++] = (dea_track_point){n.moment.u, n.moment.v, n.state.charge};
     }
@@ -223,13 +234,11 @@ static void enter_segment(runner *r, double time, double next)
     }
 }
 
-/* The edge lies between centre and frame, and a film without mass stays where its branches, held, keep it stable. */
+/* Inside; and a film without mass and damper stays where its branches, held, keep it stable. */
 static bool is_possible(const runner *r, const node *n)
 {
     dea_dynamics *d = r->route->dynamics;
-    const double u = n->moment.u;
-    const bool inside = u > -d->radius && u < d->point.frame_radius - d->radius && isfinite(n->moment.v);
-    return inside && (d->mass > 0.0 || dea_dynamics_stiffness(d, u, n->moment.voltage, false) > 0.0);
+    return is_inside(d, n) && (!is_free(d) || dea_dynamics_stiffness(d, n->moment.u, n->moment.voltage, false) > 0.0);
 }
 
 /* Why the run ends: the film has lost its stability there or will find no equilibrium, or another reason. */
@@ -253,8 +262,12 @@ static bool advance(runner *r, double time, const dea_mobility_state *state)
     node n = node_at(r, time, state);
     correct(r, time - r->last.moment.time, &n);
     if (!is_possible(r, &n)) {
-        /* a mass can carry the film out; without one Newton's method may have found a root of no film */
-        r->track->end = r->route->dynamics->mass > 0.0 ? DEA_STATE_PULL_IN : verdict(r);
+        /* mass and damper carry the film out; without them Newton's method may have found a root of no film */
+        const bool carried = !is_free(r->route->dynamics);
+        r->track->end = carried ? DEA_STATE_PULL_IN : verdict(r);
+        if (carried) {
+            take_samples(r, &n);
+        }
         return false;
     }
     add_step(r, &n);
@@ -299,6 +312,7 @@ static void set_piece(runner *r, dea_mobility_piece *piece, double to, double st
                                   .step = step,
                                   .scale = route->scale,
                                   .force = route->scale * dea_dynamics_stiffness(route->dynamics, 0.0, 0.0, false),
+                                  .tolerance = fmin(1e-7, 1e-3 * route->scene->accuracy),
                                   .mass = r->match.mass,
                                   .conductance = r->match.resistance,
                                   .start = scaled(r->last.state, 1.0 / r->speed)};

@@ -34,6 +34,7 @@ typedef struct dea_route {
     double scale;     /* size of a displacement [m] */
     double omega;     /* of the ring [rad/s], 0: none */
     double resonance; /* first resonance of the film at rest [Hz], NAN without mass */
+    double unit;      /* of the times of the scene [1/s] */
 } dea_route;
 
 /* Runs the pieces with @p fineness times their steps; the caller frees track->points, also after a failure. A run that ends early

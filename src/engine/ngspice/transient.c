@@ -208,7 +208,8 @@ static dea_status refine(const dea_route *route, levels *l, dea_summary *summary
     }
     if (status == DEA_OK && l->fine.end == DEA_STATE_FAILED) {
         const char *complaint = dea_ngspice_complaint(route->library);
-        dea_fail(error, DEA_ERROR_ENGINE, "ngspice stopped at %g s%s%s", l->fine.last.time, complaint[0] ? ": " : "", complaint);
+        dea_fail(error, DEA_ERROR_ENGINE, "ngspice stopped at %g s%s%s", l->fine.last.time / route->unit,
+                 complaint[0] ? ": " : "", complaint);
     }
     return status;
 }
@@ -330,8 +331,9 @@ static dea_status run_on(dea_route *route, dea_sample *samples, dea_summary *sum
     return status;
 }
 
-dea_status dea_ngspice_transient(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_sample *samples,
-                                 dea_summary *summary, dea_error *error)
+/* Runs a scene whose numbers are of size 1; @p unit is that of its times. */
+static dea_status run_inside(dea_ngspice *library, const dea_scene *scene, const dea_model *model, double unit,
+                             dea_sample *samples, dea_summary *summary, dea_error *error)
 {
     dea_dynamics dynamics;
     dea_mobility mobility = {0};
@@ -362,6 +364,7 @@ dea_status dea_ngspice_transient(dea_ngspice *library, const dea_scene *scene, c
                            .mobility = &mobility,
                            .signal = &signal,
                            .resonance = resonance,
+                           .unit = unit,
                            .samples = dea_layout_of(scene).rows};
         status = run_on(&route, samples, summary, error);
     }
@@ -369,4 +372,57 @@ dea_status dea_ngspice_transient(dea_ngspice *library, const dea_scene *scene, c
     dea_mobility_close(&mobility);
     dea_dynamics_close(&dynamics);
     return status;
+}
+
+/* The film's own time: of its ring, of its damper, or else that of the run [s]. */
+static double own_time(dea_dynamics *d, const dea_scene *scene)
+{
+    if (d->mass > 0.0 && !is_weightless(d, scene->accuracy)) {
+        return sqrt(d->mass / fabs(dea_dynamics_stiffness(d, 0.0, 0.0, false)));
+    }
+    return d->retardation > 0.0 ? d->retardation : scene->transient.until;
+}
+
+dea_status dea_ngspice_units(const dea_scene *scene, const dea_model *model, dea_units *units, dea_error *error)
+{
+    dea_dynamics dynamics;
+    dea_signal signal = {0};
+    dea_status status = dea_dynamics_open(scene, model, &dynamics, error);
+    if (status == DEA_OK) {
+        status = dea_signal_open(scene, &signal, error);
+    }
+    if (status == DEA_OK) {
+        const double voltage = film_voltage(&dynamics, &scene->transient, &signal);
+        const dea_sizes sizes = {.displacement = scale_of(&dynamics, &scene->transient, voltage),
+                                 .voltage = voltage,
+                                 .time = own_time(&dynamics, scene)};
+        *units = dea_units_of(&dynamics, &sizes);
+    }
+    dea_signal_close(&signal);
+    dea_dynamics_close(&dynamics);
+    return status;
+}
+
+dea_status dea_ngspice_transient(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_sample *samples,
+                                 dea_summary *summary, dea_error *error)
+{
+    dea_units units;
+    dea_scene inside;
+    dea_status status = dea_ngspice_units(scene, model, &units, error);
+    if (status == DEA_OK) {
+        status = dea_units_enter(&units, scene, &inside, error);
+    }
+    if (status != DEA_OK) {
+        return status;
+    }
+    status = run_inside(library, &inside, model, units.time, samples, summary, error);
+    dea_units_leave(&inside);
+    if (status != DEA_OK) {
+        return status;
+    }
+    for (size_t i = 0; i < dea_layout_of(scene).rows; i++) {
+        dea_units_return_sample(&units, &samples[i]);
+    }
+    dea_units_return_summary(&units, summary);
+    return DEA_OK;
 }

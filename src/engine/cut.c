@@ -1,0 +1,62 @@
+#include "engine/cut.h"
+
+#include <stdint.h>
+
+enum {
+    MOST_HERE = 1024,    /* points of an engine that may run in this process, which cannot be stopped inside a block */
+    SMALLEST_SHARE = 16, /* a block is not cut below this fraction of what the engine takes best */
+    BLOCKS_WANTED = 64   /* so many workers have something to do, and end at about the same time */
+};
+
+static size_t divide_up(size_t a, size_t b)
+{
+    return a / b + (a % b != 0);
+}
+
+static size_t smaller(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+static size_t larger(size_t a, size_t b)
+{
+    return a > b ? a : b;
+}
+
+static size_t block_size(const dea_scene *scene, const dea_engine *engine, size_t points, size_t total)
+{
+    if (scene->study != DEA_STUDY_SWEEP)
+        return 1; /* a point is a whole run */
+    const size_t best = engine->block > 0 ? engine->block : 1;
+    size_t block = smaller(best, larger(divide_up(total, BLOCKS_WANTED), divide_up(best, SMALLEST_SHARE)));
+    if (!engine->isolated)
+        block = smaller(block, MOST_HERE);
+    return smaller(block, points);
+}
+
+dea_status dea_cut_make(const dea_scene *scene, const dea_engine *engine, dea_cut *cut, dea_error *error)
+{
+    const size_t points = dea_scene_point_count(scene);
+    if (scene->model_count == 0 || points == 0)
+        return dea_fail(error, DEA_ERROR_USAGE, "the study has no point");
+    if (points > SIZE_MAX / sizeof(dea_row) / scene->model_count)
+        return dea_fail(error, DEA_ERROR_USAGE, "the study has more points than this machine can count");
+    *cut = (dea_cut){.points = points, .total = points * scene->model_count};
+    cut->block = block_size(scene, engine, points, cut->total);
+    cut->blocks_per_model = divide_up(points, cut->block);
+    cut->blocks = cut->blocks_per_model * scene->model_count;
+    return DEA_OK;
+}
+
+dea_range dea_cut_range(const dea_cut *cut, size_t block)
+{
+    const size_t model = block / cut->blocks_per_model;
+    const size_t first = (block % cut->blocks_per_model) * cut->block;
+    return (dea_range){
+        .model = model, .first = first, .place = model * cut->points + first, .count = smaller(cut->points - first, cut->block)};
+}
+
+size_t dea_cut_block(const dea_cut *cut, size_t place)
+{
+    return place / cut->points * cut->blocks_per_model + place % cut->points / cut->block;
+}

@@ -1,0 +1,149 @@
+#include "engine/ngspice/units.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* The power of two that takes a size to [1, 2). */
+static double unit_for(double size)
+{
+    return size > 0.0 && isfinite(size) ? ldexp(1.0, -ilogb(size)) : 1.0;
+}
+
+/* The force is a stress on an area of length times thickness. Where the springs are linear no stress stands for itself. */
+dea_units dea_units_of(dea_dynamics *dynamics, const dea_sizes *sizes)
+{
+    const dea_edge rest = dea_dynamics_edge(dynamics, 0.0);
+    const double stress = rest.stress_slope * sizes->displacement;
+    const double force = unit_for(rest.area * stress);
+    dea_units units = {.length = unit_for(sizes->displacement),
+                       .thickness = 1.0,
+                       .voltage = unit_for(sizes->voltage),
+                       .time = unit_for(sizes->time)};
+    units.stress = dynamics->linear ? force / units.length : unit_for(stress);
+    units.thickness = force / (units.stress * units.length);
+    return units;
+}
+
+/* m u'' is a force, phi U^2 too: rho H r^2 u/t^2 and eps (U/H)^2 H r. */
+static double density(const dea_units *u)
+{
+    return u->stress * u->time * u->time / (u->length * u->length);
+}
+
+static double permittivity(const dea_units *u)
+{
+    return u->stress * u->thickness * u->thickness / (u->voltage * u->voltage);
+}
+
+static double charge(const dea_units *u)
+{
+    return permittivity(u) * u->length * u->length / u->thickness * u->voltage;
+}
+
+static double resistance(const dea_units *u)
+{
+    return u->voltage * u->time / charge(u);
+}
+
+static void enter_material(const dea_units *u, dea_material *material)
+{
+    for (int i = 0; i < DEA_YEOH_TERMS; i++) {
+        material->yeoh[i] *= u->stress;
+    }
+    material->modulus *= u->stress;
+    material->permittivity *= permittivity(u);
+    material->permittivity_per_stretch *= permittivity(u);
+    material->density *= density(u);
+    material->retardation *= u->time;
+    material->breakdown *= u->voltage / u->thickness;
+    for (size_t i = 0; i < material->prony_count; i++) {
+        material->prony[i].tau *= u->time;
+    }
+}
+
+static dea_status enter_points(const dea_units *u, dea_waveform *wave, dea_error *error)
+{
+    double *times = malloc(2 * wave->point_count * sizeof *times);
+    if (!times) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for the points of a waveform");
+    }
+    double *voltages = times + wave->point_count;
+    for (size_t i = 0; i < wave->point_count; i++) {
+        times[i] = wave->times[i] * u->time;
+        voltages[i] = wave->voltages[i] * u->voltage;
+    }
+    wave->times = times;
+    wave->voltages = voltages;
+    return DEA_OK;
+}
+
+static void enter_wave(const dea_units *u, dea_waveform *wave)
+{
+    wave->step.on *= u->time;
+    wave->step.off *= u->time;
+    wave->step.rise *= u->time;
+    wave->step.voltage *= u->voltage;
+    wave->sine.offset *= u->voltage;
+    wave->sine.amplitude *= u->voltage;
+    wave->sine.frequency /= u->time;
+    wave->sine.delay *= u->time;
+    wave->period *= u->time;
+}
+
+dea_status dea_units_enter(const dea_units *units, const dea_scene *scene, dea_scene *inside, dea_error *error)
+{
+    *inside = *scene;
+    dea_actuator *actuator = &inside->actuator;
+    actuator->frame_radius *= units->length;
+    actuator->divide_radius *= units->length;
+    actuator->focal_length *= units->length;
+    actuator->film_thickness *= units->thickness;
+    actuator->electrode_mass *= density(units) * units->thickness;
+    enter_material(units, &inside->material);
+    inside->drive.series_resistance *= resistance(units);
+    inside->drive.leakage_resistance *= resistance(units);
+    enter_wave(units, &inside->drive.waveform);
+    inside->transient.until *= units->time;
+    inside->transient.every *= units->time;
+    inside->ac.from /= units->time;
+    inside->ac.to /= units->time;
+    inside->ac.bias *= units->voltage;
+    return inside->drive.waveform.kind == DEA_WAVE_POINTS ? enter_points(units, &inside->drive.waveform, error) : DEA_OK;
+}
+
+void dea_units_leave(dea_scene *inside)
+{
+    if (inside->drive.waveform.kind == DEA_WAVE_POINTS) {
+        free(inside->drive.waveform.times);
+    }
+}
+
+void dea_units_return_sample(const dea_units *units, dea_sample *sample)
+{
+    sample->time /= units->time;
+    sample->voltage /= units->voltage;
+    sample->displacement /= units->length;
+    sample->velocity /= units->length / units->time;
+    sample->force /= units->stress * units->thickness * units->length;
+    sample->current /= charge(units) / units->time;
+    sample->charge /= charge(units);
+    sample->focal_length /= units->length;
+}
+
+void dea_units_return_response(const dea_units *units, dea_response *row)
+{
+    row->frequency *= units->time;
+    row->displacement /= units->length / units->voltage;
+    row->impedance /= resistance(units);
+}
+
+void dea_units_return_summary(const dea_units *units, dea_summary *summary)
+{
+    const double energy = units->stress * units->thickness * units->length * units->length;
+    summary->work /= energy;
+    summary->electric /= energy;
+    summary->elastic /= energy;
+    summary->kinetic /= energy;
+    summary->dissipated /= energy;
+    summary->resonance *= units->time;
+}

@@ -1,0 +1,167 @@
+#include "output/identity.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "deaspice/model.h"
+#include "scene/keys.h"
+#include "support/digest.h"
+#include "support/number.h"
+#include "support/text.h"
+
+#ifndef DEA_VERSION
+#define DEA_VERSION "unknown"
+#endif
+
+enum { SHOWN = 48 };
+
+/* With as many digits as tell the number from all others. */
+static const char *exact_text(char text[DEA_NUMBER_LENGTH], double value)
+{
+    int digits = 15;
+    do {
+        snprintf(text, DEA_NUMBER_LENGTH, "%.*g", digits, value);
+    } while (strtod(text, NULL) != value && ++digits < 18);
+    return isnan(value) ? "none" : dea_number_text(text, value, digits);
+}
+
+static void put_number(FILE *out, const char *name, double value)
+{
+    char text[DEA_NUMBER_LENGTH];
+    fprintf(out, "%s=%s\n", name, exact_text(text, value));
+}
+
+/* Many numbers: how many, the first, the last, and a digest of all. */
+static void put_numbers(FILE *out, const char *name, const double *values, size_t count)
+{
+    char first[DEA_NUMBER_LENGTH] = "", last[DEA_NUMBER_LENGTH] = "";
+    dea_digest digest = dea_digest_begin();
+    dea_digest_take(&digest, values, count * sizeof *values);
+    if (count > 0) {
+        dea_number_text(first, values[0], 9);
+        dea_number_text(last, values[count - 1], 9);
+    }
+    fprintf(out, "%s=%zu values %s ... %s (%016" PRIx64 ")\n", name, count, first, last, dea_digest_end(&digest));
+}
+
+/* Two keys can name one scalar; the first of them that this kind of actuator has stands for it. */
+static bool stands_for_its_place(size_t index, unsigned kind)
+{
+    const dea_key *key = dea_key_at(index);
+    if (key->offset == DEA_KEY_NOWHERE || key->stride > 0 || (key->kinds & kind) == 0) {
+        return false;
+    }
+    for (size_t i = 0; i < index; i++) {
+        const dea_key *before = dea_key_at(i);
+        if (before->offset == key->offset && before->stride == 0 && (before->kinds & kind) != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void put_scalars(FILE *out, const dea_scene *scene)
+{
+    const unsigned kind = scene->actuator.kind == DEA_DOT ? DEA_KEY_DOT : DEA_KEY_LENS;
+    for (size_t i = 0; dea_key_at(i); i++) {
+        if (stands_for_its_place(i, kind)) {
+            double value;
+            memcpy(&value, (const char *)scene + dea_key_at(i)->offset, sizeof value);
+            put_number(out, dea_key_at(i)->path, value);
+        }
+    }
+}
+
+static void put_lists(FILE *out, const dea_scene *scene)
+{
+    const dea_material *material = &scene->material;
+    const dea_transient *transient = &scene->transient;
+    const dea_waveform *wave = &scene->drive.waveform;
+    put_numbers(out, "material.prony", &material->prony[0].g, 2 * material->prony_count);
+    fprintf(out, "material.moduli=%s\n", material->instantaneous ? "instantaneous" : "long-term");
+    fprintf(out, "drive.waveform.kind=%d\n", (int)wave->kind);
+    put_numbers(out, "drive.waveform.times", wave->times, wave->point_count);
+    put_numbers(out, "drive.waveform.voltages", wave->voltages, wave->point_count);
+    put_numbers(out, "study.transient.average", &transient->averages[0].from, 2 * transient->average_count);
+    fprintf(out, "study.transient.start=%s\n", transient->from_bias ? "bias" : "rest");
+    fprintf(out, "study.ac.points_per_decade=%zu\nfull=%d\n", scene->ac.points_per_decade, scene->full ? 1 : 0);
+}
+
+static void put_study(FILE *out, const dea_scene *scene)
+{
+    static const char *const studies[] = {
+        [DEA_STUDY_SWEEP] = "sweep", [DEA_STUDY_TRANSIENT] = "transient", [DEA_STUDY_AC] = "ac"};
+    fprintf(out, "study=%s\nmodel=", studies[scene->study]);
+    for (size_t i = 0; i < scene->model_count; i++) {
+        fprintf(out, "%s%s", i > 0 ? "," : "", scene->models[i]->name);
+    }
+    fprintf(out, "\nactuator.kind=%s\naxes=", scene->actuator.kind == DEA_DOT ? "dot" : "lens");
+    for (size_t i = 0; i < scene->axis_count; i++) {
+        fprintf(out, "%s%s", i > 0 ? "," : "", scene->axes[i].key);
+    }
+    fputc('\n', out);
+    for (size_t i = 0; i < scene->axis_count; i++) {
+        char name[DEA_NAME_LENGTH + 16];
+        snprintf(name, sizeof name, "axis %s", scene->axes[i].key);
+        put_numbers(out, name, scene->axes[i].values, scene->axes[i].count);
+    }
+}
+
+dea_status dea_identity_write(const dea_scene *scene, const dea_engine *engine, char **text, dea_error *error)
+{
+    size_t length;
+    char library[DEA_NAME_LENGTH] = "none";
+    *text = NULL;
+    FILE *out = open_memstream(text, &length);
+    if (!out) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+    }
+    if (engine->library) {
+        engine->library(library, sizeof library);
+    }
+    fprintf(out, "program version=%s\nengine=%s\nlibrary of the engine=%s\n", DEA_VERSION, engine->name, library);
+    put_study(out, scene);
+    put_scalars(out, scene);
+    put_lists(out, scene);
+    const bool bad = ferror(out) != 0;
+    if (fclose(out) != 0 || bad) {
+        free(*text);
+        *text = NULL;
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+    }
+    return DEA_OK;
+}
+
+/* Value of a line, fit for a message: the text is a stranger's. */
+static const char *value_of(const char *line, char out[DEA_TEXT_ROOM])
+{
+    char value[2 * SHOWN] = "";
+    const size_t name = strcspn(line, "=\n");
+    if (line[name] == '=') {
+        snprintf(value, sizeof value, "%.*s", (int)strcspn(line + name + 1, "\n"), line + name + 1);
+    }
+    return dea_text_clip(value, SHOWN, out, DEA_TEXT_ROOM);
+}
+
+void dea_identity_compare(const char *there, const char *here, char difference[DEA_IDENTITY_DIFFERENCE])
+{
+    char one[DEA_TEXT_ROOM], other[DEA_TEXT_ROOM];
+    while (*there && *here) {
+        const size_t length = strcspn(here, "\n");
+        if (strcspn(there, "\n") != length || strncmp(there, here, length) != 0) {
+            break;
+        }
+        here += length + (here[length] != '\0');
+        there += length + (there[length] != '\0');
+    }
+    const size_t name = strcspn(here, "=\n");
+    if (strncmp(there, here, name + 1) != 0) { /* a line that the other does not have */
+        snprintf(difference, DEA_IDENTITY_DIFFERENCE, "other settings there");
+        return;
+    }
+    snprintf(difference, DEA_IDENTITY_DIFFERENCE, "%.*s is %.90s there and %.90s here", (int)name, here, value_of(there, one),
+             value_of(here, other));
+}

@@ -1,0 +1,84 @@
+/* A journal: the finished blocks of a study, or of one shard of it, in the order in which they were finished. A run that is
+ * killed goes on from it, and a finished one is the part of a study that a merge takes.
+ *
+ * The file has a header (magic, byte order, shard, cut, the study's identity as text) and then a record for each block: its
+ * number, its points, their columns and states packed without gaps, and digests of head and points. Nothing is ever written
+ * twice; a record that is not whole is as if it were not there.
+ *
+ * What lasts: a record stands once dea_journal_append() returned, whatever becomes of the process (SIGKILL too). It is on the
+ * disk, safe from a loss of power, after at most 10 s and once the journal is complete; what such a loss leaves half written
+ * fails its digest, is cut off and computed again. */
+#ifndef DEASPICE_OUTPUT_JOURNAL_H
+#define DEASPICE_OUTPUT_JOURNAL_H
+
+#include <stdint.h>
+
+#include "deaspice/engine.h"
+#include "engine/cut.h"
+
+/* A shard of a study: a range of its blocks, so that a merge is a concatenation. */
+typedef struct dea_shard {
+    size_t number, count; /* 1 <= number <= count; {1, 1}: the whole study */
+} dea_shard;
+
+/* A range of points of the study, or of its blocks: first ... first + count - 1. */
+typedef struct dea_stretch {
+    size_t first, count;
+} dea_stretch;
+
+/* What journals of a study have in common. */
+typedef struct dea_journal_study {
+    const dea_scene *scene;
+    dea_layout layout;
+    dea_cut cut;
+    size_t packed;  /* bytes of a point in a journal */
+    char *identity; /* owned */
+} dea_journal_study;
+
+/* Prepares what the journals of a study need; scene and engine outlive it. Free with dea_journal_study_free(). */
+dea_status dea_journal_study_make(const dea_scene *scene, const dea_engine *engine, dea_journal_study *study, dea_error *error);
+/* Frees it; a zeroed one is fine. */
+void dea_journal_study_free(dea_journal_study *study);
+/* Blocks of a shard: numbers differ by one at most. */
+dea_stretch dea_shard_blocks(const dea_journal_study *study, dea_shard shard);
+/* Points of a shard. */
+dea_stretch dea_shard_points(const dea_journal_study *study, dea_shard shard);
+
+typedef struct dea_journal dea_journal;
+
+/* How a journal ends. */
+typedef enum dea_journal_end {
+    DEA_JOURNAL_STAYS,  /* to be gone on with; one without a name of its own is removed */
+    DEA_JOURNAL_GOES,   /* its result is in place: removed */
+    DEA_JOURNAL_IS_PART /* it takes the place of its target */
+} dea_journal_end;
+
+/* Opens the journal of that name and locks it, or creates it. What is in it is verified; a torn end is cut off. The study
+ * outlives the journal, which the caller ends with dea_journal_close().
+ * DEA_ERROR_USAGE: of another study or shard, or in use by another process; the file is as it was. DEA_ERROR_IO. */
+dea_status dea_journal_open(const dea_journal_study *study, dea_shard shard, const char *path, dea_journal **journal,
+                            dea_error *error);
+/* A new journal without a name, beside @p target. */
+dea_status dea_journal_create(const dea_journal_study *study, dea_shard shard, const char *target, dea_journal **journal,
+                              dea_error *error);
+/* Opens a part to read it. Its records are found, their points not yet verified. Its shard is what the file says.
+ * DEA_ERROR_USAGE: not a part, of another study, or damaged; the message names file and points. */
+dea_status dea_journal_read(const dea_journal_study *study, const char *path, dea_journal **journal, dea_error *error);
+/* The file's shard. */
+dea_shard dea_journal_shard(const dea_journal *journal);
+/* Points in it. */
+size_t dea_journal_points(const dea_journal *journal);
+/* Bytes of a torn end that were cut off when it was opened. */
+uint64_t dea_journal_lost(const dea_journal *journal);
+/* True where the block belongs to the shard and is not in the journal. */
+bool dea_journal_wants(const dea_journal *journal, size_t block);
+/* DEA_OK where it has all points of its shard; else a message that names the first that are missing. */
+dea_status dea_journal_complete(const dea_journal *journal, dea_error *error);
+/* Appends the points of one whole block. */
+dea_status dea_journal_append(dea_journal *journal, size_t first, const void *points, size_t count, dea_error *error);
+/* Hands the points of a complete journal to options->points in order, verified. progress and stop are used as in a run. */
+dea_status dea_journal_replay(dea_journal *journal, const dea_run_options *options, dea_error *error);
+/* Ends the journal and frees it, NULL is fine. @p target: what a part is called; NULL else. */
+dea_status dea_journal_close(dea_journal *journal, dea_journal_end end, const char *target, dea_error *error);
+
+#endif

@@ -1,0 +1,109 @@
+#include "program/audience.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+dea_status dea_audience_points(void *user, size_t first, const void *points, size_t count, dea_error *error)
+{
+    dea_audience *audience = user;
+    if (audience->findings.averages) {
+        dea_progress_clear(audience->progress); /* they may go to the same terminal */
+    }
+    dea_findings_take(&audience->findings, first, points, count);
+    const dea_status status = audience->writer ? dea_writer_points(audience->writer, first, points, count, error) : DEA_OK;
+    if (status == DEA_OK && audience->plot) {
+        dea_plot_points(audience->plot, first, points, count);
+    }
+    return status;
+}
+
+void dea_audience_log(void *user, const char *line)
+{
+    const dea_audience *audience = user;
+    dea_progress_clear(audience->progress);
+    dea_complain("%s", line);
+}
+
+void dea_audience_progress(void *user, size_t done, size_t total)
+{
+    const dea_audience *audience = user;
+    dea_progress_show(audience->progress, audience->before + done, audience->before + total);
+}
+
+/* Does the result itself go to standard output? */
+static bool is_straight(const dea_arguments *arguments)
+{
+    const char *output = arguments->output;
+    return output ? strcmp(output, "-") == 0 || strcmp(output, "/dev/stdout") == 0 : !arguments->plot;
+}
+
+/* Averages go to standard output, or beside it where that holds the result. */
+static FILE *averages_stream(const dea_arguments *arguments)
+{
+    return !is_straight(arguments) ? stdout : arguments->quiet ? NULL : stderr;
+}
+
+static dea_status open_outputs(const dea_arguments *arguments, const dea_scene *scene, const dea_engine *engine,
+                               dea_audience *audience, dea_error *error)
+{
+    const char *output = arguments->output ? arguments->output : arguments->plot ? NULL : "-";
+    dea_status status = DEA_OK;
+    if (output) {
+        status = dea_writer_open(scene, engine->name, output, arguments->format, &audience->writer, error);
+    }
+    if (status == DEA_OK && arguments->plot) {
+        status = dea_plot_begin(scene, arguments->plot, &audience->plot, error);
+    }
+    return status;
+}
+
+dea_status dea_audience_open(const dea_arguments *arguments, const dea_scene *scene, const dea_engine *engine,
+                             dea_audience *audience, dea_error *error)
+{
+    const dea_status status = open_outputs(arguments, scene, engine, audience, error);
+    if (status == DEA_OK) {
+        audience->findings = dea_findings_begin(scene, averages_stream(arguments));
+    }
+    return status;
+}
+
+dea_status dea_audience_try(const dea_arguments *arguments, const dea_scene *scene, const dea_engine *engine, dea_error *error)
+{
+    dea_audience audience = {0};
+    const dea_status status = open_outputs(arguments, scene, engine, &audience, error);
+    dea_writer_finish(audience.writer, false, NULL);
+    dea_plot_finish(audience.plot, false, NULL);
+    return status;
+}
+
+dea_status dea_audience_close(dea_audience *audience, dea_status status, dea_error *error)
+{
+    dea_progress_end(audience->progress);
+    const dea_status written = dea_writer_finish(audience->writer, status == DEA_OK, status == DEA_OK ? error : NULL);
+    if (status == DEA_OK) {
+        status = written;
+    }
+    const dea_status plotted = dea_plot_finish(audience->plot, status == DEA_OK, status == DEA_OK ? error : NULL);
+    return status != DEA_OK ? status : plotted;
+}
+
+void dea_audience_interrupted(const dea_audience *audience, const dea_arguments *arguments)
+{
+    const bool straight = audience->writer && is_straight(arguments);
+    if (dea_signals_caught() != 0 && !dea_signals_broken_pipe()) {
+        dea_complain("%s", straight ? "interrupted" : "interrupted, nothing written");
+    }
+}
+
+dea_exit dea_audience_tell(const dea_arguments *arguments, const dea_engine *engine, const dea_findings *findings, double seconds)
+{
+    const size_t failed = findings->states[DEA_STATE_FAILED];
+    if (!arguments->quiet && (arguments->output || arguments->plot || isatty(STDERR_FILENO))) {
+        dea_findings_print(findings, engine, seconds);
+    }
+    if (failed > 0) {
+        dea_complain("%zu %s were not solved", failed, findings->scene->study == DEA_STUDY_SWEEP ? "points" : "rows");
+    }
+    return failed > 0 ? DEA_EXIT_FAILED : DEA_EXIT_DONE;
+}

@@ -1,0 +1,133 @@
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "output/merge.h"
+#include "program/audience.h"
+
+typedef struct merging {
+    dea_audience audience;
+    size_t total;
+} merging;
+
+static dea_status take_points(void *user, size_t first, const void *points, size_t count, dea_error *error)
+{
+    merging *merge = user;
+    const dea_status status = dea_audience_points(&merge->audience, first, points, count, error);
+    dea_audience_progress(&merge->audience, first + count, merge->total);
+    return status;
+}
+
+static const char **list_paths(const dea_arguments *arguments)
+{
+    const char **paths = calloc(arguments->operand_count, sizeof *paths);
+    for (size_t i = 1; paths && i < arguments->operand_count; i++) {
+        paths[i - 1] = arguments->operands[i].path;
+    }
+    return paths;
+}
+
+static dea_status merge_parts(const dea_arguments *arguments, const dea_journal_study *study, merging *merge, dea_error *error)
+{
+    const char **paths = list_paths(arguments);
+    if (!paths) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+    }
+    const dea_run_options options = {.points = take_points, .stop = dea_signals_stop, .user = merge};
+    const dea_status status = dea_merge_parts(study, paths, arguments->operand_count - 1, &options, error);
+    free(paths);
+    return status;
+}
+
+static dea_exit merge_scene(const dea_arguments *arguments, const dea_scene *scene, const dea_engine *engine)
+{
+    dea_error error = {0};
+    dea_journal_study study = {0};
+    merging merge = {0};
+    dea_signals_catch();
+    const double start = dea_seconds();
+    dea_status status = dea_journal_study_make(scene, engine, &study, &error);
+    if (status == DEA_OK) {
+        status = dea_audience_open(arguments, scene, engine, &merge.audience, &error);
+    }
+    if (status == DEA_OK) {
+        merge.audience.progress = arguments->quiet ? NULL : dea_progress_begin();
+        merge.total = study.cut.total;
+        status = merge_parts(arguments, &study, &merge, &error);
+    }
+    dea_journal_study_free(&study);
+    if (status != DEA_OK && dea_signals_caught()) {
+        dea_audience_interrupted(&merge.audience, arguments);
+    }
+    status = dea_audience_close(&merge.audience, status, &error);
+    if (status != DEA_OK) {
+        return dea_complain_error(&error);
+    }
+    return dea_audience_tell(arguments, engine, &merge.audience.findings, dea_seconds() - start);
+}
+
+static bool is_a_part(const dea_arguments *arguments, const char *target)
+{
+    for (size_t i = 1; target && i < arguments->operand_count; i++) {
+        if (strcmp(arguments->operands[i].path, target) == 0) {
+            dea_complain("%s is a part, and shall not be overwritten", target);
+            return true;
+        }
+    }
+    return false;
+}
+
+static dea_exit merge(const dea_arguments *arguments)
+{
+    const dea_engine *engine = dea_engine_choose(arguments->engine ? arguments->engine : "ngspice");
+    dea_scene scene;
+    dea_exit outcome = DEA_EXIT_USAGE;
+    if (is_a_part(arguments, arguments->output) || is_a_part(arguments, arguments->plot)) {
+        return DEA_EXIT_USAGE;
+    }
+    if (!engine || !dea_scene_open(arguments, arguments->operands[0].path, &scene, &outcome)) {
+        return outcome;
+    }
+    double bound;
+    if (dea_model_settle(&scene, engine, arguments->quiet, &bound, &outcome) && !dea_engine_unfit(engine, &scene)) {
+        outcome = merge_scene(arguments, &scene, engine);
+    }
+    dea_scene_free(&scene);
+    return outcome;
+}
+
+const dea_command dea_command_merge = {
+    .name = "merge",
+    .summary = "join the parts of a study that ran in shards",
+    .help = "Usage: deaspice merge [OPTION]... SCENE PART...\n"
+            "\n"
+            "Joins the parts that deaspice run --shard wrote, in any order. The result is the\n"
+            "same, byte by byte, as that of one run of the whole study. It goes to standard\n"
+            "output as CSV unless -o or --plot is given.\n"
+            "\n"
+            "  -o, --output FILE     write the result to FILE, - is standard output\n"
+            "      --format F        csv, nc or raw; default: from the ending of FILE\n"
+            "      --plot FILE       draw the result, FILE ends in .svg or .png\n"
+            "      --engine E        as in the runs: direct, ngspice (default) or ida\n"
+            "      --model M         as in the runs\n"
+            "      --set KEY=VALUE   as in the runs\n"
+            "      --full            as in the runs\n"
+            "  -q, --quiet           no summary and no progress\n"
+            "  -h, --help            this text\n"
+            "  -V, --version         the version\n"
+            "\n"
+            "A part that is missing, there twice, not complete, damaged, or of another scene,\n"
+            "engine or version is named, with its points, and nothing is written.\n"
+            "Exit status: 0 done, 1 points not solved or a file not written, 2 usage, a bad\n"
+            "scene or parts that do not fit.\n"
+            "\n"
+            "Examples:\n"
+            "  for i in 1 2 3 4; do deaspice run dot.yaml --shard $i/4 -o part-$i.dea; done\n"
+            "  deaspice merge dot.yaml part-*.dea -o dot.nc\n",
+    .takes = DEA_TAKES_ENGINE | DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_FORMAT | DEA_TAKES_PLOT | DEA_TAKES_QUIET |
+             DEA_TAKES_FULL,
+    .least = 2,
+    .most = SIZE_MAX,
+    .run = merge,
+};

@@ -1,0 +1,299 @@
+/* Random scenes of all studies, written as the YAML that the program reads, so that what is judged is what --dump shows. */
+#include "promises.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "../unit/random_transients.h"
+
+enum { TEXT = 16384, SWEEP_POINTS = 6, BRANCHES = 8 };
+
+typedef struct paper {
+    char *text;
+    size_t used;
+} paper;
+
+static void put(paper *p, const char *format, ...) DEA_PRINTF(2, 3);
+
+static void put(paper *p, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = vsnprintf(p->text + p->used, TEXT - p->used, format, arguments);
+    va_end(arguments);
+    p->used += length > 0 ? (size_t)length : 0;
+}
+
+static void put_given(paper *p, const char *key, double value, const char *unit)
+{
+    if (!isnan(value)) {
+        put(p, "  %s: %.17g %s\n", key, value, unit);
+    }
+}
+
+static void put_actuator(paper *p, const dea_actuator *a)
+{
+    put(p, "actuator:\n  kind: %s\n", a->kind == DEA_DOT ? "dot" : "lens");
+    put(p, "  frame_radius: %.17g m\n  coverage: %.17g\n", a->frame_radius, a->coverage);
+    put(p, "  film_thickness: %.17g m\n  prestretch: %.17g\n", a->film_thickness, a->prestretch);
+    put_given(p, "electrode_mass", a->electrode_mass, "kg/m^2");
+    if (!isnan(a->focal_length)) {
+        put(p, "  optics: {focal_length: %.17g m, refractive_index: %.17g}\n", a->focal_length, a->refractive_index);
+    }
+}
+
+static void put_material(paper *p, const dea_material *m)
+{
+    put(p, "material:\n  yeoh: {C1: %.17g Pa, C2: %.17g Pa, C3: %.17g Pa}\n", m->yeoh[0], m->yeoh[1], m->yeoh[2]);
+    put(p, "  permittivity: {constant: %.17g, per_stretch: %.17g}\n", m->permittivity, m->permittivity_per_stretch);
+    put_given(p, "density", m->density, "kg/m^3");
+    put_given(p, "retardation", m->retardation, "s");
+    put_given(p, "modulus", m->modulus, "Pa");
+    put_given(p, "breakdown", m->breakdown, "V/m");
+    if (m->prony_count > 0) {
+        put(p, "  moduli: %s\n  prony:\n", m->instantaneous ? "instantaneous" : "long-term");
+    }
+    for (size_t i = 0; i < m->prony_count; i++) {
+        put(p, "    - {g: %.17g, tau: %.17g s}\n", m->prony[i].g, m->prony[i].tau);
+    }
+}
+
+static void put_wave(paper *p, const dea_waveform *w)
+{
+    put(p, "  waveform:\n");
+    if (w->kind == DEA_WAVE_STEP) {
+        put(p, "    step: {on: %.17g s, voltage: %.17g V, rise: %.17g s", w->step.on, w->step.voltage, w->step.rise);
+        if (!isnan(w->step.off)) {
+            put(p, ", off: %.17g s", w->step.off);
+        }
+        put(p, "}\n");
+    } else if (w->kind == DEA_WAVE_SINE) {
+        put(p, "    sine: {offset: %.17g V, amplitude: %.17g V, frequency: %.17g Hz, phase: %.17g rad, delay: %.17g s}\n",
+            w->sine.offset, w->sine.amplitude, w->sine.frequency, w->sine.phase, w->sine.delay);
+    } else {
+        put(p, "    points:\n");
+        for (size_t i = 0; i < w->point_count; i++) {
+            put(p, "      - [%.17g s, %.17g V]\n", w->times[i], w->voltages[i]);
+        }
+    }
+    if (!isnan(w->period)) {
+        put(p, "    period: %.17g s\n", w->period);
+    }
+}
+
+static void put_drive(paper *p, const dea_scene *scene)
+{
+    put(p, "drive:\n");
+    put_given(p, "series_resistance", scene->drive.series_resistance, "Ohm");
+    put_given(p, "leakage_resistance", scene->drive.leakage_resistance, "Ohm");
+    if (scene->study == DEA_STUDY_TRANSIENT) {
+        put_wave(p, &scene->drive.waveform);
+    } else {
+        put(p, "  voltage: %.17g V\n", scene->drive.voltage);
+    }
+}
+
+/* ---- materials and geometry */
+
+static void draw_material(uint64_t *seed, dea_material *m)
+{
+    random_material(seed, m);
+    if (random_chance(seed, 0.2)) {
+        *m = *dea_material_find(random_chance(seed, 0.5) ? "vhb-4910" : "elastosil-2030");
+    } else {
+        const double factor = random_decades(seed, 0.1, 30.0);
+        for (int i = 0; i < DEA_YEOH_TERMS; i++) {
+            m->yeoh[i] *= factor;
+        }
+        m->modulus *= factor;
+    }
+    if (random_chance(seed, 0.2)) {
+        m->breakdown = random_decades(seed, 2e7, 3e8);
+    }
+}
+
+static void draw_film(uint64_t *seed, dea_scene *scene)
+{
+    dea_actuator *a = &scene->actuator;
+    *scene = random_scene(seed);
+    draw_material(seed, &scene->material);
+    a->prestretch = random_chance(seed, 0.6) ? random_between(seed, 1.05, 1.6) : random_between(seed, 1.6, 4.0);
+    a->coverage = random_chance(seed, 0.3)
+                      ? (random_chance(seed, 0.5) ? random_between(seed, 0.02, 0.1) : random_between(seed, 0.9, 0.98))
+                      : random_between(seed, 0.1, 0.9);
+    a->film_thickness = random_decades(seed, 1e-6, 1e-3);
+    a->frame_radius = random_decades(seed, 1e-3, 0.1);
+}
+
+/* A film that its material does not hold at rest is made neo-Hookean. */
+static double limit_voltage(dea_scene *scene, const char *model)
+{
+    const double voltage = pull_in_voltage(scene, model);
+    if (static_strain(scene, model, 1e-3 * voltage) == 1.0) {
+        scene->material.yeoh[1] = scene->material.yeoh[2] = 0.0;
+        return pull_in_voltage(scene, model);
+    }
+    return voltage;
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* ---- static sweeps: along the voltage up to and past pull-in, along coverage or pre-stretch below it */
+
+static void put_axis(paper *p, uint64_t *seed, const char *key, const char *unit, double low, double high)
+{
+    double values[SWEEP_POINTS];
+    for (int i = 0; i < SWEEP_POINTS; i++) {
+        values[i] = random_between(seed, low, high);
+    }
+    qsort(values, SWEEP_POINTS, sizeof *values, by_size);
+    put(p, "study:\n  sweep:\n    %s: [", key);
+    for (int i = 0; i < SWEEP_POINTS; i++) {
+        put(p, "%s%.17g%s%s", i > 0 ? ", " : "", values[i], unit[0] ? " " : "", unit);
+    }
+    put(p, "]\n");
+}
+
+static void draw_sweep(uint64_t *seed, paper *p)
+{
+    dea_scene scene;
+    draw_film(seed, &scene);
+    const dea_model *model = dea_model_at((size_t)((double)dea_model_count() * random_unit(seed)));
+    scene.actuator.kind = model->lens ? scene.actuator.kind : DEA_DOT;
+    const double limit = limit_voltage(&scene, model->name), kind = random_unit(seed);
+    const double share = scene.drive.leakage_resistance / (scene.drive.leakage_resistance + scene.drive.series_resistance);
+    const double source = limit / (isnan(share) ? 1.0 : share);
+    scene.drive.voltage = source * random_between(seed, 0.1, 0.9);
+    put_actuator(p, &scene.actuator);
+    put_material(p, &scene.material);
+    put_drive(p, &scene);
+    put(p, "model: %s\n", model->name);
+    if (kind < 0.6) {
+        put_axis(p, seed, "voltage", "V", 0.02 * source, (random_chance(seed, 0.4) ? 1.3 : 0.95) * source);
+    } else if (kind < 0.8) {
+        put_axis(p, seed, "coverage", "", 0.02, 0.98);
+    } else {
+        put_axis(p, seed, "prestretch", "", 1.05, fmin(4.0, 1.5 * scene.actuator.prestretch));
+    }
+}
+
+/* ---- motion */
+
+static void draw_motion(uint64_t *seed, dea_scene *scene, double until)
+{
+    dea_material *m = &scene->material;
+    m->prony_count = random_chance(seed, 0.4) ? 0 : 1 + (size_t)(BRANCHES * random_unit(seed));
+    m->instantaneous = random_chance(seed, 0.3);
+    for (size_t i = 0; i < m->prony_count; i++) {
+        m->prony[i].g = random_between(seed, 0.05, 0.8) / (double)m->prony_count;
+        m->prony[i].tau = random_chance(seed, 0.5) ? random_decades(seed, 1e-6, 2e5) : until * random_decades(seed, 1e-4, 1e2);
+    }
+    m->retardation = random_chance(seed, 0.4) ? until * random_decades(seed, 1e-5, 1e-1) : (double)NAN;
+}
+
+static void draw_ports(uint64_t *seed, dea_scene *scene, double time)
+{
+    const dea_actuator *a = &scene->actuator;
+    const double capacitance = 1e-10 * pow(a->frame_radius * a->prestretch, 2.0) / a->film_thickness;
+    scene->drive.series_resistance = scene->drive.leakage_resistance = (double)NAN;
+    if (random_chance(seed, 0.35)) {
+        scene->drive.series_resistance = time * random_decades(seed, 1e-5, 1.0) / capacitance;
+    }
+    if (random_chance(seed, 0.25)) {
+        scene->drive.leakage_resistance = time * random_decades(seed, 0.3, 1e4) / capacitance;
+    }
+    if (a->kind == DEA_LENS && random_chance(seed, 0.3)) {
+        scene->actuator.refractive_index = 1.4;
+        scene->actuator.focal_length = a->coverage * a->frame_radius * random_between(seed, 1.2, 6.0) / 0.4;
+    }
+}
+
+static const char *draw_mover(uint64_t *seed, dea_scene *scene, bool heavy)
+{
+    static const char *const models[] = {"lumped", "lame", "coverage"};
+    draw_film(seed, scene);
+    scene->material.density = heavy ? random_between(seed, 900.0, 1200.0) : (double)NAN;
+    scene->actuator.electrode_mass = heavy && random_chance(seed, 0.3) ? random_decades(seed, 1e-3, 0.1) : (double)NAN;
+    return models[(int)(3.0 * random_unit(seed))];
+}
+
+/* Squeezes the waveform into a period of which the run holds some. */
+static void repeat(uint64_t *seed, dea_waveform *w, double until)
+{
+    const double period = until / random_between(seed, 1.5, 6.0), squeeze = period / (1.3 * until);
+    if (w->kind == DEA_WAVE_SINE) {
+        return;
+    }
+    w->step.off = isnan(w->step.off) ? w->step.on + w->step.rise + 0.2 * until : w->step.off;
+    w->step.on *= squeeze;
+    w->step.off *= squeeze;
+    w->step.rise *= squeeze;
+    for (size_t i = 0; i < w->point_count; i++) {
+        w->times[i] *= squeeze;
+    }
+    w->period = period;
+}
+
+static void draw_transient(uint64_t *seed, paper *p)
+{
+    dea_scene scene;
+    const bool heavy = random_chance(seed, 0.6);
+    const char *model = draw_mover(seed, &scene, heavy);
+    dea_transient *run = &scene.transient;
+    scene.study = DEA_STUDY_TRANSIENT;
+    scene.material.prony_count = 0;
+    const double pace = random_frequency(&scene);
+    run->until = heavy ? random_decades(seed, 2.0, 40.0) / pace : random_decades(seed, 1e-6, 1e6);
+    run->every = run->until / (double)(int)random_decades(seed, 10.0, 400.0);
+    run->from_bias = random_chance(seed, 0.25);
+    draw_motion(seed, &scene, run->until);
+    const double share = random_chance(seed, 0.1) ? random_between(seed, 0.9, 1.4) : random_between(seed, 0.05, 0.7);
+    random_wave(seed, &scene, share * limit_voltage(&scene, model));
+    if (random_chance(seed, 0.2)) {
+        repeat(seed, &scene.drive.waveform, run->until);
+    }
+    draw_ports(seed, &scene, run->until);
+    put_actuator(p, &scene.actuator);
+    put_material(p, &scene.material);
+    put_drive(p, &scene);
+    put(p, "model: %s\nstudy:\n  transient: {until: %.17g s, every: %.17g s, start: %s}\n", model, run->until, run->every,
+        run->from_bias ? "bias" : "rest");
+}
+
+static void draw_response(uint64_t *seed, paper *p)
+{
+    dea_scene scene;
+    const bool heavy = random_chance(seed, 0.7);
+    const char *model = draw_mover(seed, &scene, heavy);
+    scene.study = DEA_STUDY_AC;
+    scene.material.prony_count = 0;
+    const double centre = heavy ? random_frequency(&scene) : random_decades(seed, 1e-4, 1e4);
+    draw_motion(seed, &scene, 1.0 / centre);
+    scene.drive.voltage = random_between(seed, 0.05, 0.95) * limit_voltage(&scene, model);
+    draw_ports(seed, &scene, 1.0 / centre);
+    put_actuator(p, &scene.actuator);
+    put_material(p, &scene.material);
+    put_drive(p, &scene);
+    put(p, "model: %s\nstudy:\n  ac: {from: %.17g Hz, to: %.17g Hz, points_per_decade: %d}\n", model,
+        centre * random_decades(seed, 1e-4, 0.3), centre * random_decades(seed, 3.0, 300.0),
+        (int)random_between(seed, 3.0, 12.0));
+}
+
+char *draw_scene(uint64_t seed, size_t number)
+{
+    uint64_t own = (seed + 1u) * UINT64_C(0x9E3779B97F4A7C15) ^ ((uint64_t)number + 1u) * UINT64_C(0xD1B54A32D192ED03);
+    paper p = {.text = malloc(TEXT)};
+    for (int i = 0; i < 8; i++) {
+        (void)random_unit(&own);
+    }
+    if (p.text) {
+        put(&p, "title: promise %zu of seed %llu\n", number, (unsigned long long)seed);
+        const double kind = random_unit(&own);
+        (kind < 0.4 ? draw_sweep : kind < 0.85 ? draw_transient : draw_response)(&own, &p);
+    }
+    return p.text;
+}

@@ -1,0 +1,144 @@
+/* Broken promises of accuracy over random scenes, all engines and accuracies, as a Markdown table. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "promises.h"
+
+enum { LINE = 512 };
+
+typedef struct arguments {
+    uint64_t seed;
+    size_t first, count;
+    long dump;          /* -1: none */
+    const char *engine; /* NULL: all */
+    bool verbose;
+} arguments;
+
+static const char *const usage = "Usage: promises [--scenes N] [--first K] [--seed S] [--engine E] [--dump K] [--verbose]\n";
+
+static bool parse(int count, char **words, arguments *a)
+{
+    *a = (arguments){.seed = 1, .count = 500, .dump = -1};
+    for (int i = 1; i < count; i++) {
+        if (strcmp(words[i], "--verbose") == 0) {
+            a->verbose = true;
+            continue;
+        }
+        char *end = NULL;
+        const char *value = i + 1 < count ? words[i + 1] : "";
+        const unsigned long long number = strtoull(value, &end, 10);
+        const bool whole = end != value && *end == '\0';
+        if (strcmp(words[i], "--scenes") == 0 && whole) {
+            a->count = (size_t)number;
+        } else if (strcmp(words[i], "--first") == 0 && whole) {
+            a->first = (size_t)number;
+        } else if (strcmp(words[i], "--seed") == 0 && whole) {
+            a->seed = number;
+        } else if (strcmp(words[i], "--dump") == 0 && whole) {
+            a->dump = (long)number;
+        } else if (strcmp(words[i], "--engine") == 0 && dea_engine_find(value)) {
+            a->engine = value;
+        } else {
+            fputs(usage, stderr);
+            return false;
+        }
+        i++;
+    }
+    return true;
+}
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void print_table(tally tallies[MOST_ENGINES][STUDIES])
+{
+    static const char *const studies[STUDIES] = {"sweep", "transient", "ac"};
+    puts("\n| engine | study | runs | delivered | refused | failed | not judged | worst delivered/wanted | broken | time [s] |");
+    puts("|---|---|---|---|---|---|---|---|---|---|");
+    for (size_t e = 0; e < dea_engine_count() && e < MOST_ENGINES; e++) {
+        for (int s = 0; s < STUDIES; s++) {
+            const tally *t = &tallies[e][s];
+            if (t->scenes > 0) {
+                printf("| %s | %s | %zu | %zu | %zu | %zu | %zu | %.2g | %zu | %.1f |\n", dea_engine_at(e)->name, studies[s],
+                       t->scenes, t->delivered, t->refused, t->failed, t->unjudged, t->worst, t->broken, t->seconds);
+            }
+        }
+    }
+    for (size_t e = 0; e < dea_engine_count() && e < MOST_ENGINES; e++) {
+        for (int s = 0; s < STUDIES; s++) {
+            for (int i = 0; i < MOST_REASONS && tallies[e][s].reasons[i].count > 0; i++) {
+                printf("- %s, %s, %zu times %s\n", dea_engine_at(e)->name, studies[s], tallies[e][s].reasons[i].count,
+                       tallies[e][s].reasons[i].text);
+            }
+        }
+    }
+}
+
+/* One scene by all engines and accuracies; returns how many promises it broke. */
+static size_t judge_scene(const arguments *a, size_t number, tally tallies[MOST_ENGINES][STUDIES])
+{
+    static const double asked[] = {1e-2, 1e-4, 1e-6};
+    char *text = draw_scene(a->seed, number), line[LINE];
+    size_t broken = 0;
+    judged j;
+    const double start = now();
+    if (!text || !judge_open(&j, text, number)) {
+        free(text);
+        return 1;
+    }
+    const double truth = now() - start;
+    for (size_t e = 0; e < dea_engine_count() && e < MOST_ENGINES; e++) {
+        const dea_engine *engine = dea_engine_at(e);
+        const double best = best_accuracy(engine, &j.scene);
+        for (size_t k = 0; k < ACCURACIES && (!a->engine || strcmp(a->engine, engine->name) == 0); k++) {
+            const double accuracy = k < 3 ? asked[k] : best;
+            if (k == 3 && best >= 1e-6) {
+                continue;
+            }
+            if (judge_engine(&j, engine, accuracy, &tallies[e][j.scene.study], line, sizeof line)) {
+                printf("- broken: %s\n", line);
+                fflush(stdout);
+                broken++;
+            }
+        }
+    }
+    if (a->verbose) {
+        fprintf(stderr, "%zu: study %d, truth %.2g s to %.1g%s%s, all %.2g s\n", number, (int)j.scene.study, truth, j.errors[0],
+                j.why ? ", " : "", j.why ? j.why : "", now() - start);
+    }
+    judge_close(&j);
+    free(text);
+    return broken;
+}
+
+int main(int count, char **words)
+{
+    static tally tallies[MOST_ENGINES][STUDIES];
+    arguments a;
+    size_t broken = 0;
+    if (!parse(count, words, &a)) {
+        return 2;
+    }
+    if (a.dump >= 0) {
+        char *text = draw_scene(a.seed, (size_t)a.dump);
+        fputs(text ? text : "", stdout);
+        free(text);
+        return 0;
+    }
+    printf("%zu random scenes from number %zu, seed %llu; a broken one again: promises --seed %llu --first K --scenes 1; "
+           "its scene: promises --seed %llu --dump K\n\n",
+           a.count, a.first, (unsigned long long)a.seed, (unsigned long long)a.seed, (unsigned long long)a.seed);
+    for (size_t i = 0; i < a.count; i++) {
+        broken += judge_scene(&a, a.first + i, tallies);
+    }
+    print_table(tallies);
+    printf("\nBroken accuracy promises over %zu random scenes x engines x accuracies: %zu\n", a.count, broken);
+    return broken > 0 ? 3 : 0;
+}

@@ -1,0 +1,672 @@
+/* Transients by collocation (Radau IIA, six stages, order 11) in long double, steps controlled by halving; solved twice, the
+ * second time a thousand times tighter, so that the difference bounds the error. Branches are eliminated from the equations of a
+ * step: with the stages' stress S, Z = (1 + h/tau A)^-1 (z + h/tau A S). */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "drive/signal.h"
+#include "promises.h"
+
+enum { STAGES = 6, UNKNOWNS = 2 * STAGES, NEWTON = 20 };
+
+static const double most_steps = 60000.0;
+static const long double pi = 3.14159265358979323846264338327950288L;
+
+typedef struct square {
+    long double at[STAGES][STAGES];
+} square;
+
+/* The method: places of the stages, their weights, and the inverse of these. */
+typedef struct method {
+    long double place[STAGES];
+    square weight, slope;
+} method;
+
+typedef struct state {
+    long double u, v, w, q; /* displacement, velocity, film voltage, charge */
+    long double z[DEA_PRONY_MAX];
+} state;
+
+typedef struct motion {
+    true_film film;
+    dea_signal signal;
+    const dea_segment *segment;
+    const dea_scene *scene;
+    method radau;
+    long double factor;  /* of the source voltage */
+    long double size[3]; /* of u, v, w */
+    long double tolerance;
+    long double largest_u, largest_v;
+    dea_sample *samples;
+    size_t rows, done;
+    double steps;
+    const char *why;
+    bool gone; /* pulled in */
+} motion;
+
+/* ---- linear algebra */
+
+static bool solve(int n, long double a[UNKNOWNS][UNKNOWNS], long double *x)
+{
+    for (int k = 0; k < n; k++) {
+        int pivot = k;
+        for (int i = k + 1; i < n; i++) {
+            pivot = fabsl(a[i][k]) > fabsl(a[pivot][k]) ? i : pivot;
+        }
+        if (!(fabsl(a[pivot][k]) > 0.0L)) {
+            return false;
+        }
+        for (int j = 0; j < n && pivot != k; j++) {
+            const long double swap = a[k][j];
+            a[k][j] = a[pivot][j];
+            a[pivot][j] = swap;
+        }
+        const long double swap = x[k];
+        x[k] = x[pivot];
+        x[pivot] = swap;
+        for (int i = k + 1; i < n; i++) {
+            const long double share = a[i][k] / a[k][k];
+            for (int j = k; j < n; j++) {
+                a[i][j] -= share * a[k][j];
+            }
+            x[i] -= share * x[k];
+        }
+    }
+    for (int k = n - 1; k >= 0; k--) {
+        for (int j = k + 1; j < n; j++) {
+            x[k] -= a[k][j] * x[j];
+        }
+        x[k] /= a[k][k];
+    }
+    return true;
+}
+
+static square inverse_of(const square *of)
+{
+    square inverse;
+    for (int column = 0; column < STAGES; column++) {
+        long double a[UNKNOWNS][UNKNOWNS] = {{0.0L}}, x[UNKNOWNS] = {0.0L};
+        x[column] = 1.0L;
+        for (int i = 0; i < STAGES; i++) {
+            for (int j = 0; j < STAGES; j++) {
+                a[i][j] = of->at[i][j];
+            }
+        }
+        (void)solve(STAGES, a, x);
+        for (int i = 0; i < STAGES; i++) {
+            inverse.at[i][column] = x[i];
+        }
+    }
+    return inverse;
+}
+
+/* ---- the method */
+
+static long double legendre(int n, long double x, long double *before)
+{
+    long double p = 1.0L, last = 0.0L;
+    for (int k = 1; k <= n; k++) {
+        const long double next = ((2.0L * k - 1.0L) * x * p - (k - 1.0L) * last) / k;
+        last = p;
+        p = next;
+    }
+    *before = last;
+    return p;
+}
+
+/* P_n - share P_(n-1): its roots are the places of Gauss (0) and of Radau (1). */
+static long double polynomial(int n, long double share, long double x)
+{
+    long double before;
+    const long double p = legendre(n, x, &before);
+    return p - share * before;
+}
+
+static void find_places(int n, long double share, long double *place)
+{
+    enum { GRID = 4000 };
+    int found = 0;
+    for (int i = 0; i < GRID && found < n; i++) {
+        long double low = -1.0L + 2.0L * i / GRID, high = -1.0L + 2.0L * (i + 1) / GRID;
+        if (i == GRID - 1 && share > 0.0L) {
+            break;
+        }
+        if (polynomial(n, share, low) * polynomial(n, share, high) < 0.0L || polynomial(n, share, low) == 0.0L) {
+            for (int k = 0; k < 80; k++) {
+                const long double middle = 0.5L * (low + high);
+                *(polynomial(n, share, low) * polynomial(n, share, middle) <= 0.0L ? &high : &low) = middle;
+            }
+            place[found++] = 0.5L * (1.0L + 0.5L * (low + high));
+        }
+    }
+    if (share > 0.0L) {
+        place[n - 1] = 1.0L;
+    }
+}
+
+static long double lagrange(const long double *place, int number, long double x)
+{
+    long double value = 1.0L;
+    for (int i = 0; i < STAGES; i++) {
+        value *= i == number ? 1.0L : (x - place[i]) / (place[number] - place[i]);
+    }
+    return value;
+}
+
+static method radau_method(void)
+{
+    method m;
+    long double gauss[STAGES];
+    find_places(STAGES, 1.0L, m.place);
+    find_places(STAGES, 0.0L, gauss);
+    for (int i = 0; i < STAGES; i++) {
+        for (int j = 0; j < STAGES; j++) {
+            long double sum = 0.0L;
+            for (int k = 0; k < STAGES; k++) {
+                long double before;
+                const long double x = 2.0L * gauss[k] - 1.0L, p = legendre(STAGES, x, &before);
+                const long double slope = STAGES * (x * p - before) / (x * x - 1.0L);
+                const long double weight = 1.0L / ((1.0L - x * x) * slope * slope);
+                sum += weight * lagrange(m.place, j, m.place[i] * gauss[k]);
+            }
+            m.weight.at[i][j] = m.place[i] * sum;
+        }
+    }
+    m.slope = inverse_of(&m.weight);
+    return m;
+}
+
+/* ---- one step */
+
+/* Source voltage a time behind the begin of the segment. */
+static long double source_at(const motion *m, long double time)
+{
+    const dea_segment *s = m->segment;
+    const dea_sine *sine = &m->signal.sine;
+    if (s->sine) {
+        const long double turns = (long double)sine->frequency * (s->from + time - (long double)sine->delay);
+        return m->factor * (sine->offset + sine->amplitude * sinl(2.0L * pi * (turns - floorl(turns)) + sine->phase));
+    }
+    return m->factor * (s->start + ((long double)s->end - s->start) * (time / ((long double)s->to - s->from)));
+}
+
+/* (1 + h/tau A)^-1 and that times h/tau A, for each branch. */
+typedef struct lag {
+    square rest, gain;
+} lag;
+
+static lag lag_of(const motion *m, long double pace)
+{
+    lag l;
+    square sum;
+    for (int i = 0; i < STAGES; i++) {
+        for (int j = 0; j < STAGES; j++) {
+            sum.at[i][j] = (i == j ? 1.0L : 0.0L) + pace * m->radau.weight.at[i][j];
+        }
+    }
+    l.rest = inverse_of(&sum);
+    for (int i = 0; i < STAGES; i++) {
+        for (int j = 0; j < STAGES; j++) {
+            l.gain.at[i][j] = 0.0L;
+            for (int k = 0; k < STAGES; k++) {
+                l.gain.at[i][j] += l.rest.at[i][k] * pace * m->radau.weight.at[k][j];
+            }
+        }
+    }
+    return l;
+}
+
+/* What Newton's method works on: changes of u from the begin of the step, film voltages, and what follows from them. */
+typedef struct stages {
+    long double change[STAGES], volts[STAGES], source[STAGES];
+    long double z[DEA_PRONY_MAX][STAGES], v[STAGES], a[STAGES];
+    true_edge edge[STAGES];
+} stages;
+
+static void follow_stages(const motion *m, const state *from, long double h, const lag *lags, stages *s)
+{
+    const true_film *f = &m->film;
+    for (int i = 0; i < STAGES; i++) {
+        s->edge[i] = film_edge(f, from->u + s->change[i]);
+        s->v[i] = 0.0L;
+        for (int j = 0; j < STAGES; j++) {
+            s->v[i] += m->radau.slope.at[i][j] * s->change[j] / h;
+        }
+    }
+    for (int i = 0; i < STAGES; i++) {
+        s->a[i] = 0.0L;
+        for (int j = 0; j < STAGES; j++) {
+            s->a[i] += m->radau.slope.at[i][j] * (s->v[j] - from->v) / h;
+        }
+        for (size_t b = 0; b < f->branches; b++) {
+            s->z[b][i] = 0.0L;
+            for (int j = 0; j < STAGES; j++) {
+                s->z[b][i] += lags[b].rest.at[i][j] * from->z[b] + lags[b].gain.at[i][j] * s->edge[j].stress.value;
+            }
+        }
+    }
+}
+
+static long double held_stress(const true_film *f, long double stress, const stages *s, int i)
+{
+    long double sum = stress;
+    for (size_t b = 0; b < f->branches; b++) {
+        sum += f->share[b] * (stress - s->z[b][i]);
+    }
+    return sum;
+}
+
+/* Residuals and their derivatives; the unknowns are the changes, then the film voltages. */
+static void equations(const motion *m, const state *from, long double h, const lag *lags, const stages *s,
+                      long double a[UNKNOWNS][UNKNOWNS], long double *r)
+{
+    const true_film *f = &m->film;
+    const bool series = f->series > 0.0L;
+    const square *d = &m->radau.slope;
+    for (int i = 0; i < STAGES; i++) {
+        const true_edge *e = &s->edge[i];
+        const long double w = s->volts[i], damp = f->retardation, all = held_stress(f, e->stress.value, s, i);
+        const long double force = all + damp * e->stress.slope * s->v[i];
+        r[i] = f->mass * s->a[i] + e->area.value * force - e->push.value * w * w;
+        for (int j = 0; j < STAGES; j++) {
+            long double inertia = 0.0L, branch = 0.0L;
+            for (int k = 0; k < STAGES; k++) {
+                inertia += d->at[i][k] * d->at[k][j];
+            }
+            for (size_t b = 0; b < f->branches; b++) {
+                branch += f->share[b] * lags[b].gain.at[i][j];
+            }
+            a[i][j] = f->mass * inertia / (h * h) + e->area.value * damp * e->stress.slope * d->at[i][j] / h -
+                      e->area.value * branch * s->edge[j].stress.slope;
+        }
+        a[i][i] += e->area.slope * force + e->area.value * (1.0L + f->total_share) * e->stress.slope +
+                   e->area.value * damp * e->stress.curve * s->v[i] - e->push.slope * w * w;
+        if (series) {
+            const int row = STAGES + i;
+            a[i][row] = -2.0L * e->push.value * w;
+            r[row] = w * (1.0L + f->series * f->conductance) - s->source[i];
+            for (int j = 0; j < STAGES; j++) {
+                const true_edge *o = &s->edge[j];
+                r[row] += f->series * d->at[i][j] / h * (o->capacitance * s->volts[j] - from->q);
+                a[row][j] = f->series * d->at[i][j] / h * 2.0L * o->push.value * s->volts[j];
+                a[row][STAGES + j] = f->series * d->at[i][j] / h * o->capacitance;
+            }
+            a[row][row] += 1.0L + f->series * f->conductance;
+        }
+    }
+}
+
+/* Rows and columns in units of the run, so that pivots compare. */
+static void balance_rows(int n, const motion *m, long double a[UNKNOWNS][UNKNOWNS], long double *r)
+{
+    for (int i = 0; i < n; i++) {
+        long double largest = 0.0L;
+        for (int j = 0; j < n; j++) {
+            a[i][j] *= j < STAGES ? m->size[0] : m->size[2];
+            largest = fmaxl(largest, fabsl(a[i][j]));
+        }
+        for (int j = 0; j < n && largest > 0.0L; j++) {
+            a[i][j] /= largest;
+        }
+        r[i] = largest > 0.0L ? r[i] / largest : r[i];
+    }
+}
+
+static bool newton(const motion *m, const state *from, long double h, const lag *lags, stages *s)
+{
+    const int n = m->film.series > 0.0L ? UNKNOWNS : STAGES;
+    long double last = (long double)INFINITY;
+    for (int i = 0; i < NEWTON; i++) {
+        long double a[UNKNOWNS][UNKNOWNS] = {{0.0L}}, r[UNKNOWNS], most = 0.0L;
+        follow_stages(m, from, h, lags, s);
+        equations(m, from, h, lags, s, a, r);
+        balance_rows(n, m, a, r);
+        if (!solve(n, a, r)) {
+            return false;
+        }
+        for (int k = 0; k < n; k++) {
+            *(k < STAGES ? &s->change[k] : &s->volts[k - STAGES]) -= r[k] * (k < STAGES ? m->size[0] : m->size[2]);
+            most = fmaxl(most, fabsl(r[k]));
+        }
+        if (!(most < 1e3L)) {
+            return false;
+        }
+        if (most <= 1e-19L || (most < 1e-15L && most >= 0.3L * last)) {
+            follow_stages(m, from, h, lags, s);
+            return true;
+        }
+        last = most;
+    }
+    return false;
+}
+
+/* From a state, a time behind the begin of the segment; false where there is no solution. */
+static bool step_by(const motion *m, const state *from, long double time, long double h, state *to)
+{
+    const true_film *f = &m->film;
+    lag lags[DEA_PRONY_MAX];
+    stages s;
+    for (size_t b = 0; b < f->branches; b++) {
+        lags[b] = lag_of(m, h / f->tau[b]);
+    }
+    for (int i = 0; i < STAGES; i++) {
+        s.source[i] = source_at(m, time + h * m->radau.place[i]);
+        s.change[i] = f->mass > 0.0L ? from->v * h * m->radau.place[i] : 0.0L;
+        s.volts[i] = f->series > 0.0L ? from->w : s.source[i];
+    }
+    if (!newton(m, from, h, lags, &s)) {
+        return false;
+    }
+    const int last = STAGES - 1;
+    *to = (state){.u = from->u + s.change[last], .v = s.v[last], .w = s.volts[last]};
+    to->q = s.edge[last].capacitance * to->w;
+    for (size_t b = 0; b < f->branches; b++) {
+        to->z[b] = s.z[b][last];
+    }
+    return true;
+}
+
+/* ---- a run */
+
+static long double branch_stress(const true_film *f, const true_edge *e, const state *s)
+{
+    long double sum = e->stress.value;
+    for (size_t b = 0; b < f->branches; b++) {
+        sum += f->share[b] * (e->stress.value - s->z[b]);
+    }
+    return sum;
+}
+
+/* Stiffness with the branches held. */
+static long double held_stiffness(const true_film *f, const state *s)
+{
+    const true_edge e = film_edge(f, s->u);
+    return e.area.slope * branch_stress(f, &e, s) + e.area.value * (1.0L + f->total_share) * e.stress.slope -
+           e.push.slope * s->w * s->w;
+}
+
+static bool inside(const motion *m, long double u)
+{
+    return u > -m->film.divide && u < m->film.frame - m->film.divide;
+}
+
+/* A film without mass and damper: its displacement goes with the voltage, branches held. */
+static bool jump(motion *m, state *s, long double to)
+{
+    enum { PARTS = 200 };
+    const true_film *f = &m->film;
+    const long double from = s->w * s->w, change = to * to - from;
+    for (int i = 1; i <= PARTS; i++) {
+        const long double load = from + change * i / PARTS;
+        long double step = (long double)INFINITY;
+        s->w = sqrtl(load);
+        for (int k = 0; k < 30 && fabsl(step) > 1e-19L * m->size[0]; k++) {
+            const true_edge e = film_edge(f, s->u);
+            const long double stiffness = held_stiffness(f, s);
+            step = (e.area.value * branch_stress(f, &e, s) - e.push.value * load) / stiffness;
+            if (!(stiffness > 0.0L)) {
+                return false;
+            }
+            s->u -= step;
+        }
+        if (!inside(m, s->u) || !(fabsl(step) < 1e-9L * m->size[0])) {
+            return false;
+        }
+    }
+    s->w = to;
+    return true;
+}
+
+static bool is_free(const true_film *f)
+{
+    return f->mass == 0.0L && f->retardation == 0.0L;
+}
+
+static bool record(motion *m, double time, const state *s)
+{
+    const true_film *f = &m->film;
+    if (!inside(m, s->u)) {
+        return false;
+    }
+    const dea_row row = film_row(f, s->u, s->w);
+    m->samples[m->done++] = (dea_sample){
+        .time = time,
+        .voltage = (double)s->w,
+        .displacement = row.displacement,
+        .strain = row.strain,
+        .velocity = (double)s->v,
+        .force = row.force,
+        .current = (double)NAN,
+        .charge = (double)s->q,
+        .focal_length = isnan((double)f->focal_length) ? (double)NAN : (double)film_focal_length(f, s->u / f->divide),
+        .state = row.state};
+    return true;
+}
+
+/* Samples within a step. */
+static bool record_step(motion *m, const state *from, long double time, long double h, const state *to)
+{
+    const long double begin = m->segment->from;
+    while (m->done < m->rows) {
+        const double at = dea_layout_place(m->scene, m->done);
+        const long double here = (long double)at - begin;
+        state s = *to;
+        const bool last = at >= m->segment->to && time + h >= (long double)m->segment->to - begin;
+        if (at > m->segment->to || (here > time + h && !last)) {
+            return true;
+        }
+        if (here < time + h && !last && here > time && !step_by(m, from, time, here - time, &s)) {
+            return false;
+        }
+        if (!record(m, at, &s)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static long double distance(const motion *m, const state *a, const state *b)
+{
+    const long double u = fabsl(a->u - b->u) / m->size[0], w = fabsl(a->w - b->w) / m->size[2];
+    const long double v = m->film.mass > 0.0L ? fabsl(a->v - b->v) / m->size[1] : 0.0L;
+    return fmaxl(u, fmaxl(v, w));
+}
+
+/* First step behind an edge: short against everything. */
+static long double first_step(const motion *m)
+{
+    const true_film *f = &m->film;
+    const true_edge e = film_edge(f, 0.0L);
+    long double h = (long double)m->segment->to - m->segment->from;
+    const long double stiffness = e.area.value * e.stress.slope * (1.0L + f->total_share);
+    if (f->mass > 0.0L && stiffness > 0.0L) {
+        h = fminl(h, sqrtl(f->mass / stiffness));
+    }
+    for (size_t b = 0; b < f->branches; b++) {
+        h = fminl(h, f->tau[b]);
+    }
+    if (f->retardation > 0.0L) {
+        h = fminl(h, f->retardation);
+    }
+    if (f->series > 0.0L) {
+        h = fminl(h, f->series * e.capacitance);
+    }
+    return 0.03L * h;
+}
+
+static bool run_segment(motion *m, state *s)
+{
+    const long double width = (long double)m->segment->to - m->segment->from;
+    const bool linear = strcmp(m->film.model, "coverage") != 0;
+    long double time = 0.0L, h = first_step(m);
+    while (time < width) {
+        state whole, half, two;
+        const bool last = time + 1.01L * h >= width;
+        h = last ? width - time : h;
+        const bool found = step_by(m, s, time, h, &whole) && step_by(m, s, time, 0.5L * h, &half) &&
+                           step_by(m, &half, time + 0.5L * h, 0.5L * h, &two);
+        const long double error = found ? distance(m, &whole, &two) : (long double)INFINITY;
+        m->steps++;
+        if (m->steps > most_steps) {
+            m->why = "too many steps of the truth";
+            return false;
+        }
+        if (!(error <= m->tolerance)) {
+            const long double share = found ? fmaxl(0.1L, 0.7L * powl(m->tolerance / error, 0.125L)) : 0.25L;
+            h *= share;
+            if (h < 1e-15L * width || h < 1e-18L * m->segment->to) {
+                m->gone = true;
+                return false;
+            }
+            continue;
+        }
+        const bool stays = linear || inside(m, two.u); /* of a linear film only the samples tell */
+        if (!stays || (is_free(&m->film) && !(held_stiffness(&m->film, &two) > 0.0L))) {
+            if (h > 1e-9L * width) {
+                h *= 0.1L; /* rows before it counts are still to be taken */
+                continue;
+            }
+            m->gone = true;
+            return false;
+        }
+        if (!record_step(m, s, time, h, &two)) {
+            m->gone = true;
+            return false;
+        }
+        *s = two;
+        m->largest_u = fmaxl(m->largest_u, fabsl(s->u));
+        m->largest_v = fmaxl(m->largest_v, fabsl(s->v));
+        time = last ? width : time + h;
+        h *= fminl(6.0L, 0.8L * powl(m->tolerance / fmaxl(error, 1e-30L), 0.1L));
+    }
+    return true;
+}
+
+static bool start(motion *m, state *s)
+{
+    const true_film *f = &m->film;
+    *s = (state){0};
+    if (m->scene->transient.from_bias) {
+        m->segment = m->signal.segments;
+        s->w = f->kept * source_at(m, 0.0L);
+        s->u = still_displacement(f, s->w);
+        if (isnan(s->u)) {
+            return false;
+        }
+        const true_edge e = film_edge(f, s->u);
+        s->q = e.capacitance * s->w;
+        for (size_t b = 0; b < f->branches; b++) {
+            s->z[b] = e.stress.value;
+        }
+    }
+    return true;
+}
+
+static void run(motion *m, long double tolerance)
+{
+    state s;
+    m->tolerance = tolerance;
+    m->done = 0;
+    m->steps = 0.0;
+    m->gone = !start(m, &s);
+    for (size_t i = 0; !m->gone && i < m->signal.count; i++) {
+        m->segment = &m->signal.segments[i];
+        if (!(m->film.series > 0.0L)) {
+            const long double to = source_at(m, 0.0L);
+            if (is_free(&m->film)) {
+                m->gone = !jump(m, &s, to);
+            }
+            s.w = to;
+            s.q = film_edge(&m->film, s.u).capacitance * to;
+        }
+        if (i == 0 && !m->gone) {
+            m->gone = !record(m, 0.0, &s);
+        }
+        if (m->gone || !run_segment(m, &s)) {
+            return;
+        }
+    }
+}
+
+/* Largest magnitudes over the samples, no less than a hundredth of what the largest voltage does at rest. */
+static void set_sizes(motion *m, long double share)
+{
+    const true_film *f = &m->film;
+    const true_edge e = film_edge(f, 0.0L);
+    const long double volts = fmaxl(m->signal.largest, 1e-30L),
+                      still = fabsl(e.push.value / e.stress.slope / e.area.value) * volts * volts;
+    m->size[0] = share * fminl(still, fminl(f->divide, f->frame - f->divide));
+    m->size[2] = share * volts;
+    for (size_t i = 0; share < 1.0L && i < m->done; i++) {
+        m->size[0] = fmaxl(m->size[0], fabs(m->samples[i].displacement));
+        m->size[2] = fmaxl(m->size[2], fabs(m->samples[i].voltage));
+    }
+    const long double pace = f->mass > 0.0L ? sqrtl(fabsl(e.area.value * e.stress.slope / f->mass)) : 1.0L;
+    m->size[1] = share < 1.0L ? fmaxl(m->largest_v, m->size[0] * pace * 0.01L) : m->size[0] * pace;
+}
+
+static double gap(const motion *m, const dea_sample *a, size_t count)
+{
+    long double most = 0.0L;
+    for (size_t i = 0; i < count; i++) {
+        const dea_sample *b = &m->samples[i];
+        most = fmaxl(most, fabsl((long double)a[i].displacement - b->displacement) / m->size[0]);
+        most = fmaxl(most, fabsl((long double)a[i].voltage - b->voltage) / m->size[2]);
+    }
+    return (double)most;
+}
+
+static void solve_twice(motion *m, true_run *run_out)
+{
+    dea_sample *first = malloc(m->rows * sizeof *first), *second = m->samples;
+    set_sizes(m, 1.0L);
+    run(m, 1e-7L);
+    set_sizes(m, 0.01L);
+    m->samples = first;
+    if (!m->why) {
+        run(m, 1e-12L);
+    }
+    const size_t count = m->done;
+    m->samples = second;
+    if (!m->why) {
+        run(m, 1e-15L);
+    }
+    run_out->good = m->done;
+    run_out->error = count == m->done ? 1e-16 + gap(m, first, count) : (double)INFINITY;
+    run_out->steps = m->steps;
+    run_out->why = m->why;
+    free(first);
+}
+
+true_run moving_truth(const dea_scene *scene, const dea_model *model, double factor)
+{
+    dea_error error = {0};
+    motion *m = calloc(1, sizeof *m);
+    true_run truth = {.count = dea_layout_of(scene).rows};
+    m->scene = scene;
+    m->film = film_of(scene, model);
+    m->radau = radau_method();
+    m->factor = factor;
+    m->rows = truth.count;
+    m->samples = truth.samples = calloc(truth.count, sizeof *truth.samples);
+    if (dea_signal_open(scene, &m->signal, &error) == DEA_OK) {
+        solve_twice(m, &truth);
+    } else {
+        truth.why = "no signal";
+    }
+    const double none = (double)NAN;
+    for (size_t i = truth.good; i < truth.count; i++) {
+        const double time = dea_layout_place(scene, i);
+        truth.samples[i] = (dea_sample){time, none, none, none, none, none, none, none, none, DEA_STATE_PULL_IN};
+    }
+    dea_signal_close(&m->signal);
+    free(m);
+    return truth;
+}
+
+void true_run_free(true_run *of)
+{
+    free(of->samples);
+    of->samples = NULL;
+}

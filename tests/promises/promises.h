@@ -1,0 +1,120 @@
+/* Promises of accuracy: rows that an engine delivers, against truths that are found another way. A truth uses the equations of
+ * the models in long double, nothing of the engines, and says how far off it may be itself. */
+#ifndef DEA_PROMISES_H
+#define DEA_PROMISES_H
+
+#include <stdint.h>
+
+#include "deaspice/deaspice.h"
+
+/* ---- the film in long double (film.c) */
+
+/* A function of the displacement with its first two derivatives. */
+typedef struct jet {
+    long double value, slope, curve;
+} jet;
+
+/* A scene's film, geometry and model, once all axes are at their place. */
+typedef struct true_film {
+    const char *model;
+    bool dot;
+    long double yeoh[DEA_YEOH_TERMS];     /* long-term [Pa] */
+    long double prestretch, permittivity; /* [1], [F/m] */
+    long double modulus, breakdown;       /* Y [Pa], [V/m] */
+    long double frame, divide, coverage;  /* r, r_a [m], B */
+    long double thickness;                /* H [m] */
+    long double kept;                     /* share of the source voltage that the film sees at rest */
+    long double mass, retardation;        /* [kg], [s], 0: none */
+    long double share[DEA_PRONY_MAX], tau[DEA_PRONY_MAX], total_share; /* c_i = g_i/g_inf */
+    size_t branches;
+    long double series, conductance; /* [Ohm], [S] */
+    long double focal_length, index; /* NAN: no optics */
+} true_film;
+
+/* m u'' + A [S + tau S' u' + branches] = phi U^2. */
+typedef struct true_edge {
+    jet area, stress, push;
+    long double capacitance;
+} true_edge;
+
+/* Yeoh film under equal stretches: sigma and its derivatives over the stretch. */
+jet film_cauchy(const true_film *film, long double stretch);
+true_film film_of(const dea_scene *scene, const dea_model *model);
+true_edge film_edge(const true_film *film, long double u);
+/* F_DEA as rows have it, and what else a row holds, under the film voltage. */
+dea_row film_row(const true_film *film, long double u, long double voltage);
+long double film_focal_length(const true_film *film, long double strain);
+
+/* ---- truths */
+
+/* What is true of a static point: its row; how far its numbers may be off, relative; what follows from a voltage that is a little
+ * less or more. */
+typedef struct true_row {
+    dea_row row;
+    double error;
+} true_row;
+
+/* All axes of the scene at their place; the voltage multiplied. */
+true_row still_truth(const dea_scene *scene, const dea_model *model, double factor);
+/* Displacement at rest under a film voltage; NAN: pull-in. Dynamic models. */
+long double still_displacement(const true_film *film, long double voltage);
+
+/* A run: rows in order (as the scene's layout has them), their errors relative to the peaks. */
+typedef struct true_run {
+    dea_sample *samples; /* owned */
+    size_t count, good;  /* rows, and those before a pull-in */
+    double error;
+    double steps;
+    const char *why; /* NULL: judged, else why the truth was not found */
+} true_run;
+
+true_run moving_truth(const dea_scene *scene, const dea_model *model, double factor);
+void true_run_free(true_run *run);
+
+/* Fills the rows of a frequency response; returns its error. */
+double response_truth(const dea_scene *scene, const dea_model *model, dea_response *rows);
+
+/* ---- random scenes (draw.c) */
+
+/* YAML of the scene of that number; freed by the caller. */
+char *draw_scene(uint64_t seed, size_t number);
+
+/* ---- judging (judge.c) */
+
+enum { MOST_REASONS = 48, REASON_LENGTH = 160, ACCURACIES = 4, STUDIES = 3, MOST_ENGINES = 4 };
+
+/* How often something was said. */
+typedef struct reason {
+    char text[REASON_LENGTH];
+    size_t count;
+} reason;
+
+typedef struct tally {
+    size_t scenes;    /* runs: scene x accuracy */
+    size_t delivered; /* with all rows judged */
+    size_t refused, failed, unjudged, broken;
+    double worst; /* delivered over wanted error, of promises that were kept */
+    double seconds;
+    reason reasons[MOST_REASONS];
+} tally;
+
+/* One scene with what is true of it, by all accuracies. */
+typedef struct judged {
+    dea_scene scene;
+    size_t number;
+    void *truth;    /* points as the layout has them */
+    double *errors; /* of each point */
+    dea_layout layout;
+    size_t points;
+    true_run *runs;  /* of transients */
+    const char *why; /* NULL, or why nothing is judged */
+} judged;
+
+bool judge_open(judged *j, const char *text, size_t number);
+void judge_close(judged *j);
+/* Runs an engine at one accuracy; adds to the tally. True where the promise was broken; *text then says how. */
+bool judge_engine(judged *j, const dea_engine *engine, double accuracy, tally *t, char *text, size_t size);
+/* The tightest accuracy that the engine promises for such a study. */
+double best_accuracy(const dea_engine *engine, const dea_scene *scene);
+
+#endif

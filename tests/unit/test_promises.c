@@ -1,0 +1,170 @@
+/* Promises of accuracy on a few random scenes (all of them: make promises), and the truths and the judge that they rest on. */
+#include "scenes.h"
+
+#include <stdlib.h>
+
+#include "../promises/promises.h"
+
+enum { SCENES = 40, SEED = 11, LINE = 512 };
+
+/* ---- truths */
+
+static dea_scene ringing(double retardation)
+{
+    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, (double)NAN);
+    scene.models[0] = dea_model_find("lumped");
+    scene.study = DEA_STUDY_TRANSIENT;
+    scene.material.density = 1080.0;
+    scene.material.retardation = retardation;
+    scene.drive.waveform =
+        (dea_waveform){.kind = DEA_WAVE_STEP, .step = {.off = (double)NAN, .voltage = 4500.0}, .period = (double)NAN};
+    scene.transient = (dea_transient){.until = 0.05, .every = 1.7e-4};
+    return scene;
+}
+
+/* u = F/K (1 - e^-dt (cos wt + d/w sin wt)) over 36 periods. */
+static void the_truth_of_a_ring_is_its_closed_form(void **state)
+{
+    (void)state;
+    const double retardations[] = {(double)NAN, 2e-6, 1e-3};
+    for (int i = 0; i < 3; i++) {
+        const dea_scene scene = ringing(retardations[i]);
+        const true_film film = film_of(&scene, scene.models[0]);
+        const true_edge e = film_edge(&film, 0.0L);
+        const long double square = e.stress.slope / film.mass, d = 0.5L * square * film.retardation;
+        const long double full = e.push.value * 4500.0L * 4500.0L / e.stress.slope, turn = sqrtl(fabsl(square - d * d));
+        true_run run = moving_truth(&scene, scene.models[0], 1.0);
+        assert_null(run.why);
+        assert_int_equal(run.good, run.count);
+        assert_true(run.error < 1e-12);
+        for (size_t k = 0; k < run.count; k++) {
+            const long double t = run.samples[k].time;
+            const bool rings = square > d * d;
+            const long double c = rings ? cosl(turn * t) : coshl(turn * t), s = rings ? sinl(turn * t) : sinhl(turn * t);
+            const double wanted = (double)(full * (1.0L - expl(-d * t) * (c + d / turn * s)));
+            assert_near(run.samples[k].displacement, wanted, 1e-12 * (double)full);
+        }
+        true_run_free(&run);
+    }
+}
+
+/* A film that is not linear, behind a resistance, comes to the rest that statics knows; where its branches go slowly, it creeps.
+ */
+static void the_truth_of_a_slow_film_ends_at_rest(void **state)
+{
+    (void)state;
+    dea_scene scene = ringing(1e-3);
+    scene.models[0] = dea_model_find("coverage");
+    scene.drive.series_resistance = 1e7;
+    scene.material.prony_count = 2;
+    scene.material.prony[0] = (dea_prony){.g = 0.2, .tau = 1e-5};
+    scene.material.prony[1] = (dea_prony){.g = 0.1, .tau = 0.5};
+    scene.transient = (dea_transient){.until = 40.0, .every = 0.4};
+    true_run run = moving_truth(&scene, scene.models[0], 1.0);
+    scene.drive.voltage = 4500.0;
+    const true_row rest = still_truth(&scene, scene.models[0], 1.0);
+    assert_true(run.error < 1e-11);
+    assert_relative(run.samples[run.count - 1].displacement, rest.row.displacement, 1e-12);
+    assert_true(run.samples[1].displacement < 0.96 * rest.row.displacement);
+    true_run_free(&run);
+}
+
+/* The table of physics.md, section 3. */
+static void static_truths_are_the_reference_numbers(void **state)
+{
+    (void)state;
+    static const struct {
+        double prestretch, coverage, strain[4];
+    } known[] = {
+        {1.1, 0.10, {0.04587737, 0.04028821, 0.03511406, 0.03762647}},
+        {1.2, 0.25, {0.05973380, 0.05612602, 0.05689016, 0.06092621}},
+        {1.3, 0.75, {0.02204766, 0.02618038, 0.03411473, 0.03289753}},
+    };
+    static const char *const models[] = {"coverage", "lumped", "lame", "field"};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        for (int m = 0; m < 4; m++) {
+            const dea_scene scene = paper_scene(DEA_DOT, known[i].prestretch, known[i].coverage, 4500.0);
+            const true_row truth = still_truth(&scene, dea_model_find(models[m]), 1.0);
+            assert_printed(truth.row.strain, known[i].strain[m], 8);
+            assert_true(truth.error < 1e-13);
+        }
+    }
+}
+
+/* ---- the judge */
+
+static dea_status sweep_badly(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count,
+                              dea_row *rows, dea_error *error)
+{
+    const dea_status status = dea_engine_find("direct")->sweep(session, scene, model, first, count, rows, error);
+    for (size_t i = 0; i < count; i++) {
+        rows[i].strain *= 1.0 + 3.0 * scene->accuracy;
+    }
+    return status;
+}
+
+static void an_engine_that_is_off_by_three_times_the_accuracy_is_found(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+        "material: elastosil-2030\ndrive: {voltage: 4500 V}\nmodel: coverage\n"
+        "study: {sweep: {voltage: [1000 V, 4000 V]}}\n";
+    dea_engine bad = *dea_engine_find("direct");
+    bad.sweep = sweep_badly;
+    judged j;
+    tally counted = {0};
+    char line[LINE] = "";
+    assert_true(judge_open(&j, text, 0));
+    assert_true(judge_engine(&j, &bad, 1e-6, &counted, line, sizeof line));
+    assert_int_equal(counted.broken, 1);
+    assert_true(counted.worst > 2.9 && counted.worst < 3.1);
+    assert_non_null(strstr(line, "strain"));
+    assert_false(judge_engine(&j, dea_engine_find("direct"), 1e-6, &counted, line, sizeof line));
+    judge_close(&j);
+}
+
+/* ---- promises */
+
+/* Loose, and tight as far as it stays quick. */
+static double accuracy_of(const dea_engine *engine, const dea_scene *scene, int turn)
+{
+    const bool slow = scene->study == DEA_STUDY_TRANSIENT && strcmp(engine->name, "direct") != 0;
+    return turn == 0 ? 1e-2 : slow ? 1e-4 : best_accuracy(engine, scene);
+}
+
+static void engines_keep_their_promises_on_random_scenes(void **state)
+{
+    (void)state;
+    tally counted = {0};
+    for (size_t number = 0; number < SCENES; number++) {
+        char *text = draw_scene(SEED, number), line[LINE];
+        judged j;
+        assert_non_null(text);
+        assert_true(judge_open(&j, text, number));
+        for (size_t e = 0; e < dea_engine_count(); e++) {
+            for (int turn = 0; turn < 2; turn++) {
+                if (judge_engine(&j, dea_engine_at(e), accuracy_of(dea_engine_at(e), &j.scene, turn), &counted, line,
+                                 sizeof line)) {
+                    fail_msg("%s", line);
+                }
+            }
+        }
+        judge_close(&j);
+        free(text);
+    }
+    assert_true(counted.delivered > 3 * SCENES);
+    assert_true(counted.unjudged < SCENES / 10);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_truth_of_a_ring_is_its_closed_form),
+        cmocka_unit_test(the_truth_of_a_slow_film_ends_at_rest),
+        cmocka_unit_test(static_truths_are_the_reference_numbers),
+        cmocka_unit_test(an_engine_that_is_off_by_three_times_the_accuracy_is_found),
+        cmocka_unit_test(engines_keep_their_promises_on_random_scenes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -105,6 +105,7 @@ dea_status dea_units_enter(const dea_units *units, const dea_scene *scene, dea_s
     enter_wave(units, &inside->drive.waveform);
     inside->transient.until *= units->time;
     inside->transient.every *= units->time;
+    inside->reduction.ring *= units->time;
     inside->ac.from /= units->time;
     inside->ac.to /= units->time;
     inside->ac.bias *= units->voltage;

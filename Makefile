@@ -32,7 +32,7 @@ JOBS     ?= $(shell nproc 2>/dev/null || echo 1)
 SANITIZE := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 
 .DELETE_ON_ERROR:
-.PHONY: all unit demo check test asan fuzz clang bench stability promises hard netlists examples-agree compilers-agree asan-run install uninstall clean packages packages-check
+.PHONY: all unit demo check test asan fuzz clang bench work-precision stability promises hard netlists examples-agree compilers-agree asan-run install uninstall clean packages packages-check
 
 all: $(BUILD)/deaspice $(BUILD)/libdeaspice.so
 
@@ -95,10 +95,17 @@ $(BUILD)/fuzz/scene_fuzz: tests/fuzz/scene_fuzz.c $(LIBRARY_SOURCES)
 	@echo "CC $@"
 	@clang $(filter-out -MMD -MP,$(ALL_CFLAGS)) -O1 -g -fsanitize=fuzzer,address,undefined -DDEA_AXIS_VALUES_MAX=100000 $^ -o $@ $(LIBS)
 
-# Speed and error side by side, against the goals and against other programs where they are installed. Takes 3 to 4 minutes.
+# Speed and error side by side, against the goals and against other programs where they are installed, then the diagrams of README.
+# Takes about ten minutes.
 bench:
 	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/bench
 	@$(BUILD)/bench $(BUILD)/deaspice tests/peers examples
+	@$(MAKE) --no-print-directory work-precision
+
+work-precision:
+	@$(MAKE) --no-print-directory -j$(JOBS) all
+	@$(BUILD)/deaspice bench examples/figure10.yaml --model lumped,coverage,lame,field --budget 90 --plot examples/work-precision-static.svg
+	@$(BUILD)/deaspice bench examples/work-precision.yaml --model lumped,coverage --budget 90 --plot examples/work-precision-transient.svg
 
 $(BUILD)/bench: $(wildcard tests/bench/*.[ch]) $(BUILD)/libdeaspice.a
 	@echo "CC $@"

@@ -4,6 +4,7 @@
 #ifndef DEASPICE_H
 #define DEASPICE_H
 
+#include "deaspice/bench.h"
 #include "deaspice/engine.h"
 #include "deaspice/fit.h"
 #include "deaspice/material.h"

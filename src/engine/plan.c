@@ -34,6 +34,11 @@ dea_status dea_plan_make(const dea_scene *scene, const dea_engine *engine, const
     return DEA_OK;
 }
 
+bool dea_plan_here(const dea_plan *plan)
+{
+    return !plan->engine->isolated && (plan->options->jobs == 1 || plan->blocks == 1);
+}
+
 dea_span dea_plan_next(const dea_plan *plan, size_t *block)
 {
     const dea_run_options *options = plan->options;

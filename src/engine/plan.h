@@ -44,6 +44,8 @@ typedef struct dea_damage {
 /** Cuts the study and counts what of it is wanted. */
 dea_status dea_plan_make(const dea_scene *scene, const dea_engine *engine, const dea_run_options *options, dea_plan *plan,
                          dea_error *error);
+/** True where the study runs in this process, not in workers. */
+bool dea_plan_here(const dea_plan *plan);
 /** The first wanted block from number *@p block on, which steps behind it. There is one as long as not all were taken. */
 dea_span dea_plan_next(const dea_plan *plan, size_t *block);
 

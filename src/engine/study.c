@@ -82,6 +82,5 @@ dea_status dea_study_run(const dea_scene *scene, const dea_engine *engine, const
         status = dea_plan_make(scene, engine, options, &plan, error);
     if (status != DEA_OK || plan.blocks == 0)
         return status;
-    bool here = !engine->isolated && (options->jobs == 1 || plan.blocks == 1);
-    return here ? run_here(&plan, error) : dea_pool_run(&plan, patience_beyond, error);
+    return dea_plan_here(&plan) ? run_here(&plan, error) : dea_pool_run(&plan, patience_beyond, error);
 }

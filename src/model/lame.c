@@ -3,10 +3,11 @@
 #include "network/formula.h"
 #include "network/network.h"
 
-/* Nominal stresses at one place of a region with moduli a, b under the changes d1, d2 of the radial and hoop stretch. */
-static double smaller_stress(double rest, double a, double b, double d1, double d2)
+/* Are both nominal stresses positive at one place of a region with moduli a, b, under the changes d1, d2 of the radial and hoop
+ * stretch? */
+static bool is_taut(double rest, double a, double b, double d1, double d2)
 {
-    return rest + fmin(a * d1 + b * d2, b * d1 + a * d2);
+    return rest + (a * d1 + b * d2) > 0.0 && rest + (b * d1 + a * d2) > 0.0;
 }
 
 static void solve(const dea_point *point, double accuracy, dea_row *row)
@@ -17,39 +18,41 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     const double b2 = point->coverage * point->coverage;
     const double nominal = dea_point_nominal_field(point);
     const double m = film->permittivity * nominal * nominal; /* M */
-    const double softened1 = film->w11 - m * film->square;
-    const double softened2 = film->w12 - 2.0 * m * film->square;
+    const double soft = m * film->square;                    /* M lambda_pre^2 */
+    const double softened1 = film->w11 - soft;
+    const double softened2 = film->w12 - 2.0 * soft;
     const double disc1 = dot ? softened1 : film->w11;
     const double disc2 = dot ? softened2 : film->w12;
     const double annulus1 = dot ? film->w11 : softened1;
     const double annulus2 = dot ? film->w12 : softened2;
-    const double q = (1.0 + b2) / (1.0 - b2);
+    const double inverse = 1.0 / (1.0 - b2);
+    const double q = (1.0 + b2) * inverse;
 
     /* 1/n over 2 pi H: disc a + b, annulus a (1 + B^2)/(1 - B^2) - b */
     const double stiffness = disc1 + disc2 + annulus1 * q - annulus2;
-    const double load = dea_point_sign(point) * m * film->square * film->prestretch; /* F_DEA/(2 pi H R_a) */
     if (m > 0.0 && !(stiffness > 0.0)) {
         dea_row_refuse(row, DEA_STATE_PULL_IN);
         return;
     }
-    const double change = m > 0.0 ? load / stiffness : 0.0; /* of the hoop stretch at r_a */
-    const double strain = change / film->prestretch;
+    const double load = dea_point_sign(point) * soft; /* F_DEA/(2 pi H r_a) */
+    const double strain = m > 0.0 ? load / stiffness : 0.0;
+    const double change = strain * film->prestretch; /* of the hoop stretch at r_a */
     if (!dea_point_holds(point, strain)) {
         dea_row_refuse(row, DEA_STATE_PULL_IN);
         return;
     }
     const double edge = point->coverage * (1.0 + strain);
-    const double maxwell = m * film->square * film->prestretch;
+    const double maxwell = soft * film->prestretch;
     const double disc_rest = film->tension - (dot ? maxwell : 0.0);
     const double annulus_rest = film->tension - (dot ? 0.0 : maxwell);
     /* annulus: d1 = -c (F^2/R^2 + 1), d2 = c (F^2/R^2 - 1) with d2 = change at r_a; linear in F^2/R^2, so its ends decide */
-    const double rim = -2.0 * change * b2 / (1.0 - b2);
-    const double least = fmin(smaller_stress(disc_rest, disc1, disc2, change, change),
-                              fmin(smaller_stress(annulus_rest, annulus1, annulus2, -q * change, change),
-                                   smaller_stress(annulus_rest, annulus1, annulus2, rim, 0.0)));
-    const double area = dot ? (1.0 + strain) * (1.0 + strain) : (1.0 - edge * edge) / (1.0 - b2);
-    const double force = 2.0 * DEA_PI * point->film_thickness * load * dea_point_divide(point) / film->prestretch;
-    dea_row_fill(row, point, strain, force, film->square * area, least > 0.0);
+    const double rim = -2.0 * change * b2 * inverse;
+    const bool taut = is_taut(disc_rest, disc1, disc2, change, change) &&
+                      is_taut(annulus_rest, annulus1, annulus2, -q * change, change) &&
+                      is_taut(annulus_rest, annulus1, annulus2, rim, 0.0);
+    const double area = dot ? (1.0 + strain) * (1.0 + strain) : (1.0 - edge * edge) * inverse;
+    const double force = 2.0 * DEA_PI * point->film_thickness * load * dea_point_divide(point);
+    dea_row_fill(row, point, strain, force, film->square * area, taut);
 }
 
 /* Moduli of one region: W11, W12 and what the voltage takes off where it carries the electrode. */

@@ -78,7 +78,7 @@ static void print_line(const dea_engine *engine, const dea_comparison *compariso
 static const char *judge(const dea_comparison *comparison, double tolerance, dea_tally *tally)
 {
     const char *verdict = comparison->filling ? "reference" : "agrees";
-    if (!comparison->filling && !(dea_comparison_worst(comparison) <= tolerance)) {
+    if (!comparison->filling && (comparison->states > 0 || !(dea_comparison_worst(comparison) <= tolerance))) {
         tally->disagreed++;
         verdict = "DISAGREES";
     }

@@ -9,7 +9,7 @@
 #define DEA_VERSION "unknown"
 #endif
 
-static const dea_command *const commands[] = {&dea_command_run,    &dea_command_merge, &dea_command_check,
+static const dea_command *const commands[] = {&dea_command_run,    &dea_command_merge, &dea_command_check,    &dea_command_bench,
                                               &dea_command_export, &dea_command_fit,   &dea_command_materials};
 
 enum { COMMANDS = sizeof commands / sizeof commands[0] };

@@ -12,7 +12,7 @@
 #include "scene/quantity.h"
 #include "support/text.h"
 
-enum { MOST_JOBS = 1024, MOST_SHARDS = 1000000 };
+enum { MOST_JOBS = 1024, MOST_SHARDS = 1000000, MOST_RUNS = 1000 };
 
 /* An option of any command: what takes it, and what it does with its value; false when the value is wrong. */
 typedef struct option_entry {
@@ -184,6 +184,28 @@ static bool set_analogy(dea_arguments *arguments, const char *value)
     return set_text(&arguments->analogy, "analogy", value);
 }
 
+static bool set_runs(dea_arguments *arguments, const char *value)
+{
+    const long runs = whole_number(value, MOST_RUNS);
+    if (runs < 1) {
+        dea_complain("--runs %s: needs a whole number from 1 to %d", value, MOST_RUNS);
+        return false;
+    }
+    arguments->runs = (size_t)runs;
+    return true;
+}
+
+static bool set_budget(dea_arguments *arguments, const char *value)
+{
+    char *end;
+    arguments->budget = strtod(value, &end);
+    if (end == value || *end != '\0' || !(arguments->budget > 0.0 && arguments->budget < HUGE_VAL)) {
+        dea_complain("--budget %s: needs a number of seconds above 0, for example 60", value);
+        return false;
+    }
+    return true;
+}
+
 static bool set_shard(dea_arguments *arguments, const char *value)
 {
     char number[16];
@@ -248,6 +270,8 @@ static const option_entry entries[] = {
     {"as", 0, true, DEA_TAKES_EXPORT, set_as},
     {"dialect", 0, true, DEA_TAKES_EXPORT, set_dialect},
     {"analogy", 0, true, DEA_TAKES_EXPORT, set_analogy},
+    {"runs", 0, true, DEA_TAKES_BENCH, set_runs},
+    {"budget", 0, true, DEA_TAKES_BENCH, set_budget},
     {"shard", 0, true, DEA_TAKES_JOURNAL, set_shard},
     {"resume", 0, false, DEA_TAKES_JOURNAL, set_resume},
     {"help", 'h', false, 0, NULL},
@@ -347,7 +371,7 @@ dea_parsed dea_arguments_parse(const dea_command *command, int argc, char **argv
 {
     struct option longs[ENTRIES + 1];
     char letters[2 * ENTRIES + 2];
-    *arguments = (dea_arguments){.tolerance = NAN, .ramp = NAN};
+    *arguments = (dea_arguments){.tolerance = NAN, .ramp = NAN, .budget = NAN};
     arguments->settings = calloc((size_t)argc + 1, sizeof *arguments->settings);
     arguments->operands = calloc((size_t)argc + 1, sizeof *arguments->operands);
     if (!arguments->settings || !arguments->operands) {

@@ -28,7 +28,8 @@ typedef enum dea_takes {
     DEA_TAKES_FIT = 1 << 8,      /**< --uniaxial, --equibiaxial, --terms, --relaxation, --ramp, --branches, --relative */
     DEA_TAKES_EXPORT = 1 << 9,   /**< --as, --dialect, --analogy */
     DEA_TAKES_JOURNAL = 1 << 10, /**< --shard, --resume */
-    DEA_TAKES_FULL = 1 << 11
+    DEA_TAKES_FULL = 1 << 11,    /**< --full */
+    DEA_TAKES_BENCH = 1 << 12    /**< --runs, --budget */
 } dea_takes;
 
 /** Mode of a data file as the command line gives it. */
@@ -61,6 +62,8 @@ typedef struct dea_arguments {
     const char *as;         /**< NULL: not given */
     const char *dialect;    /**< NULL: not given */
     const char *analogy;    /**< NULL: not given */
+    size_t runs;            /**< 0: not given */
+    double budget;          /**< [s], NAN: not given */
     size_t shard, shards;   /**< --shard shard/shards, 1 <= shard <= shards; 0: not given */
     bool resume;
     dea_operand *operands;
@@ -80,6 +83,7 @@ typedef struct dea_command {
 extern const dea_command dea_command_run;
 extern const dea_command dea_command_merge;
 extern const dea_command dea_command_check;
+extern const dea_command dea_command_bench;
 extern const dea_command dea_command_export;
 extern const dea_command dea_command_fit;
 extern const dea_command dea_command_materials;

@@ -198,7 +198,7 @@ dea_status dea_comparison_take(dea_comparison *comparison, size_t first, const v
 
 double dea_comparison_worst(const dea_comparison *comparison)
 {
-    double worst = comparison->states > 0 ? (double)INFINITY : 0.0;
+    double worst = 0.0;
     for (size_t c = 0; c < comparison->column_count; c++) {
         worst = fmax(worst, comparison->worst[c]);
     }

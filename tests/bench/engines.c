@@ -184,11 +184,39 @@ static void ngspice_coverage_row(void)
     dea_scene_free(&scene);
 }
 
+/* Is the closed form of lame as cheap as that of lumped? Both in turn, over coverage and over voltage; the worse counts. */
+static void lame_row(void)
+{
+    enum { POINTS = 500000, TURNS = 2 * BENCH_RUNS + 1 };
+    const char *const axes[] = {coverages, voltages}, *const models[] = {"lumped", "lame"};
+    double ratio[2], error = 0.0;
+    dea_row *rows = calloc(POINTS, sizeof *rows);
+    for (int k = 0; rows && k < 2; k++) {
+        double seconds[2][TURNS];
+        dea_scene scenes[2] = {line_scene(models[0], axes[k], POINTS), line_scene(models[1], axes[k], POINTS)};
+        bench_sweep(dea_engine_find("direct"), &scenes[0], rows);
+        for (int i = 0; i < 2 * TURNS; i++) {
+            seconds[i % 2][i / 2] = bench_sweep(dea_engine_find("direct"), &scenes[i % 2], rows);
+        }
+        ratio[k] = bench_median(seconds[1], TURNS) / bench_median(seconds[0], TURNS);
+        error = fmax(error, error_of(&scenes[1], rows, POINTS));
+        dea_scene_free(&scenes[0]);
+        dea_scene_free(&scenes[1]);
+    }
+    free(rows);
+    char measured[COLUMN], wrong[COLUMN];
+    snprintf(measured, sizeof measured, "%.2f; %.2f times", ratio[0], ratio[1]);
+    snprintf(wrong, sizeof wrong, "%.1e relative", error);
+    bench_row("direct, lame against lumped, over coverage; over voltage", "at most 2 times", fmax(ratio[0], ratio[1]) <= 2.0,
+              measured, wrong);
+}
+
 void bench_engines(const char *peers)
 {
     ngspice_lumped_row(peers);
     ngspice_coverage_row();
     direct_row("lumped", 2000000, 50e6, "50 M points/s");
+    lame_row();
     direct_row("coverage", 500000, 5e6, "5 M points/s");
     direct_row("field", 10000, 20e3, "20 k points/s");
 }

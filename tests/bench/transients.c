@@ -228,17 +228,34 @@ static work run_protocol(const char *engine, double accuracy, const double *exac
     return done;
 }
 
-static void engine_row(const char *engine, double accuracy, double goal, double wanted, const work *done)
+/* Settings of the engines, and what they shall take and deliver. */
+typedef struct own_setting {
+    const char *engine;
+    double accuracy;
+    double milliseconds, error; /* goals */
+} own_setting;
+
+static const own_setting own_settings[] = {
+    {"direct", 1e-6, 0.3, 1e-11}, {"ida", 1e-2, 10.0, 1e-2},     {"ida", 1e-4, 10.0, 1e-4},      {"ida", 1e-6, 25.0, 1e-6},
+    {"ida", 1e-8, 80.0, 1e-8},    {"ngspice", 1e-3, 30.0, 1e-3}, {"ngspice", 1e-5, 300.0, 1e-5},
+};
+enum { OWN = sizeof own_settings / sizeof *own_settings };
+
+static void engine_row(const own_setting *setting, const work *done)
 {
     char what[TEXT], aim[TEXT], measured[TEXT], wrong[TEXT];
-    snprintf(what, sizeof what, "%s, accuracy %.0e, 2501 samples, 25 s", engine, accuracy);
-    snprintf(aim, sizeof aim, "%g ms, %.0e of the peak", goal, wanted);
+    snprintf(what, sizeof what, "%s, accuracy %.0e, 2501 samples, 25 s", setting->engine, setting->accuracy);
+    snprintf(aim, sizeof aim, "%g ms, %.0e of the peak", setting->milliseconds, setting->error);
     snprintf(measured, sizeof measured, "%.3g ms", 1e3 * done->seconds);
     snprintf(wrong, sizeof wrong, "%.1e of the peak", done->error);
-    bench_row(what, aim, 1e3 * done->seconds <= goal && done->error <= wanted, measured, wrong);
+    bench_row(what, aim, 1e3 * done->seconds <= setting->milliseconds && done->error <= setting->error, measured, wrong);
 }
 
 /* ---- the peers */
+
+#define SCIPY                                                                                                                    \
+    "for p in python3 /usr/bin/python3; do $p -c 'import scipy' 2>/dev/null && "                                                 \
+    "exec $p '%s/transient_scipy.py' protocol "
 
 static size_t hear_peer(const char *command, work *works)
 {
@@ -257,23 +274,46 @@ static size_t hear_peer(const char *command, work *works)
     return count;
 }
 
-/* Time of a peer at that error, between its runs on logarithmic scales; outside of them that of its nearest one. */
-static double peer_time(const work *works, size_t count, double error)
+/* Number of the cheapest setting that is no worse than @p error and, where @p engine is not NULL, of that engine; OWN: none. */
+static size_t cheapest(const work own[OWN], double error, const char *engine)
 {
-    for (size_t i = 0; i + 1 < count; i++) {
-        const work *loose = &works[i], *tight = &works[i + 1];
-        if (error <= loose->error && error >= tight->error && tight->error < loose->error) {
-            const double share = log(loose->error / error) / log(loose->error / tight->error);
-            return loose->seconds * pow(tight->seconds / loose->seconds, share);
-        }
+    size_t best = OWN;
+    for (size_t i = 0; i < OWN; i++) {
+        const bool counts = own[i].error <= error && (!engine || strcmp(own_settings[i].engine, engine) == 0);
+        best = counts && (best == OWN || own[i].seconds < own[best].seconds) ? i : best;
     }
-    return error > works[0].error ? works[0].seconds : works[count - 1].seconds;
+    return best;
 }
 
-static void peer_rows(const char *name, const char *command, const char *engine, const work *ida, size_t ida_count, double goal)
+/* Each run of a peer against the cheapest setting that is no worse; the least ratio counts. */
+static void best_row(const char *name, const work *works, size_t count, const work own[OWN], const char *engine, double goal)
+{
+    char what[TEXT], measured[TEXT], wrong[TEXT], aim[TEXT] = "";
+    double least = INFINITY;
+    size_t run = 0, setting = OWN;
+    for (size_t i = 0; i < count; i++) {
+        const size_t best = cheapest(own, works[i].error, engine);
+        const double ratio = best < OWN ? works[i].seconds / own[best].seconds : 0.0;
+        if (ratio < least) {
+            least = ratio;
+            run = i;
+            setting = best;
+        }
+    }
+    snprintf(what, sizeof what, "%s against %s, error no larger", engine ? engine : "best engine", name);
+    snprintf(measured, sizeof measured, "%.0f times%s%s", least, setting < OWN ? " " : "",
+             setting < OWN ? own_settings[setting].engine : "");
+    snprintf(wrong, sizeof wrong, "%.1e against %.1e", setting < OWN ? own[setting].error : NAN, works[run].error);
+    if (goal > 0.0) {
+        snprintf(aim, sizeof aim, "%g times", goal);
+    }
+    bench_row(what, aim, goal > 0.0 ? least >= goal : -1, measured, wrong);
+}
+
+static void peer_rows(const char *name, const char *command, const work own[OWN], double best, double ida)
 {
     work works[WORKS];
-    char what[TEXT], measured[TEXT], wrong[TEXT], aim[TEXT] = "";
+    char what[TEXT], measured[TEXT], wrong[TEXT];
     const size_t count = hear_peer(command, works);
     snprintf(what, sizeof what, "  beside it: %s", name);
     if (count == 0) {
@@ -285,17 +325,8 @@ static void peer_rows(const char *name, const char *command, const char *engine,
         snprintf(wrong, sizeof wrong, "%.1e of the peak", works[i].error);
         bench_row(what, "", -1, measured, wrong);
     }
-    for (size_t i = 0; i < ida_count; i++) {
-        const double ratio = peer_time(works, count, ida[i].error) / ida[i].seconds;
-        const bool below = ida[i].error < works[count - 1].error;
-        snprintf(what, sizeof what, "%s against %s at equal error", engine, name);
-        snprintf(measured, sizeof measured, "%s%.0f times", below ? "more than " : "", ratio);
-        snprintf(wrong, sizeof wrong, "at %.1e of the peak", ida[i].error);
-        if (goal > 0.0) {
-            snprintf(aim, sizeof aim, "%g times", goal);
-        }
-        bench_row(what, aim, goal > 0.0 ? ratio >= goal : -1, measured, wrong);
-    }
+    best_row(name, works, count, own, NULL, best);
+    best_row(name, works, count, own, "ida", ida);
 }
 
 /* ---- many transients */
@@ -384,22 +415,27 @@ static void memory_row(char *program)
     bench_row("memory of 100 and of 1000 transients to .nc, -j 2", "1.1 times", many <= 1.1 * few, measured, "");
 }
 
-static void peers_group(const char *peers, const work *ida, size_t count)
+/* The peers; each finds the engines' times taken anew beside it, so that a drift of the machine hits both. */
+static void peers_group(const char *peers, const double *exact, double peak)
 {
-    char command[4096];
-    snprintf(command, sizeof command,
-             "octave-cli --no-init-file --no-site-file '%s/transient_octave.m' 1e-4 1e-5 1e-6 2>/dev/null", peers);
-    peer_rows("Octave ode15s", command, "ida", ida, count, 25.0);
-    snprintf(command, sizeof command,
-             "for p in python3 /usr/bin/python3; do $p -c 'import scipy' 2>/dev/null && "
-             "exec $p '%s/transient_scipy.py' protocol DOP853 1e-5 1e-7 1e-9; done",
-             peers);
-    peer_rows("SciPy DOP853", command, "ida", ida, count, 0.0);
-    snprintf(command, sizeof command,
-             "for p in python3 /usr/bin/python3; do $p -c 'import scipy' 2>/dev/null && "
-             "exec $p '%s/transient_scipy.py' protocol Radau 1e-3; done",
-             peers);
-    peer_rows("SciPy Radau", command, "ida", ida, count, 0.0);
+    static const struct {
+        const char *name, *command; /* the folder of the scripts stands for %s */
+        double ida;                 /* goal of ida alone, 0: none */
+    } others[] = {
+        {"Octave ode15s", "octave-cli --no-init-file --no-site-file '%s/transient_octave.m' 1e-4 1e-5 1e-6 2>/dev/null", 25.0},
+        {"SciPy DOP853", SCIPY "DOP853 1e-5 1e-7 1e-9; done", 0.0},
+        {"SciPy Radau", SCIPY "Radau 1e-3 1e-4; done", 0.0},
+        {"SciPy LSODA", SCIPY "LSODA 1e-3 1e-5 1e-7 1e-9; done", 0.0},
+    };
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        char command[4096];
+        work own[OWN];
+        for (size_t k = 0; k < OWN; k++) {
+            own[k] = run_protocol(own_settings[k].engine, own_settings[k].accuracy, exact, peak);
+        }
+        snprintf(command, sizeof command, others[i].command, peers);
+        peer_rows(others[i].name, command, own, 50.0, others[i].ida);
+    }
 }
 
 void bench_transients(const char *program, const char *peers)
@@ -409,18 +445,11 @@ void bench_transients(const char *program, const char *peers)
     dea_scene scene = protocol(1e-6, 1);
     const double peak = solve_exactly(&scene, exact);
     dea_scene_free(&scene);
-    const work direct = run_protocol("direct", 1e-6, exact, peak);
-    engine_row("direct", 1e-6, 0.3, 1e-11, &direct);
-    const double accuracies[] = {1e-4, 1e-6, 1e-8}, goals[] = {10.0, 25.0, 80.0};
-    work ida[3];
-    for (int i = 0; i < 3; i++) {
-        ida[i] = run_protocol("ida", accuracies[i], exact, peak);
-        engine_row("ida", accuracies[i], goals[i], accuracies[i], &ida[i]);
+    for (size_t i = 0; i < OWN; i++) {
+        const work done = run_protocol(own_settings[i].engine, own_settings[i].accuracy, exact, peak);
+        engine_row(&own_settings[i], &done);
     }
-    const work coarse = run_protocol("ngspice", 1e-3, exact, peak), fine = run_protocol("ngspice", 1e-5, exact, peak);
-    engine_row("ngspice", 1e-3, 30.0, 1e-3, &coarse);
-    engine_row("ngspice", 1e-5, 300.0, 1e-5, &fine);
-    peers_group(peers, ida, 3);
+    peers_group(peers, exact, peak);
     workers_row("ida", 1e-4, 1.8, 3);
     workers_row("direct", 1e-6, 0.0, BENCH_RUNS);
     snprintf(name, sizeof name, "%s", program);

@@ -1,7 +1,9 @@
 /* Films in motion: closed forms, limits and balances that the engine `ida` must meet, and its own estimate against the truth. */
 #include "random_transients.h"
 
-#include "engine/ida/motion.h"
+#include <limits.h>
+
+#include "engine/ida/flight.h"
 
 enum { MOST_SAMPLES = 20000 };
 
@@ -482,6 +484,41 @@ static void more_digits_than_it_has_are_refused(void **state)
     assert_non_null(dea_engine_refuses(engine, &scene, scene.models[0]));
 }
 
+/* Steps of one run of a hyperelastic film that rings at 716 Hz for a tenth of a second within a creep of 25 s. */
+static long steps_at(double tolerance)
+{
+    static dea_moment moments[MOST_SAMPLES];
+    dea_error error = {0};
+    dea_scene scene;
+    dea_dynamics dynamics;
+    dea_signal signal;
+    dea_flight flight;
+    SUNContext context;
+    dea_trace trace = {.moments = moments};
+    assert_int_equal(dea_scene_read("examples/work-precision.yaml", NULL, 0, "coverage", &scene, &error), DEA_OK);
+    assert_int_equal(dea_sundials_open(&context, &error), DEA_OK);
+    assert_int_equal(dea_dynamics_open(&scene, scene.models[0], &dynamics, &error), DEA_OK);
+    assert_int_equal(dea_signal_open(&scene, &signal, &error), DEA_OK);
+    assert_int_equal(dea_flight_open(context, &scene, &dynamics, &signal, &flight, &error), DEA_OK);
+    dea_flight_run(&flight, tolerance, &trace, NULL);
+    const long steps = trace.count == flight.rows ? flight.steps : LONG_MAX;
+    dea_flight_close(&flight);
+    dea_signal_close(&signal);
+    dea_dynamics_close(&dynamics);
+    SUNContext_Free(&context);
+    dea_scene_free(&scene);
+    return steps;
+}
+
+/* A step a radian would be 110,000 steps. */
+static void the_tail_of_a_ring_does_not_set_the_steps_behind_it(void **state)
+{
+    (void)state;
+    assert_true(steps_at(1e-5) < 5000);
+    assert_true(steps_at(1e-7) < 10000);
+    assert_true(steps_at(1e-9) < 25000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -499,6 +536,7 @@ int main(void)
         cmocka_unit_test(a_film_at_its_bias_stays_there),
         cmocka_unit_test(a_short_edge_late_in_a_run_keeps_its_digits),
         cmocka_unit_test(the_creep_behind_a_ring_is_that_of_a_film_without_mass),
+        cmocka_unit_test(the_tail_of_a_ring_does_not_set_the_steps_behind_it),
         cmocka_unit_test(the_jacobian_is_the_slope_of_the_rates),
         cmocka_unit_test(samples_that_cut_all_steps_hide_no_error),
         cmocka_unit_test(a_small_resistance_damps_a_ring),

@@ -17,6 +17,7 @@
 #include <ngspice/sharedspice.h>
 
 #include "engine/ngspice/library.h"
+#include "engine/ngspice/units.h"
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
@@ -580,10 +581,25 @@ static void study_keeps_its_own_process_and_tells_what_is_missing(void **state)
     pass_in_child(study_without_a_place);
 }
 
+static void times_of_a_study_enter_its_units_together(void **state)
+{
+    (void)state;
+    const dea_units units = {.length = 2.0, .thickness = 4.0, .stress = 0.5, .voltage = 0.25, .time = 8.0};
+    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, 4500.0), inside;
+    scene.study = DEA_STUDY_TRANSIENT;
+    scene.transient = (dea_transient){.until = 25.0, .every = 0.01};
+    scene.reduction.ring = 0.25;
+    assert_int_equal(dea_units_enter(&units, &scene, &inside, NULL), DEA_OK);
+    assert_true(inside.transient.until == 200.0 && inside.transient.every == 0.08);
+    assert_true(inside.reduction.ring == 2.0); /* what is left out is left out at the same moment */
+    dea_units_leave(&inside);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(circuit_is_solved),
+        cmocka_unit_test(times_of_a_study_enter_its_units_together),
         cmocka_unit_test(foreign_start_up_files_are_not_run),
         cmocka_unit_test(user_without_a_name_can_solve),
         cmocka_unit_test(decimal_comma_of_the_user_does_not_matter),

@@ -227,6 +227,16 @@ static void audit_step(const dea_flight *flight, double from, double to)
     }
 }
 
+/* Highest order of BDF behind an explicit method. From order 3 on BDF lets the tail of a ring grow while a step is a part of its
+ * period, and may crawl through all that is left, a step a radian. Order 2 never does; of its steps, relaxation takes about
+ * 4/tolerance^(1/3). */
+static int best_order(const dea_flight *flight, double from)
+{
+    const dea_segment *segment = flight->motion.segment;
+    const double radians = flight->ring->omega * (segment->to - segment->from - from);
+    return from > 0.0 && radians > 4.0 / cbrt(flight->tolerance) ? 2 : 5;
+}
+
 static bool begin(dea_flight *flight, double from)
 {
     dea_integrator *m = &flight->integrator;
@@ -242,7 +252,7 @@ static bool begin(dea_flight *flight, double from)
     if (flight->motion.algebraic) {
         slope[0] = dea_motion_moment(&flight->motion, from, flight->y).v / flight->motion.size[0];
     }
-    return IDAReInit(m->ida, from, m->y, m->yp) == IDA_SUCCESS &&
+    return IDAReInit(m->ida, from, m->y, m->yp) == IDA_SUCCESS && IDASetMaxOrd(m->ida, best_order(flight, from)) == IDA_SUCCESS &&
            IDASStolerances(m->ida, flight->tolerance, flight->tolerance) == IDA_SUCCESS &&
            IDASetStopTime(m->ida, flight->motion.segment->to - flight->motion.segment->from) == IDA_SUCCESS;
 }

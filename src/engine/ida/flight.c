@@ -38,21 +38,24 @@ double dea_flight_next_sample(const dea_flight *flight)
     return next < flight->rows ? dea_layout_place(flight->scene, next) : (double)INFINITY;
 }
 
+/* Sees how far the unknowns get: at steps, and at samples too, since the steps of a turning frame may all lie whole periods
+ * apart. */
+static void reach(dea_flight *flight, const double *y)
+{
+    for (int i = 0; i < flight->motion.count; i++) {
+        flight->reach[i] = fmax(flight->reach[i], fabs(y[i]));
+    }
+}
+
 bool dea_flight_record(dea_flight *flight, double time, const double *y)
 {
     const dea_moment moment = dea_motion_moment(&flight->motion, time, y);
     if (!dea_motion_inside(&flight->motion, moment.u)) {
         return false;
     }
+    reach(flight, y);
     flight->trace->moments[flight->trace->count++] = moment;
     return true;
-}
-
-static void reach(dea_flight *flight)
-{
-    for (int i = 0; i < flight->motion.count; i++) {
-        flight->reach[i] = fmax(flight->reach[i], fabs(flight->y[i]));
-    }
 }
 
 /* Sizes of unknowns that reached no more than @p most of them; what is below the tolerance of that run says little. */
@@ -88,7 +91,7 @@ bool dea_flight_step(dea_flight *flight, double time, const double *w)
         trace->largest_u = fmax(trace->largest_u, fabs(at.u));
         trace->largest_v = fmax(trace->largest_v, fabs(at.v));
     }
-    reach(flight);
+    reach(flight, flight->y);
     flight->steps++;
     if (++flight->spent > MOST_STEPS) {
         dea_fail(&flight->why, DEA_ERROR_ENGINE, "at a tolerance of %.1g, %ld steps of SUNDIALS take the run to %g s",
@@ -180,7 +183,7 @@ void dea_flight_run(dea_flight *flight, double tolerance, dea_trace *trace, dea_
         return;
     }
     memset(flight->reach, 0, sizeof flight->reach);
-    reach(flight);
+    reach(flight, flight->y);
     const dea_moment first = dea_motion_moment(&flight->motion, 0.0, flight->y);
     dea_motion_branches(&flight->motion, flight->y, first_z);
     for (size_t i = 0; trace->end == DEA_STATE_OK && i < flight->signal->count; i++) {

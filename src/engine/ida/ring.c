@@ -106,7 +106,7 @@ static bool find_center(const dea_motion *motion, double *center)
     for (int i = 0; i < motion->count; i++) {
         largest = fmax(largest, fabs(center[i]));
     }
-    return largest < far_away || dea_motion_start(motion, false, center);
+    return motion->q < 0 || largest < far_away || dea_motion_start(motion, false, center);
 }
 
 void dea_ring_find(const dea_motion *motion, dea_ring *ring)

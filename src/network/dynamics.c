@@ -171,7 +171,7 @@ dea_status dea_dynamics_open(const dea_scene *scene, const dea_model *model, dea
     if (!isnan(d->focal_length) && !(d->focal_length * (d->refractive_index - 1.0) >= d->radius)) {
         return dea_fail(error, DEA_ERROR_USAGE,
                         "the cap of the lens cannot have so short a focal length: its radius of curvature, "
-                        "%g m, is less than the lens radius, %g m",
+                        "%.9g m, is less than the lens radius, %.9g m",
                         d->focal_length * (d->refractive_index - 1.0), d->radius);
     }
     return DEA_OK;

@@ -95,8 +95,8 @@ void dea_ring_stop(dea_ring *ring)
     ring->turns = false;
 }
 
-/* The equilibrium under the voltage; rest instead where that lies far beyond what the run reaches, of which the unknowns have their
- * sizes: behind a large series resistance the digits of a small answer would drown in it. */
+/* The equilibrium under the voltage; rest instead where that lies far beyond what the run reaches, of which the unknowns have
+ * their sizes: behind a large series resistance the digits of a small answer would drown in it. */
 static bool find_center(const dea_motion *motion, double *center)
 {
     double largest = 0.0;
@@ -106,7 +106,7 @@ static bool find_center(const dea_motion *motion, double *center)
     for (int i = 0; i < motion->count; i++) {
         largest = fmax(largest, fabs(center[i]));
     }
-    return largest < far_away || dea_motion_start(motion, false, center);
+    return motion->q < 0 || largest < far_away || dea_motion_start(motion, false, center);
 }
 
 void dea_ring_find(const dea_motion *motion, dea_ring *ring)

@@ -59,7 +59,7 @@ check: packages-check
 
 test:
 	@$(MAKE) --no-print-directory -j$(JOBS) all unit
-	@DEASPICE=$(abspath $(BUILD))/deaspice tests/run test $(UNIT_PROGRAMS)
+	@JOBS=$(JOBS) DEASPICE=$(abspath $(BUILD))/deaspice tests/run test $(UNIT_PROGRAMS)
 
 examples-agree:
 	@$(MAKE) --no-print-directory -j$(JOBS) all
@@ -79,7 +79,7 @@ asan:
 
 asan-run:
 	@$(MAKE) --no-print-directory -j$(JOBS) all unit
-	@DEASPICE=$(abspath $(BUILD))/deaspice ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 \
+	@JOBS=$(JOBS) DEASPICE=$(abspath $(BUILD))/deaspice ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 \
 	LSAN_OPTIONS=suppressions=$(abspath tests/leaks.supp):print_suppressions=0 tests/run asan $(UNIT_PROGRAMS)
 
 # libFuzzer on the scene reader; SECONDS=n for longer.

@@ -457,11 +457,11 @@ dea_mobility_state dea_mobility_read(const dea_mobility *mobility, const double 
 static void write_transducer(FILE *out, const dea_dynamics *d, const dea_edge *e, const dea_mobility_bias *bias)
 {
     fputs("* source of 1 V\n", out);
-    fputs(d->series > 0.0 ? "vsource film source dc 0 ac 1\n" : "vsource film 0 dc 0 ac 1\n", out);
+    fputs(d->series > 0.0 ? "vsource source 0 dc 0 ac 1\n" : "vsource film 0 dc 0 ac 1\n", out);
     if (d->series > 0.0) {
-        fputs("* series resistance of source and electrodes [Ohm], at the grounded end: its small drop is no difference\n", out);
+        fputs("* series resistance of source and electrodes [Ohm]\n", out);
         parameter(out, "r_series", d->series);
-        fputs("rseries source 0 {r_series}\n", out);
+        fputs("rseries source film {r_series}\n", out);
     }
     if (d->conductance > 0.0) {
         fputs("* leakage resistance of the film [Ohm]\n", out);

@@ -125,7 +125,7 @@ static bool leaves_out_series(const dea_scene *scene)
     return leaves_out(&needs, DEA_PART_SERIES, 0, DEA_BRANCH_WHOLE);
 }
 
-/* R_s C is 25 us against edges of a second: left out, unless it damps a ring, a sample sees the film charge, or a leakage leaves
+/* R_s C is 8 us against edges of a second: left out, unless it damps a ring, a sample sees the film charge, or a leakage leaves
  * the film less voltage. */
 static void a_series_resistance_is_left_out_where_nothing_shows_it(void **state)
 {
@@ -136,14 +136,14 @@ static void a_series_resistance_is_left_out_where_nothing_shows_it(void **state)
     scene.accuracy = 1e-3;
     scene.transient = (dea_transient){.until = 10.0, .every = 1.0};
     scene.drive.waveform = (dea_waveform){.kind = DEA_WAVE_STEP, .step = {0.5, (double)NAN, 4000.0, 1.0}, .period = (double)NAN};
-    scene.drive.series_resistance = 1e5;
+    scene.drive.series_resistance = 3e4;
     assert_true(leaves_out_series(&scene));
-    scene.drive.leakage_resistance = 1e8;
+    scene.drive.leakage_resistance = 3e7;
     assert_false(leaves_out_series(&scene));
     scene.drive.leakage_resistance = (double)NAN;
     scene.drive.waveform.step.rise = 0.0;
     assert_true(leaves_out_series(&scene));
-    scene.drive.waveform.step.on = 0.9999; /* 0.1 ms before a sample */
+    scene.drive.waveform.step.on = 0.99999; /* 10 us before a sample */
     assert_false(leaves_out_series(&scene));
     scene.drive.waveform.step.on = 1.0; /* with one: it shows what was before */
     assert_true(leaves_out_series(&scene));

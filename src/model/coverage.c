@@ -92,7 +92,7 @@ static void build(const dea_symbols *symbols, dea_network *network)
                     NEG(dea_hyperelastic_change(symbols, annulus)));
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force, A eps E^2, Eq. 18 [N]",
                     SCALE(network->sign, dea_hyperelastic_force(symbols, disc, active)));
-    network->end = dea_symbols_way(symbols);
+    network->end = dot ? dea_symbols_annulus_width(symbols) : MUL(symbols->coverage, symbols->frame_radius);
     network->field = dea_hyperelastic_field(symbols, active);
     dea_network_taut(network, SUB(MUL(symbols->prestretch, ADD(one, passive)), one));
 }

@@ -37,10 +37,6 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     const double load = dea_point_sign(point) * soft; /* F_DEA/(2 pi H r_a) */
     const double strain = m > 0.0 ? load / stiffness : 0.0;
     const double change = strain * film->prestretch; /* of the hoop stretch at r_a */
-    if (!dea_point_holds(point, strain)) {
-        dea_row_refuse(row, DEA_STATE_PULL_IN);
-        return;
-    }
     const double edge = point->coverage * (1.0 + strain);
     const double maxwell = soft * film->prestretch;
     const double disc_rest = film->tension - (dot ? maxwell : 0.0);
@@ -121,7 +117,6 @@ static void build(const dea_symbols *symbols, dea_network *network)
         ADD(dea_symbols_capacitance(symbols), MUL(network->edge, ADD(first, SCALE(0.5, MUL(second, network->edge)))));
     const region passive = {w11, w12, rest};
     const region active = {SUB(w11, soft), SUB(w12, SCALE(2.0, soft)), SUB(rest, maxwell)};
-    network->end = dea_symbols_way(symbols);
     limit_tension(symbols, network, dot ? active : passive, dot ? passive : active);
     dea_network_limit_area(symbols, network);
 }

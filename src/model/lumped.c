@@ -15,10 +15,6 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     const double sign = dea_point_sign(point);
     const double b = point->coverage;
     const double strain = sign * (1.0 - b) * pressure / film->modulus; /* Eq. 22 */
-    if (!dea_point_holds(point, strain)) {
-        dea_row_refuse(row, DEA_STATE_PULL_IN);
-        return;
-    }
     const double stretch = 1.0 + strain;
     const double edge = b * stretch;
     /* passive stretch: Eq. 17 of a dot, the disc of a lens; electroded area: the disc of a dot, the annulus of a lens */
@@ -49,7 +45,6 @@ static void build(const dea_symbols *symbols, dea_network *network)
     const dea_expr passive = symbols->kind == DEA_DOT ? dea_symbols_annulus_strain(symbols) : network->strain;
     dea_network_taut(network, SUB(MUL(symbols->prestretch, ADD(one, passive)), one));
     dea_network_limit_area(symbols, network);
-    network->end = dea_symbols_way(symbols);
 }
 
 static void linear(const dea_point *point, dea_linear *linear)

@@ -51,12 +51,6 @@ static inline double dea_point_capacitance(const dea_point *point)
     return point->film.permittivity * point->film.square / point->film_thickness * area;
 }
 
-/* True where disc and annulus both are there: the edge lies between the centre and the frame. */
-static inline bool dea_point_holds(const dea_point *point, double strain)
-{
-    return strain > -1.0 && point->coverage * (1.0 + strain) < 1.0;
-}
-
 /* A row without numbers. */
 static inline void dea_row_refuse(dea_row *row, dea_state state)
 {

@@ -80,7 +80,7 @@ double dea_balance_length(const dea_balance *balance)
 double dea_balance_end(const dea_balance *balance)
 {
     const double end = dea_tape_value(&balance->limits, END);
-    return end > 0.0 ? end * (1.0 - 1e-12) : 1e4 * dea_balance_length(balance);
+    return end > 0.0 ? end * (1.0 - 1e-12) : 1e9 * dea_balance_length(balance);
 }
 
 /* First place on the way from `from` to `to` (distances from rest, where the stiffness is at_from and at_to) at which the

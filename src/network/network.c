@@ -168,12 +168,6 @@ dea_expr dea_symbols_annulus_width(const dea_symbols *symbols)
     return MUL(symbols->frame_radius, SUB(NUM(1.0), symbols->coverage));
 }
 
-dea_expr dea_symbols_way(const dea_symbols *symbols)
-{
-    dea_pool *pool = symbols->pool;
-    return symbols->kind == DEA_DOT ? dea_symbols_annulus_width(symbols) : MUL(symbols->coverage, symbols->frame_radius);
-}
-
 dea_expr dea_symbols_annulus_strain(const dea_symbols *symbols)
 {
     return dea_expr_neg(symbols->pool,

@@ -99,7 +99,5 @@ dea_expr dea_symbols_disc_strain(const dea_symbols *symbols);
 dea_expr dea_symbols_annulus_strain(const dea_symbols *symbols);
 /* r - r_a [m]. */
 dea_expr dea_symbols_annulus_width(const dea_symbols *symbols);
-/* How far the edge can go before annulus (dot) or disc (lens) has vanished [m]. */
-dea_expr dea_symbols_way(const dea_symbols *symbols);
 
 #endif

@@ -276,8 +276,8 @@ static inline hard_answer hard_field(const hard_film *f)
     return (hard_answer){rim.least > 0.0L ? DEA_STATE_OK : DEA_STATE_SLACK, strain};
 }
 
-/* The static answer of a film: `failed` where there can be none, rest without voltage, pull-in where the edge leaves the frame.
- */
+/* The static answer of a film: `failed` where there can be none, rest without voltage. Linear springs stretch for ever; where
+ * others let the edge leave the frame, there is no equilibrium. */
 static inline hard_answer hard_statics(const hard_film *f)
 {
     static hard_answer (*const solve[])(const hard_film *) = {hard_lumped, hard_lame, hard_balance, hard_field};
@@ -289,7 +289,8 @@ static inline hard_answer hard_statics(const hard_film *f)
     }
     const hard_answer answer = solve[f->model](f);
     const bool inside = answer.strain > -1.0L && f->coverage * (1.0L + answer.strain) < 1.0L;
-    return inside ? answer : (hard_answer){DEA_STATE_PULL_IN, (long double)NAN};
+    const bool linear = solve[f->model] == hard_lumped || solve[f->model] == hard_lame;
+    return inside || linear ? answer : (hard_answer){DEA_STATE_PULL_IN, (long double)NAN};
 }
 
 /* ---- the moving edge, section 5: m u'' + A(u) [S + tau S' u' + sum c_i (S - z_i)] = phi(u) U^2, and the capacitance C(u) */

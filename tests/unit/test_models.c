@@ -419,7 +419,8 @@ static void pull_in_stays_pull_in_at_any_higher_voltage(void **state)
             assert_true(!seen || row.state == DEA_STATE_PULL_IN);
             seen = row.state == DEA_STATE_PULL_IN;
         }
-        assert_true(seen); /* of lumped, linear in the load, where the edge reaches the frame */
+        const bool linear = strcmp(all_models[i], "lumped") == 0; /* Eq. 22 is linear in the load */
+        assert_true(seen != linear);
     }
 }
 

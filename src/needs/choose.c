@@ -82,7 +82,7 @@ static dea_status stiffness_error(const dea_scene *scene, const dea_model *truth
     const dea_reduction nothing = {0};
     *change = (double)INFINITY;
     dea_status status = dea_surrogate_open(scene, truth, &s, &usable, error);
-    *largest = status == DEA_OK ? s.signal.largest : 0.0;
+    *largest = status == DEA_OK ? s.source.largest : 0.0;
     double *u = status == DEA_OK && usable ? malloc(2 * DEA_SURROGATE_POINTS * s.count * sizeof *u) : NULL;
     if (status == DEA_OK && usable && !u) {
         status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a model is chosen");

@@ -6,9 +6,12 @@
 
 #include "deaspice/needs.h"
 #include "drive/signal.h"
+#include "model/models.h"
 
 static const double tightest = 1e-12;    /* accuracy that the judge is asked for at the most [1] */
 static const double tight_enough = 1e-3; /* of the scene's accuracy: the smallest bounds are judged no better */
+static const double loose_enough = 0.1;  /* of the scene's accuracy: no judge is worse */
+static const double looser = 10.0;       /* from one try to the next */
 static const double missed = 0.01;       /* share of the largest static voltage's answer below which a peak counts as that */
 
 typedef struct judge {
@@ -81,25 +84,31 @@ static double difference(const judge *j, double least, double from)
     return fmax(u > 0.0 ? u / peak : 0.0, charge > 0.0 && charge_peak > 0.0 ? charge / charge_peak : 0.0);
 }
 
-/* The displacement under the largest voltage of the run [m], 0 where there is none. */
+/* The displacement under the largest voltage of the run [m], 0 where there is none; behind a series resistance under the voltage
+ * that goes with the largest charge of its samples. */
 static double static_peak(const judge *j)
 {
     dea_scene still = j->scene;
     dea_point point;
     dea_row row = dea_row_failed();
-    still.drive.voltage = j->signal.largest;
     dea_film_prepare(&still, &point.film);
     dea_point_place(&still, &point);
+    point.voltage = j->signal.largest;
+    double charge = still.drive.series_resistance > 0.0 ? 0.0 : (double)INFINITY;
+    for (size_t i = 0; i < j->layout.rows; i++) {
+        charge = fmax(charge, fabs(j->with[i].charge));
+    }
+    point.voltage = fmin(point.voltage, charge / dea_point_capacitance(&point));
     j->model->solve(&point, 1e-6, &row);
     return isfinite(row.displacement) ? fabs(row.displacement) : 0.0;
 }
 
-/* Each on top of those before it, as they were found. */
-static void measure(judge *j, const dea_omission *omissions, const dea_omission *judged, size_t count, double *changes)
+/* Each on top of those before it, as they were found; false where a run does not end well. */
+static bool measure(judge *j, const dea_omission *omissions, const dea_omission *judged, size_t count, double *changes)
 {
     const dea_reduction nothing = {.ring = (double)INFINITY};
-    const double least = missed * static_peak(j);
     bool sound = run(j, &nothing, j->with);
+    const double least = missed * static_peak(j);
     for (size_t i = 0; i < count && sound; i++) {
         const dea_reduction reduction = dea_needs_reduction(judged, i + 1);
         sound = run(j, &reduction, j->without);
@@ -109,6 +118,16 @@ static void measure(judge *j, const dea_omission *omissions, const dea_omission 
         dea_sample *before = j->with;
         j->with = j->without;
         j->without = before;
+    }
+    return sound;
+}
+
+/* Measures as finely as the judge can: what fails at a tight accuracy may well pass at a looser one. */
+static void measure_well(judge *j, const dea_omission *omissions, const dea_omission *judged, size_t count, double loosest,
+                         double *changes)
+{
+    while (!measure(j, omissions, judged, count, changes) && j->scene.accuracy * looser <= loosest) {
+        j->scene.accuracy *= looser;
     }
 }
 
@@ -121,8 +140,8 @@ static void as_judged(const dea_omission *omissions, size_t count, dea_omission 
     }
 }
 
-static dea_status measure_by(judge *j, const dea_omission *omissions, const dea_omission *judged, size_t count, double *changes,
-                             dea_error *error)
+static dea_status measure_by(judge *j, const dea_omission *omissions, const dea_omission *judged, size_t count, double loosest,
+                             double *changes, dea_error *error)
 {
     j->layout = dea_layout_of(&j->scene);
     j->with = malloc(j->layout.point_size);
@@ -135,7 +154,7 @@ static dea_status measure_by(judge *j, const dea_omission *omissions, const dea_
         status = j->engine->begin(&j->session, error);
     }
     if (status == DEA_OK) {
-        measure(j, omissions, judged, count, changes);
+        measure_well(j, omissions, judged, count, loosest, changes);
         j->engine->end(j->session);
     }
     return status;
@@ -157,8 +176,9 @@ dea_status dea_needs_measure(const dea_scene *scene, const dea_model *model, con
     if (needs->count == 0 || !appoint(&j, judged, needs->count)) {
         return DEA_OK;
     }
+    const dea_status status =
+        measure_by(&j, needs->omissions, judged, needs->count, loose_enough * scene->accuracy, changes, error);
     *noise = 2.0 * j.scene.accuracy;
-    const dea_status status = measure_by(&j, needs->omissions, judged, needs->count, changes, error);
     dea_signal_close(&j.signal);
     free(j.with);
     free(j.without);

@@ -74,13 +74,13 @@ static bool solve_with(planner *p, const dea_omission *omission)
     return dea_surrogate_solve(&p->surrogate, &reduction, p->next);
 }
 
-/* Leaves something out if it fits into the budget. */
+/* Leaves something out if it fits into the budget; a bound that it has already is for what the stand-in does not see. */
 static bool try(planner *p, dea_omission omission)
 {
     if (!pays(p, omission.part) || !solve_with(p, &omission)) {
         return false;
     }
-    omission.bound = change_of(p) + rounding;
+    omission.bound += change_of(p) + rounding;
     if (!(omission.bound <= one_share * p->left)) {
         return false;
     }
@@ -184,43 +184,34 @@ static void try_branches(planner *p)
     }
 }
 
-/* Behind R_s the film's voltage lags by R_s C, and the mean of its square by 3/2 of that; a jump reaches it as exp(-t/(R_s C)).
- */
+/* What the charge misses behind R_s: the film's voltage lags by R_s C behind a slope; a jump, or the last slope, reaches it as
+ * exp(-t/(R_s C)). */
 static double lag_at(const planner *p, double lag, size_t segment, size_t probe)
 {
     const dea_surrogate *s = &p->surrogate;
-    const dea_segment *here = &s->signal.segments[segment];
+    const dea_segment *here = &s->source.segments[segment];
+    const dea_segment rest = {.end = s->scene->transient.from_bias ? here->start : 0.0};
+    const dea_segment *before = segment > 0 ? here - 1 : &rest;
     const double time = dea_layout_place(s->scene, s->probes[probe]);
-    const double before = segment > 0 ? s->signal.segments[segment - 1].end : s->scene->transient.from_bias ? here->start : 0.0;
-    const double jump = fabs(here->start - before) * exp(-s->ages[probe] / lag);
-    double change = (2.0 * lag * fabs(dea_segment_slope(&s->signal, here, time)) + 2.0 * jump) / s->signal.largest;
-    for (int i = 0; i < s->point_count; i++) {
-        change = fmax(change, 1.5 * lag * fabs(p->now.v[(size_t)i * s->count + probe]) / p->peaks[i]);
-    }
-    /* a corner of the slope is still on its way too */
-    const double rise = segment > 0 ? fabs(s->signal.segments[segment - 1].end - s->signal.segments[segment - 1].start) : 0.0;
-    return change + 2.0 * rise / s->signal.largest * exp(-s->ages[probe] / lag);
+    const double on_the_way = fabs(here->start - before->end) + (segment > 0 ? fabs(before->end - before->start) : 0.0);
+    const double change = lag * fabs(dea_segment_slope(&s->source, here, time)) + on_the_way * exp(-s->ages[probe] / lag);
+    return 4.0 * change / s->largest;
 }
 
 static void try_series(planner *p)
 {
-    dea_surrogate *s = &p->surrogate;
-    const dea_drive *drive = &s->scene->drive;
+    const dea_surrogate *s = &p->surrogate;
+    const double leak = 2.0 * s->dynamics.series * s->dynamics.conductance; /* of the share of the voltage that it takes */
     const double lag = s->dynamics.series * s->capacitance;
-    double late = 0.0;
+    double late = leak;
     size_t segment = 0;
-    s->drag = s->dynamics.series;
-    const bool solved = pays(p, DEA_PART_SERIES) && dea_surrogate_solve(s, &p->reduction, p->next);
-    s->drag = 0.0;
-    for (size_t i = s->scene->transient.from_bias ? 0 : 1; i < s->count && solved; i++) { /* the first has no charge in any case */
-        segment = dea_signal_find(&s->signal, segment, dea_layout_place(s->scene, s->probes[i]));
-        late = fmax(late, lag_at(p, lag, segment, i));
+    /* the first sample of a film at rest has no charge in any case */
+    for (size_t i = s->scene->transient.from_bias ? 0 : 1; i < s->count; i++) {
+        segment = dea_signal_find(&s->source, segment, dea_layout_place(s->scene, s->probes[i]));
+        late = fmax(late, leak + lag_at(p, lag, segment, i));
     }
-    const double leak = isnan(drive->leakage_resistance) ? 0.0 : 2.0 * drive->series_resistance / drive->leakage_resistance;
-    const dea_omission omission = {.part = DEA_PART_SERIES,
-                                   .bound = solved ? 2.0 * (late + change_of(p) + leak) : (double)INFINITY};
-    if (omission.bound <= one_share * p->left) {
-        omit(p, omission);
+    if (late <= one_share * p->left) {
+        (void)try(p, (dea_omission){.part = DEA_PART_SERIES, .bound = late});
     }
 }
 
@@ -230,7 +221,7 @@ static void set_peaks(planner *p)
     const dea_surrogate *s = &p->surrogate;
     for (int i = 0; i < s->point_count; i++) {
         const dea_surrogate_point *point = &s->points[i];
-        p->peaks[i] = missed * fabs(point->push) * s->signal.largest * s->signal.largest / point->passive;
+        p->peaks[i] = missed * fabs(point->push) * s->largest * s->largest / point->passive;
         for (size_t k = 0; k < s->count; k++) {
             p->peaks[i] = fmax(p->peaks[i], fabs(p->now.u[(size_t)i * s->count + k]));
         }
@@ -298,7 +289,7 @@ dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const 
         return DEA_OK;
     }
     dea_status status = dea_surrogate_open(scene, model, &p.surrogate, &usable, error);
-    if (status == DEA_OK && usable && p.surrogate.signal.largest > 0.0) {
+    if (status == DEA_OK && usable) {
         p.safety = p.surrogate.dynamics.linear ? safe_linear : safe_nonlinear;
         status = plan(&p, error);
     }

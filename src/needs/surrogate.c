@@ -42,8 +42,8 @@ static bool place_probes(dea_surrogate *s)
 {
     const size_t rows = dea_layout_of(s->scene).rows;
     size_t first = 0; /* sees a jump at the start */
-    for (size_t i = 0; i < s->signal.count; i++) {
-        const dea_segment *segment = &s->signal.segments[i];
+    for (size_t i = 0; i < s->source.count; i++) {
+        const dea_segment *segment = &s->source.segments[i];
         const size_t last = sample_at(s->scene, rows, segment->to);
         size_t next = first;
         while (next <= last) {
@@ -73,7 +73,7 @@ static void add_point(dea_surrogate *s, double u, double voltage)
 static bool place_points(dea_surrogate *s)
 {
     double u;
-    const double largest = s->signal.largest;
+    const double largest = s->source.largest;
     if (!dea_dynamics_equilibrium(&s->dynamics, largest, &u)) {
         return false;
     }
@@ -86,6 +86,93 @@ static bool place_points(dea_surrogate *s)
            dea_dynamics_stiffness(&s->dynamics, u, largest, true) > 0.0;
 }
 
+/* Ages behind a corner, in time constants, between which a charging film's voltage counts as a straight line. */
+static const double nodes[] = {0.05, 0.1, 0.2, 0.35, 0.55, 0.8, 1.1, 1.5, 2.0, 2.7, 3.5, 4.5, 6.0, 8.0, 11.0, 15.0, 20.0, 30.0};
+
+static const double settled = 0.05; /* share of a sine in which its film has come to a steady state */
+
+enum { NODES = sizeof nodes / sizeof *nodes, MOST_SEGMENTS = 2000000 };
+
+static void add_line(dea_signal *film, double from, double to, double start, double end)
+{
+    if (to > from) {
+        film->segments[film->count++] = (dea_segment){from, to, start, end, false};
+    }
+}
+
+/* Voltage at age x of a segment a + b x of the source, both less what a leakage takes: y = a + b (x - T) + (y_0 - a + b T)
+ * e^-x/T. */
+static double charged(double a, double b, double first, double lag, double x)
+{
+    return a + b * (x - lag) + (first - a + b * lag) * exp(-x / lag);
+}
+
+/* Lines of one segment of the source; the voltage at its end. */
+static double charge_segment(dea_signal *film, const dea_segment *source, double first, double lag, double share)
+{
+    const double length = source->to - source->from;
+    const double a = share * source->start, b = share * (source->end - source->start) / length;
+    double from = source->from, y = first;
+    for (size_t k = 0; k < NODES && nodes[k] * lag < length; k++) {
+        const double to = source->from + nodes[k] * lag, next = charged(a, b, first, lag, nodes[k] * lag);
+        add_line(film, from, to, y, next);
+        from = to;
+        y = next;
+    }
+    const double last = charged(a, b, first, lag, length);
+    add_line(film, from, source->to, y, last);
+    return last;
+}
+
+/* The sine of a film that charges: smaller by 1/(1 + i w T), and late. */
+static void charge_sine(dea_sine *sine, double lag, double share)
+{
+    const double turn = 2.0 * DEA_PI * sine->frequency * lag;
+    sine->offset *= share;
+    sine->amplitude *= share / hypot(1.0, turn);
+    sine->phase -= atan(turn);
+}
+
+static void see_largest(dea_surrogate *s)
+{
+    const dea_signal *film = &s->film;
+    s->largest = 0.0;
+    for (size_t i = 0; i < film->count; i++) {
+        const dea_segment *segment = &film->segments[i];
+        s->largest = fmax(s->largest, segment->sine ? fabs(film->sine.offset) + fabs(film->sine.amplitude)
+                                                    : fmax(fabs(segment->start), fabs(segment->end)));
+    }
+}
+
+/* The voltage of a film that charges with that time constant to that share of the source's; false without the memory, or where a
+ * sine does not come to its steady state. */
+static bool charge_film(dea_surrogate *s, double lag, double share)
+{
+    dea_signal *film = &s->film;
+    double y = s->scene->transient.from_bias ? share * s->source.segments[0].start : 0.0;
+    *film = (dea_signal){.sine = s->source.sine};
+    charge_sine(&film->sine, lag, share);
+    if (s->source.count < MOST_SEGMENTS / (NODES + 1)) {
+        film->segments = malloc(s->source.count * (NODES + 1) * sizeof *film->segments);
+    }
+    for (size_t i = 0; film->segments && i < s->source.count; i++) {
+        const dea_segment *source = &s->source.segments[i];
+        if (!source->sine) {
+            y = charge_segment(film, source, y, lag, share);
+            continue;
+        }
+        dea_segment *segment = &film->segments[film->count++];
+        *segment = *source;
+        segment->start = dea_segment_voltage(film, source, source->from);
+        segment->end = y = dea_segment_voltage(film, source, source->to);
+        if (lag > settled * (source->to - source->from)) {
+            return false;
+        }
+    }
+    see_largest(s);
+    return film->segments != NULL && s->largest > 0.0;
+}
+
 dea_status dea_surrogate_open(const dea_scene *scene, const dea_model *model, dea_surrogate *s, bool *usable, dea_error *error)
 {
     dea_scene full = *scene; /* borrows what the scene owns */
@@ -94,7 +181,7 @@ dea_status dea_surrogate_open(const dea_scene *scene, const dea_model *model, de
     *usable = false;
     dea_status status = dea_dynamics_open(&full, model, &s->dynamics, error);
     if (status == DEA_OK) {
-        status = dea_signal_open(scene, &s->signal, error);
+        status = dea_signal_open(scene, &s->source, error);
     }
     if (status != DEA_OK) {
         return status;
@@ -103,14 +190,20 @@ dea_status dea_surrogate_open(const dea_scene *scene, const dea_model *model, de
     if (!s->walk || !place_probes(s)) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a run is planned");
     }
-    *usable = s->count > 0 && place_points(s);
+    s->largest = s->source.largest;
+    *usable = s->count > 0 && s->largest > 0.0 && place_points(s);
+    if (*usable && s->dynamics.series > 0.0) {
+        const double share = 1.0 / (1.0 + s->dynamics.series * s->dynamics.conductance);
+        *usable = charge_film(s, s->dynamics.series * s->capacitance * share, share);
+    }
     return DEA_OK;
 }
 
 void dea_surrogate_close(dea_surrogate *s)
 {
     dea_dynamics_close(&s->dynamics);
-    dea_signal_close(&s->signal);
+    dea_signal_close(&s->source);
+    dea_signal_close(&s->film);
     free(s->walk);
     free(s->probes);
     free(s->ages);
@@ -125,13 +218,14 @@ static void set_walk(dea_surrogate *s, const dea_reduction *reduction, const dea
     d.mass = reduction->mass ? 0.0 : d.mass;
     const double whole = 1.0 + d.held;
     const double slope = reduction->softening ? 0.0 : point->push_slope;
-    *s->walk = (dea_walk){.signal = &s->signal,
+    const bool charging = s->film.count > 0 && !reduction->series;
+    *s->walk = (dea_walk){.signal = charging ? &s->film : &s->source,
                           .every = s->scene->transient.every,
                           .from_bias = s->scene->transient.from_bias,
                           .chain = dea_walk_chain(&d, whole * point->viscous)};
     /* the current dC/du U v through R_s takes R_s of itself off the voltage, and so (dC/du U)^2 R_s v off the force */
-    const double transduction = 2.0 * point->push * s->signal.largest;
-    s->walk->chain.damping += s->drag * transduction * transduction;
+    const double transduction = 2.0 * point->push * s->largest;
+    s->walk->chain.damping += charging ? d.series * transduction * transduction : 0.0;
     s->walk->chain.stiffness = whole * point->passive - slope * point->square;
     s->walk->linear.softening = point->square > 0.0 || !s->dynamics.linear ? 0.0 : -slope;
     s->walk->linear.force = point->push;
@@ -141,15 +235,19 @@ static bool walk_probes(dea_surrogate *s, double *u, double *v)
 {
     dea_walk *walk = s->walk;
     size_t probe = 0;
-    for (size_t i = 0; i < s->signal.count; i++) {
-        const dea_segment *segment = &s->signal.segments[i];
+    for (size_t i = 0; i < walk->signal->count; i++) {
+        const dea_segment *segment = &walk->signal->segments[i];
         if (dea_walk_enter(walk, segment, NULL) != DEA_OK || walk->lost) {
             return false;
         }
         dea_course start;
         const dea_piece piece = dea_walk_piece(walk, segment, &start);
-        for (; probe < s->count && dea_layout_place(s->scene, s->probes[probe]) <= segment->to; probe++) {
-            const dea_motion motion = dea_walk_motion(walk, &piece, &start, s->ages[probe]);
+        for (; probe < s->count; probe++) {
+            const double time = dea_layout_place(s->scene, s->probes[probe]);
+            if (time > segment->to) {
+                break;
+            }
+            const dea_motion motion = dea_walk_motion(walk, &piece, &start, time - segment->from);
             u[probe] = motion.u;
             v[probe] = motion.v;
         }

@@ -1,6 +1,7 @@
 /* A linear stand-in for a moving scene, solved in closed form: what an element changes is the difference of two of its answers,
  * with the element and without. A film that is not linear is taken about rest and about its equilibrium under the largest
- * voltage. It sees the voltage of the source, which excites it at least as much as that behind a series resistance. */
+ * voltage. Behind a series resistance it charges with the time constant of its largest capacitance: a voltage of straight lines
+ * between points of that exponential, a sine of its steady state. */
 #ifndef DEA_SURROGATE_H
 #define DEA_SURROGATE_H
 
@@ -16,17 +17,17 @@ typedef struct dea_surrogate_point {
 } dea_surrogate_point;
 
 typedef struct dea_surrogate {
-    const dea_scene *scene; /* borrowed */
-    dea_dynamics dynamics;  /* owned, as all here: nothing left out */
-    dea_signal signal;
+    const dea_scene *scene;  /* borrowed */
+    dea_dynamics dynamics;   /* owned, as all here: nothing left out */
+    dea_signal source, film; /* voltage of the source; behind the series resistance, without one no segments */
     dea_walk *walk;
     size_t *probes; /* samples that are looked at */
     double *ages;   /* their times since the last corner of the voltage [s] */
     size_t count, room;
     dea_surrogate_point points[DEA_SURROGATE_POINTS];
     int point_count;
+    double largest;     /* |U| that the film sees over the run [V] */
     double capacitance; /* larger one of rest and of the loaded film [F] */
-    double drag;        /* set by the user: series resistance over which the film's own motion moves charge [Ohm], 0: none */
 } dea_surrogate;
 
 /* Answers at the probes, operating point after operating point: room for point_count * count. */

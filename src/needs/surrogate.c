@@ -86,6 +86,22 @@ static bool place_points(dea_surrogate *s)
            dea_dynamics_stiffness(&s->dynamics, u, largest, true) > 0.0;
 }
 
+/* The current dC/du U v through R takes R of itself off the voltage, and so a drag (dC/du U)^2 R/(1 + (w R C)^2) off a film that
+ * rings with w. */
+static void drag_points(dea_surrogate *s, double resistance)
+{
+    const int count = s->point_count;
+    for (int i = 0; i < count; i++) {
+        dea_surrogate_point *point = &s->points[i];
+        s->points[s->point_count++] = *point;
+        const double held = point->passive * (1.0 + s->dynamics.total_share);
+        const double omega = s->dynamics.mass > 0.0 ? sqrt(held / s->dynamics.mass) : 0.0;
+        const double transduction = 2.0 * point->push * s->largest;
+        const double turn = omega * resistance * s->capacitance;
+        point->drag = transduction * transduction * resistance / (1.0 + turn * turn);
+    }
+}
+
 /* Ages behind a corner, in time constants, between which a charging film's voltage counts as a straight line. */
 static const double nodes[] = {0.05, 0.1, 0.2, 0.35, 0.55, 0.8, 1.1, 1.5, 2.0, 2.7, 3.5, 4.5, 6.0, 8.0, 11.0, 15.0, 20.0, 30.0};
 
@@ -195,6 +211,7 @@ dea_status dea_surrogate_open(const dea_scene *scene, const dea_model *model, de
     if (*usable && s->dynamics.series > 0.0) {
         const double share = 1.0 / (1.0 + s->dynamics.series * s->dynamics.conductance);
         *usable = charge_film(s, s->dynamics.series * s->capacitance * share, share);
+        drag_points(s, s->dynamics.series * share);
     }
     return DEA_OK;
 }
@@ -223,9 +240,7 @@ static void set_walk(dea_surrogate *s, const dea_reduction *reduction, const dea
                           .every = s->scene->transient.every,
                           .from_bias = s->scene->transient.from_bias,
                           .chain = dea_walk_chain(&d, whole * point->viscous)};
-    /* the current dC/du U v through R_s takes R_s of itself off the voltage, and so (dC/du U)^2 R_s v off the force */
-    const double transduction = 2.0 * point->push * s->largest;
-    s->walk->chain.damping += charging ? d.series * transduction * transduction : 0.0;
+    s->walk->chain.damping += charging ? point->drag : 0.0;
     s->walk->chain.stiffness = whole * point->passive - slope * point->square;
     s->walk->linear.softening = point->square > 0.0 || !s->dynamics.linear ? 0.0 : -slope;
     s->walk->linear.force = point->push;

@@ -7,12 +7,14 @@
 
 #include "engine/direct/walk.h"
 
-enum { DEA_SURROGATE_POINTS = 2 };
+enum { DEA_SURROGATE_POINTS = 4 };
 
-/* An operating point. */
+/* An operating point. Behind a series resistance each stands twice: the current that a moving film draws damps it, by most under
+ * the largest voltage, and before the film is charged not at all. */
 typedef struct dea_surrogate_point {
     double passive, viscous; /* d(A S)/du and A S' of the film without held branches [N/m] */
     double push, push_slope; /* phi [N/V^2], dphi/du [N/m/V^2] */
+    double drag;             /* of that current [N s/m] */
     double square;           /* U^2 under which the voltage's stiffness counts as constant [V^2]; 0: it follows the voltage */
 } dea_surrogate_point;
 

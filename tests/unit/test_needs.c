@@ -147,10 +147,9 @@ static void a_series_resistance_is_left_out_where_nothing_shows_it(void **state)
     assert_false(leaves_out_series(&scene));
     scene.drive.waveform.step.on = 1.0; /* with one: it shows what was before */
     assert_true(leaves_out_series(&scene));
-    scene.material.density = 1080.0; /* a ring that it alone damps is over within milliseconds: */
-    assert_true(leaves_out_series(&scene));
-    scene.transient.every = 1e-3; /* which is seen now */
+    scene.material.density = 1080.0; /* a ring that it alone damps */
     assert_false(leaves_out_series(&scene));
+    scene.material.density = (double)NAN;
     scene.study = DEA_STUDY_AC;
     scene.ac = (dea_ac){.from = 1e-3, .to = 1e-2, .points_per_decade = 10, .bias = 4000.0};
     assert_false(leaves_out_series(&scene));

@@ -290,7 +290,8 @@ dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const 
     }
     dea_status status = dea_surrogate_open(scene, model, &p.surrogate, &usable, error);
     if (status == DEA_OK && usable) {
-        p.safety = p.surrogate.dynamics.linear ? safe_linear : safe_nonlinear;
+        const bool itself = p.surrogate.dynamics.linear && !(p.surrogate.dynamics.series > 0.0);
+        p.safety = itself ? safe_linear : safe_nonlinear;
         status = plan(&p, error);
     }
     dea_surrogate_close(&p.surrogate);

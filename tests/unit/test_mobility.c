@@ -562,6 +562,22 @@ static void frequency_responses_are_those_of_the_closed_form(void **state)
     }
 }
 
+/* Steps of a decade that rounding alone keeps from being whole. */
+static void no_frequency_is_lost_to_rounding(void **state)
+{
+    (void)state;
+    dea_scene scene = protocol("lumped");
+    scene.study = DEA_STUDY_AC;
+    for (int i = 0; i < 60; i++) {
+        const double from = 1748.7993 * (1.0 + 0.0137 * i);
+        scene.ac = (dea_ac){.from = from, .to = 58.83 * from, .points_per_decade = 7, .bias = 1000.0};
+        outcome o = run(&scene, "ngspice");
+        const dea_layout layout = dea_layout_of(&scene);
+        assert_int_equal(dea_layout_state(&layout, o.point), DEA_STATE_OK);
+        free(o.point);
+    }
+}
+
 /* A capacitor's phase of 1e-8 rad short of a right angle: the current is no difference of the voltages around the resistance. */
 static void a_large_resistance_keeps_the_phase_of_the_impedance(void **state)
 {
@@ -653,6 +669,7 @@ int main(void)
         cmocka_unit_test(error_falls_with_the_square_of_the_step),
         cmocka_unit_test(run_in_pieces_is_the_run_in_one),
         cmocka_unit_test(frequency_responses_are_those_of_the_closed_form),
+        cmocka_unit_test(no_frequency_is_lost_to_rounding),
         cmocka_unit_test(a_large_resistance_keeps_the_phase_of_the_impedance),
         cmocka_unit_test(a_damped_film_snaps_through),
         cmocka_unit_test(a_small_part_of_the_way_keeps_its_digits),

@@ -6,6 +6,9 @@
 #include "engine/ngspice/moving.h"
 #include "netlist/mobility.h"
 
+/* The library rounds the number of steps between two frequencies down: a last one that rounding leaves short would be lost. */
+static const double grid = 1e-13;
+
 /* Magnitude and phase [deg], -180 < phase <= 180. */
 static void polar(double re, double im, double *magnitude, double *phase)
 {
@@ -73,7 +76,7 @@ static dea_status run_band(const response *r, size_t first, size_t count, dea_er
     const film_port port = port_of(r->dynamics, &r->bias);
     const char *const names[] = {"lspring#branch", port.series ? "film" : "vsource#branch"};
     const dea_mobility_band band = {.from = dea_layout_place(r->scene, first),
-                                    .to = dea_layout_place(r->scene, first + count - 1),
+                                    .to = dea_layout_place(r->scene, first + count - 1) * (1.0 + grid),
                                     .points_per_decade = count > 1 ? r->scene->ac.points_per_decade : 0};
     const double stiffness = dea_dynamics_stiffness(r->dynamics, r->bias.u, r->bias.voltage, true);
     char *netlist = NULL;

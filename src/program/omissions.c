@@ -2,8 +2,8 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
+#include "engine/line.h"
 #include "output/label.h"
 #include "support/number.h"
 
@@ -52,10 +52,6 @@ const char *dea_omission_text(const dea_omission *omission, const dea_scene *sce
 dea_scene dea_scene_of_run(const dea_scene *scene, size_t number)
 {
     dea_scene placed = *scene;
-    size_t rest = number;
-    for (size_t i = scene->axis_count; i-- > 0; rest /= scene->axes[i].count) {
-        const double value = scene->axes[i].values[rest % scene->axes[i].count];
-        memcpy((char *)&placed + scene->axes[i].offset, &value, sizeof value);
-    }
+    dea_axes_place(&placed, number);
     return placed;
 }

@@ -315,14 +315,16 @@ static double resonance_of(dea_dynamics *d)
 
 /* A point of a netlist stands at a time of the run, which tells no two of them apart within an edge that is very short beside it:
  * refused where the film is as fast. */
-static dea_status can_tell_edges(const dea_signal *signal, const dea_pace *pace, dea_error *error)
+static dea_status can_tell_edges(const dea_route *route, const dea_pace *pace, dea_error *error)
 {
+    const dea_signal *signal = route->signal;
     for (size_t i = 0; i < signal->count; i++) {
         const dea_segment *s = &signal->segments[i];
         const double width = s->to - s->from;
         if (s->start != s->end && !s->sine && width < 1e4 * DBL_EPSILON * s->to && pace->fastest < 1e4 * width) {
             return dea_fail(error, DEA_ERROR_ENGINE,
-                            "an edge of %.3g s at %.9g s is too short beside its time for the steps of ngspice", width, s->from);
+                            "an edge of %.3g s at %.9g s is too short beside its time for the steps of ngspice",
+                            width / route->unit, s->from / route->unit);
         }
     }
     return DEA_OK;
@@ -341,7 +343,7 @@ static dea_status can_see_branches(const dea_route *route, dea_error *error)
         return DEA_OK;
     }
     return dea_fail(error, DEA_ERROR_ENGINE, "a branch of %.3g s in a run of %.3g s is too fast for the tolerances of ngspice",
-                    fastest, until);
+                    fastest / route->unit, until / route->unit);
 }
 
 /* Rounding of the library's times and of the fitted mass turns a ring by so much of its angle: measured on undamped rings. */
@@ -368,9 +370,10 @@ static dea_status run_on(dea_route *route, dea_sample *samples, dea_summary *sum
     dea_pieces pieces;
     levels l = {.error = INFINITY};
     pieces.pieces = NULL;
-    dea_status status = can_tell_edges(route->signal, &pace, error);
+    dea_status status = can_tell_edges(route, &pace, error);
     if (status == DEA_OK) {
-        status = dea_pieces_cut(route->signal, &pace, route->scene->accuracy, route->scene->reduction.ring, quiet, &pieces, error);
+        status =
+            dea_pieces_cut(route->signal, &pace, route->scene->accuracy, route->scene->reduction.ring, quiet, &pieces, error);
     }
     route->pieces = &pieces;
     route->omega = pace.omega;

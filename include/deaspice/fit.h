@@ -30,11 +30,18 @@ typedef struct dea_fit_data {
     size_t count, room; /**< points in use, points allocated */
 } dea_fit_data;
 
+/** A number of constants that was tried. */
+typedef struct dea_fit_trial {
+    double residual_relative; /**< as in dea_fit [1], NAN: not tried, or not determined by the data */
+    double p;                 /**< chance that noise gains as much by the last constant (F test) [1], NAN: not testable */
+} dea_fit_trial;
+
 /** Fitted constants and how good they are. */
 typedef struct dea_fit {
     int terms;                        /**< constants in use, 1 to DEA_YEOH_TERMS */
     double yeoh[DEA_YEOH_TERMS];      /**< C_i [Pa], 0 beyond terms */
-    double deviation[DEA_YEOH_TERMS]; /**< standard errors of C_i [Pa], NAN where points = terms */
+    double deviation[DEA_YEOH_TERMS]; /**< standard errors of C_i [Pa], given the terms; NAN where points = terms */
+    dea_fit_trial trials[DEA_YEOH_TERMS]; /**< 1 constant, 2, ... */
     double residual_rms;              /**< root mean square of (measured - fitted) [Pa] */
     double residual_relative;         /**< residual_rms over the rms of the measured stress [1] */
     double r_squared;                 /**< 1 - sum of squared residuals / sum of squared deviations from the mean [1] */
@@ -42,6 +49,7 @@ typedef struct dea_fit {
     size_t count[DEA_LOAD_COUNT];     /**< points of each load */
     double stretch_min, stretch_max;  /**< range of the data [1] */
     double unstable_stretch;          /**< smallest stretch of the range where a tangent modulus is not positive [1], NAN: none */
+    double unloads_from;              /**< largest stretch before the data go back by a fifth of their range [1], NAN: they do not */
 } dea_fit;
 
 /** Name of a load: "uniaxial", "equibiaxial", "unknown". */
@@ -69,9 +77,11 @@ DEA_API void dea_fit_data_free(dea_fit_data *data);
 
 /** Fits @p terms Yeoh constants to all points.
  *
+ * @param terms 1 to DEA_YEOH_TERMS; 0: the largest number whose last constant an F test finds significant at 5 %
  * @param relative weighs each point by 1/|stress|, or by 1/(1 % of the largest |stress|) where that is less: relative errors
  * count
- * @return DEA_OK, DEA_ERROR_USAGE (terms; the data does not determine the constants), DEA_ERROR_MEMORY
+ * @return DEA_OK, DEA_ERROR_USAGE (terms; the data does not determine the constants), DEA_ERROR_DATA (the stretches are percent
+ * or strain; C1 is not positive by two standard errors), DEA_ERROR_MEMORY
  */
 DEA_API dea_status dea_fit_yeoh(const dea_fit_data *data, int terms, bool relative, dea_fit *fit, dea_error *error);
 /** Nominal stress of the fitted material [Pa] at @p stretch under @p load. */
@@ -80,7 +90,7 @@ DEA_API double dea_fit_stress(const double yeoh[DEA_YEOH_TERMS], dea_load load, 
 /** One measured point of a relaxation test. */
 typedef struct dea_relaxation_point {
     double time;   /**< since the end of the ramp [s], >= 0 */
-    double stress; /**< at the held stretch, nominal or true [Pa], >= 0 */
+    double stress; /**< at the held stretch, nominal or true [Pa]; not below minus a tenth of the largest, which is noise about 0 */
 } dea_relaxation_point;
 
 /** One relaxation test; zeroed: a step without points. Owns its points; free with dea_relaxation_data_free(). */
@@ -104,6 +114,7 @@ typedef enum dea_relaxation_end {
     DEA_RELAXATION_EXACT,     /**< the residual is rounding already */
     DEA_RELAXATION_POINTS,    /**< the points determine no more constants */
     DEA_RELAXATION_LONG_TERM, /**< with the next one, no long-term share is left */
+    DEA_RELAXATION_TIME,      /**< the points do not tell the time of a branch that the ramp hides */
     DEA_RELAXATION_FULL       /**< DEA_RELAXATION_MOST branches */
 } dea_relaxation_end;
 
@@ -111,9 +122,9 @@ typedef enum dea_relaxation_end {
 typedef struct dea_relaxation {
     size_t prony_count;                                   /**< branches in use */
     dea_prony prony[DEA_RELAXATION_MOST];                 /**< of the instantaneous modulus, tau ascending */
-    dea_prony deviation[DEA_RELAXATION_MOST];             /**< their standard errors, NAN where points = constants */
+    dea_prony deviation[DEA_RELAXATION_MOST];             /**< their standard errors, NAN where the points do not tell them */
     double long_term;                                     /**< 1 - sum of g [1], > 0 */
-    double long_term_deviation;                           /**< its standard error [1], NAN where points = constants */
+    double long_term_deviation;                           /**< its standard error [1], NAN where the points do not tell it */
     double instantaneous;                                 /**< stress after an ideal step [Pa] */
     double residual_rms;                                  /**< root mean square of (measured - fitted) [Pa] */
     double residual_relative;                             /**< residual_rms over the rms of the measured stress [1] */
@@ -126,8 +137,8 @@ typedef struct dea_relaxation {
 
 /** Reads a relaxation test into @p data, which has no points yet; its ramp stays.
  *
- * CSV as dea_fit_read(), with one of `time_s`, `time_ms`, `time_min` (since the end of the ramp, increasing) and one of
- * `stress_Pa`, `stress_kPa`, `stress_MPa`.
+ * CSV as dea_fit_read(), with one of `time_s`, `time_ms`, `time_min` (since the end of the ramp, increasing; rows of
+ * equal time become their mean) and one of `stress_Pa`, `stress_kPa`, `stress_MPa`.
  * @return DEA_OK, DEA_ERROR_SCENE (message "file:line:column: ..."), DEA_ERROR_USAGE (has points), DEA_ERROR_IO,
  * DEA_ERROR_MEMORY; @p data has no points on DEA_ERROR_SCENE
  */
@@ -145,7 +156,7 @@ DEA_API void dea_relaxation_data_free(dea_relaxation_data *data);
  * @param branches 1 to DEA_RELAXATION_MOST; 0: as many as an F test finds significant at 5 %; never more than (points - 1)/2
  * @param relative as in dea_fit_yeoh()
  * @return DEA_OK (also without a branch: the stress does not relax), DEA_ERROR_USAGE (the stress grows, relaxes to nothing, or
- * does not determine the branches asked for), DEA_ERROR_MEMORY
+ * does not determine the branches asked for), DEA_ERROR_DATA (the stress rises first: the ramp is in the data), DEA_ERROR_MEMORY
  */
 DEA_API dea_status dea_fit_relaxation(const dea_relaxation_data *data, size_t branches, bool relative, dea_relaxation *fit,
                                       dea_error *error);

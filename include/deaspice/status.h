@@ -30,7 +30,8 @@ extern "C" {
     X(DEA_ERROR_MEMORY, -6, "out of memory")                      \
     X(DEA_ERROR_INTERRUPTED, -7, "interrupted")                   \
     X(DEA_ERROR_DISAGREE, -8, "the engines disagree")             \
-    X(DEA_ERROR_MISSING, -9, "a program or library is not installed")
+    X(DEA_ERROR_MISSING, -9, "a program or library is not installed") \
+    X(DEA_ERROR_DATA, -10, "the data give no result")
 
 typedef enum dea_status {
 #define X(name, value, text) name = value,

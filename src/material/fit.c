@@ -1,6 +1,6 @@
 /* Yeoh constants by linear least squares. The nominal stress is linear in C: P = sum C_i dP/dC_i, so with rows weighted by v and
  * columns scaled to length 1 the problem is min |A x - b|. The singular value decomposition A = U S V^T gives x = V S^-1 U^T b,
- * the covariance V S^-2 V^T sigma^2 and the condition number at once. */
+ * the covariance (fit_errors.h) and the condition number at once. */
 #include "deaspice/fit.h"
 
 #include <float.h>
@@ -9,11 +9,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "material/fit_errors.h"
+#include "material/fit_plausible.h"
+
 /* Condition number of the scaled columns beyond which the data does not tell the constants apart. */
 static const double condition_max = 1e7;
 
 /* The largest weight in a relative fit: that of a stress of 1 % of the largest. */
 static const double relative_floor = 0.01;
+
+/* Chance of a gain by noise up to which a constant counts as significant. */
+static const double significance = 0.05;
+
+/* Residual, as a share of the rms stress, that is rounding. */
+static const double rounding = 1e-9;
+
+/* Standard errors by which C1 must lie above 0: less would leave its sign to noise. */
+static const double sign_certain = 2.0;
 
 const char *dea_load_name(dea_load load)
 {
@@ -84,6 +96,7 @@ typedef struct problem {
     double scale[DEA_YEOH_TERMS];    /* length of the columns before scaling */
     double singular[DEA_YEOH_TERMS]; /* descending */
     double vt[DEA_YEOH_TERMS * DEA_YEOH_TERMS];
+    double squares; /* of the weighted residuals */
 } problem;
 
 static void problem_free(problem *p)
@@ -148,30 +161,40 @@ static dea_status problem_decompose(problem *p, dea_fit *fit, dea_error *error)
     return DEA_OK;
 }
 
-/* x_j = sum_k V_jk (u_k . b)/s_k; variance_j = sigma^2 sum_k (V_jk/s_k)^2; both back in the unscaled columns. */
-static void problem_solve(const problem *p, dea_fit *fit)
+/* x_j = sum_k V_jk (u_k . b)/s_k, back in the unscaled columns; b becomes the residual. */
+static void problem_solve(problem *p, dea_fit *fit)
 {
-    double projection[DEA_YEOH_TERMS] = {0.0}, inside[DEA_YEOH_TERMS] = {0.0}, sum = 0.0;
+    double projection[DEA_YEOH_TERMS] = {0.0};
     for (int k = 0; k < p->terms; k++) {
         for (size_t i = 0; i < p->rows; i++) {
             projection[k] += p->left[(size_t)k * p->rows + i] * p->right[i];
         }
     }
-    for (size_t i = 0; i < p->rows; i++) {
-        double residual = p->right[i];
-        for (int k = 0; k < p->terms; k++) {
-            residual -= p->left[(size_t)k * p->rows + i] * projection[k];
+    for (int k = 0; k < p->terms; k++) {
+        for (int j = 0; j < p->terms; j++) {
+            fit->yeoh[j] += p->vt[j * p->terms + k] / p->singular[k] * projection[k] / p->scale[j];
         }
-        sum += residual * residual;
+        for (size_t i = 0; i < p->rows; i++) {
+            p->right[i] -= p->left[(size_t)k * p->rows + i] * projection[k];
+        }
     }
-    for (int j = 0; j < p->terms; j++) {
-        for (int k = 0; k < p->terms; k++) {
-            const double share = p->vt[j * p->terms + k] / p->singular[k];
-            fit->yeoh[j] += share * projection[k] / p->scale[j];
-            inside[j] += share * share;
-        }
-        const double freedom = (double)p->rows - p->terms;
-        fit->deviation[j] = freedom > 0.0 ? sqrt(sum / freedom * inside[j]) / p->scale[j] : NAN;
+    for (size_t i = 0; i < p->rows; i++) {
+        p->squares += p->right[i] * p->right[i];
+    }
+}
+
+/* Standard errors of the constants; the residual is overwritten. */
+static void problem_spread(problem *p, dea_fit *fit)
+{
+    double alike[DEA_YEOH_TERMS * DEA_YEOH_TERMS], unlike[DEA_YEOH_TERMS * DEA_YEOH_TERMS];
+    const size_t terms = (size_t)p->terms;
+    const bool known = p->rows > terms;
+    if (known) {
+        dea_errors_covariances(&(dea_decomposed){p->rows, terms, p->left, p->singular, p->vt}, p->right, alike, unlike);
+    }
+    for (size_t j = 0; j < terms; j++) {
+        const size_t place = j * terms + j;
+        fit->deviation[j] = known ? sqrt(fmax(alike[place], unlike[place])) / p->scale[j] : NAN;
     }
 }
 
@@ -213,10 +236,7 @@ static void fit_walk(dea_fit *fit)
 
 static dea_status fit_examine(const dea_fit_data *data, int terms, dea_fit *fit, dea_error *error)
 {
-    if (terms < 1 || terms > DEA_YEOH_TERMS) {
-        return dea_fail(error, DEA_ERROR_USAGE, "%d Yeoh constants were asked for; accepted: 1 to %d", terms, DEA_YEOH_TERMS);
-    }
-    *fit = (dea_fit){.terms = terms, .stretch_min = INFINITY, .stretch_max = -INFINITY};
+    *fit = (dea_fit){.terms = terms, .stretch_min = INFINITY, .stretch_max = -INFINITY, .unloads_from = dea_plausible_turn(data)};
     size_t deformed = 0;
     for (size_t i = 0; i < data->count; i++) {
         const dea_fit_point *point = &data->points[i];
@@ -225,17 +245,18 @@ static dea_status fit_examine(const dea_fit_data *data, int terms, dea_fit *fit,
         fit->stretch_min = fmin(fit->stretch_min, point->stretch);
         fit->stretch_max = fmax(fit->stretch_max, point->stretch);
     }
-    if (deformed < (size_t)terms) {
-        return dea_fail(error, DEA_ERROR_USAGE, "%zu points with a stretch other than 1 do not determine %d Yeoh constants",
-                        deformed, terms);
+    for (int i = 0; i < DEA_YEOH_TERMS; i++) {
+        fit->trials[i] = (dea_fit_trial){NAN, NAN};
     }
-    if (!(stress_largest(data) > 0.0)) {
-        return dea_fail(error, DEA_ERROR_USAGE, "all %zu measured stresses are 0", data->count);
+    if (deformed < (size_t)terms) {
+        return dea_fail(error, DEA_ERROR_USAGE, "%zu points with a stretch other than 1 do not determine %d Yeoh constant%s",
+                        deformed, terms, terms == 1 ? "" : "s");
     }
     return DEA_OK;
 }
 
-dea_status dea_fit_yeoh(const dea_fit_data *data, int terms, bool relative, dea_fit *fit, dea_error *error)
+/* The best constants of that number; *squares: the weighted residuals, as a share of the weighted stresses. */
+static dea_status fit_terms(const dea_fit_data *data, int terms, bool relative, dea_fit *fit, double *squares, dea_error *error)
 {
     dea_status status = fit_examine(data, terms, fit, error);
     if (status != DEA_OK) {
@@ -247,10 +268,89 @@ dea_status dea_fit_yeoh(const dea_fit_data *data, int terms, bool relative, dea_
         status = problem_decompose(&p, fit, error);
     }
     if (status == DEA_OK) {
+        double all = 0.0;
+        for (size_t i = 0; i < p.rows; i++) {
+            all += p.right[i] * p.right[i];
+        }
         problem_solve(&p, fit);
+        *squares = fmax(p.squares / all, rounding * rounding);
+        problem_spread(&p, fit);
         fit_judge(data, fit);
-        fit_walk(fit);
     }
     problem_free(&p);
+    return status;
+}
+
+/* All numbers of constants up to @p most, each tested against one fewer; fits[i] has i + 1. Returns how many the data determine. */
+static dea_status fit_ladder(const dea_fit_data *data, int most, bool relative, dea_fit fits[DEA_YEOH_TERMS], int *determined,
+                             dea_error *error)
+{
+    double squares[DEA_YEOH_TERMS];
+    for (*determined = 0; *determined < most; ++*determined) {
+        const int i = *determined;
+        const dea_status status = fit_terms(data, i + 1, relative, &fits[i], &squares[i], error);
+        if (status != DEA_OK) {
+            return status == DEA_ERROR_USAGE && i > 0 ? DEA_OK : status;
+        }
+        if (i > 0) {
+            memcpy(fits[i].trials, fits[i - 1].trials, sizeof fits[i].trials);
+        }
+        const size_t freedom = data->count - (size_t)i - 1;
+        fits[i].trials[i] = (dea_fit_trial){fits[i].residual_relative, i > 0 ? dea_errors_chance(squares[i - 1], squares[i], freedom) : NAN};
+    }
+    return DEA_OK;
+}
+
+/* The largest number of constants whose last one is significant. */
+static int terms_choose(const dea_fit *last)
+{
+    int terms = last->terms;
+    while (terms > 1 && !(last->trials[terms - 1].p <= significance)) {
+        terms--;
+    }
+    return terms;
+}
+
+/* A film has a stiffness at rest: C1, half its shear modulus, is above 0 beyond doubt. */
+static dea_status sign_examine(const dea_fit *fit, dea_error *error)
+{
+    const double doubt = isfinite(fit->deviation[0]) ? sign_certain * fit->deviation[0] : 0.0;
+    if (fit->yeoh[0] > doubt) {
+        return DEA_OK;
+    }
+    return dea_fail(error, DEA_ERROR_DATA,
+                    "the data give no elasticity: C1, half the shear modulus at rest, is %.4g Pa +- %.3g Pa and has to be above 0; "
+                    "measure nearer to stretch 1, look at the columns, or fit fewer constants (--terms)",
+                    fit->yeoh[0], isfinite(fit->deviation[0]) ? fit->deviation[0] : 0.0);
+}
+
+dea_status dea_fit_yeoh(const dea_fit_data *data, int terms, bool relative, dea_fit *fit, dea_error *error)
+{
+    dea_fit fits[DEA_YEOH_TERMS];
+    dea_error refused = {0};
+    int determined = 0;
+    if (terms < 0 || terms > DEA_YEOH_TERMS) {
+        return dea_fail(error, DEA_ERROR_USAGE, "%d Yeoh constants were asked for; accepted: 1 to %d, 0 for as many as the data tell",
+                        terms, DEA_YEOH_TERMS);
+    }
+    if (!(stress_largest(data) > 0.0)) {
+        return dea_fail(error, DEA_ERROR_USAGE, "all %zu measured stresses are 0", data->count);
+    }
+    dea_status status = dea_plausible_stretches(data, error);
+    if (status == DEA_OK) {
+        status = fit_ladder(data, terms > 0 ? terms : DEA_YEOH_TERMS, relative, fits, &determined, &refused);
+    }
+    if (status == DEA_OK && determined < terms) {
+        status = refused.status;
+    }
+    if (refused.status == status && status != DEA_OK) {
+        return dea_fail(error, status, "%s", refused.message);
+    }
+    if (status == DEA_OK) {
+        *fit = fits[(terms > 0 ? terms : terms_choose(&fits[determined - 1])) - 1];
+        memcpy(fit->trials, fits[determined - 1].trials, sizeof fit->trials);
+        fit_walk(fit);
+        status = sign_examine(fit, error);
+    }
     return status;
 }

@@ -15,8 +15,6 @@ enum { PER_DECADE = 5, STARTS = 4, STEPS_MOST = 300 };
 /* Relaxation times are searched from the shortest interval of the data, divided by this, to the duration of the hold, times this.
  */
 static const double reach = 4.0;
-/* A branch faster than the ramp over this is lost in it, and its share could not be told from noise. */
-static const double ramp_reach = 40.0;
 /* The largest weight in a relative fit: that of a stress of 1 % of the largest. */
 static const double relative_floor = 0.01;
 
@@ -85,7 +83,7 @@ static void grid_fill(dea_held *held)
         interval = fmin(interval, points[i].time - points[i - 1].time);
     }
     const double hold = points[held->rows - 1].time - points[0].time;
-    const double seen = fmax(fmax(interval, points[0].time) / reach, held->data->ramp / ramp_reach);
+    const double seen = fmax(interval, points[0].time) / reach;
     held->log_min = log(fmin(seen, hold / reach));
     held->log_max = log(hold * reach);
     const double wanted = ceil((held->log_max - held->log_min) / log(10.0) * PER_DECADE) + 1.0;
@@ -150,18 +148,23 @@ void dea_branches_jacobian(const dea_held *held, const dea_branches *c, double *
     }
 }
 
+void dea_branches_residual(const dea_held *held, const dea_branches *c, const double *matrix, size_t rows, double *residual)
+{
+    memcpy(residual, held->right, held->rows * sizeof *residual);
+    for (size_t j = 0; j <= c->count; j++) {
+        for (size_t i = 0; i < held->rows; i++) {
+            residual[i] -= c->shares[j] * matrix[j * rows + i];
+        }
+    }
+}
+
 /* Solves (J, sqrt(damping) |J_j|) step = (residual, 0); held->step holds the result, a_inf, a_i and ln tau_i. */
 static bool step_solve(dea_held *held, const dea_branches *c, double damping)
 {
     const size_t columns = 2 * c->count + 1, rows = held->rows + columns;
     dea_branches_jacobian(held, c, held->matrix, rows);
     memset(held->step, 0, rows * sizeof *held->step);
-    memcpy(held->step, held->right, held->rows * sizeof *held->step);
-    for (size_t j = 0; j <= c->count; j++) {
-        for (size_t i = 0; i < held->rows; i++) {
-            held->step[i] -= c->shares[j] * held->matrix[j * rows + i];
-        }
-    }
+    dea_branches_residual(held, c, held->matrix, rows, held->step);
     for (size_t j = 0; j < columns; j++) {
         const double size = dea_squares(held->matrix + j * rows, held->rows);
         held->matrix[j * rows + held->rows + j] = size > 0.0 ? sqrt(damping * size) : 1.0;

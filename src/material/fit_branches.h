@@ -42,6 +42,8 @@ void dea_branches_solve(dea_held *held, dea_branches *branches);
 dea_branches dea_branches_next(dea_held *held, const dea_branches *less);
 /* Derivatives of the weighted model by a_inf, a_i and ln tau_i, with @p rows rows of room in a column; 0 for an unused branch. */
 void dea_branches_jacobian(const dea_held *held, const dea_branches *branches, double *matrix, size_t rows);
+/* Weighted residuals of the points, from that matrix. */
+void dea_branches_residual(const dea_held *held, const dea_branches *branches, const double *matrix, size_t rows, double *residual);
 /* Sum of squares. */
 double dea_squares(const double *values, size_t count);
 

@@ -10,6 +10,19 @@ static void print_number(FILE *stream, const char *before, double value, int dig
     fprintf(stream, "%s%s%s", before, dea_number_text(text, value, digits), after);
 }
 
+static void print_terms_tried(const dea_fit *fit, FILE *stream)
+{
+    fputs("# Tried, each against one constant less by an F test:\n", stream);
+    for (int i = 0; i < DEA_YEOH_TERMS && isfinite(fit->trials[i].residual_relative); i++) {
+        fprintf(stream, "#   %d constant%s rms error ", i + 1, i == 0 ? ": " : "s:");
+        print_number(stream, "", 100.0 * fit->trials[i].residual_relative, 4, " %");
+        if (isfinite(fit->trials[i].p)) {
+            print_number(stream, ", p = ", fit->trials[i].p, 3, "");
+        }
+        fputs(i + 1 == fit->terms ? "  <- taken\n" : "\n", stream);
+    }
+}
+
 static void print_yeoh_quality(const dea_fit *fit, FILE *stream)
 {
     static const char *const names[DEA_YEOH_TERMS] = {"C1", "C2", "C3"};
@@ -30,11 +43,13 @@ static void print_yeoh_quality(const dea_fit *fit, FILE *stream)
         }
     }
     fputs(".\n", stream);
+    print_terms_tried(fit, stream);
+    if (isfinite(fit->unloads_from)) {
+        print_number(stream, "# WARNING: the data unload from stretch ", fit->unloads_from, 5,
+                     " on: loading and unloading differ; the constants are of neither.\n");
+    }
     if (isfinite(fit->unstable_stretch)) {
         print_number(stream, "# WARNING: a tangent modulus is not positive from stretch ", fit->unstable_stretch, 5, " on.\n");
-    }
-    if (!(fit->yeoh[0] > 0.0)) {
-        fputs("# WARNING: C1 is not positive; a scene refuses these constants.\n", stream);
     }
 }
 

@@ -1,8 +1,10 @@
 /* Tables of stress over stretch and of stress over time. */
 #include "deaspice/fit.h"
 
+#include <math.h>
 #include <string.h>
 
+#include "material/fit_plausible.h"
 #include "material/fit_table.h"
 
 enum stretch_role { ROLE_STRETCH, ROLE_STRESS, ROLE_MODE };
@@ -57,7 +59,7 @@ static dea_status stretch_point(const dea_table *t, dea_fit_point *point)
             return status;
         }
         if (role == ROLE_STRETCH && !(point->stretch > 0.0)) {
-            return dea_table_fail(t, f->column, "a stretch is above 0 (1 is the film at rest):", f->text);
+            return dea_table_fail(t, f->column, "a stretch is above 0 (1 is the film at rest, 1 + strain):", f->text);
         }
     }
     return DEA_OK;
@@ -92,7 +94,8 @@ static dea_status stretch_parse(const char *text, size_t length, const char *nam
 {
     dea_table t = {.columns = stretch_columns,
                    .column_count = sizeof stretch_columns / sizeof *stretch_columns,
-                   .accepted = "stretch, stress_Pa, stress_kPa, stress_MPa, mode"};
+                   .accepted = "stretch, stress_Pa, stress_kPa, stress_MPa, mode",
+                   .advice = "stretch = 1 + displacement/length, stress = force/area of the specimen at rest"};
     dea_status status = dea_table_begin(&t, text, length, name, error);
     if (status == DEA_OK) {
         status = stretch_read(&t, user);
@@ -122,21 +125,54 @@ static dea_status relaxation_point(const dea_table *t, const dea_relaxation_data
         if (status != DEA_OK) {
             return status;
         }
-        if (!time && !(point->stress >= 0.0)) {
-            return dea_table_fail(t, f->column, "a stress is not negative, in compression too:", f->text);
-        }
         if (time && !(point->time >= 0.0)) {
             return dea_table_fail(t, f->column, "a time is not negative, it counts from the end of the ramp:", f->text);
         }
-        if (time && data->count > 0 && !(point->time > data->points[data->count - 1].time)) {
-            return dea_table_fail(t, f->column, "a time is later than that of the row above:", f->text);
+        if (time && data->count > 0 && !(point->time >= data->points[data->count - 1].time)) {
+            return dea_table_fail(t, f->column, "time does not increase:", f->text);
         }
+    }
+    return DEA_OK;
+}
+
+/* Adds a point; rows of equal time, as a rounded clock writes them, become their mean. *equal counts them. */
+static dea_status relaxation_add(dea_relaxation_data *data, dea_relaxation_point point, size_t *equal, dea_error *error)
+{
+    dea_relaxation_point *last = data->points + data->count - 1;
+    if (data->count == 0 || point.time > last->time) {
+        *equal = 1;
+        return dea_relaxation_add(data, point, error);
+    }
+    ++*equal;
+    last->stress += (point.stress - last->stress) / (double)*equal;
+    return DEA_OK;
+}
+
+/* The row of the lowest stress, and the largest stress. */
+typedef struct extremes {
+    size_t line;
+    double lowest, largest;
+} extremes;
+
+static dea_status relaxation_judge(dea_table *t, const dea_relaxation_data *data, const extremes *found)
+{
+    char problem[80];
+    if (data->count < DEA_RELAXATION_LEAST) {
+        snprintf(problem, sizeof problem, "%zu points; a relaxation test needs at least %d", data->count, DEA_RELAXATION_LEAST);
+        return dea_table_fail(t, 1, problem, NULL);
+    }
+    if (dea_plausible_negative(found->lowest, found->largest)) {
+        t->line = found->line;
+        snprintf(problem, sizeof problem, "a stress is not negative, in compression too: %.6g Pa", found->lowest);
+        return dea_table_fail(t, 1, problem, NULL);
     }
     return DEA_OK;
 }
 
 static dea_status relaxation_read(dea_table *t, dea_relaxation_data *data)
 {
+    extremes found = {0, INFINITY, 0.0};
+    size_t equal = 0;
     dea_status status = dea_table_header(t);
     if (status == DEA_OK && (!t->seen[ROLE_TIME] || !t->seen[ROLE_HELD_STRESS])) {
         status = dea_table_fail(
@@ -150,16 +186,14 @@ static dea_status relaxation_read(dea_table *t, dea_relaxation_data *data)
         }
         dea_relaxation_point point = {0};
         status = relaxation_point(t, data, &point);
+        found.line = point.stress < found.lowest ? t->line : found.line;
+        found.lowest = fmin(found.lowest, point.stress);
+        found.largest = fmax(found.largest, point.stress);
         if (status == DEA_OK) {
-            status = dea_relaxation_add(data, point, t->error);
+            status = relaxation_add(data, point, &equal, t->error);
         }
     }
-    if (status == DEA_OK && data->count < DEA_RELAXATION_LEAST) {
-        char problem[80];
-        snprintf(problem, sizeof problem, "%zu points; a relaxation test needs at least %d", data->count, DEA_RELAXATION_LEAST);
-        status = dea_table_fail(t, 1, problem, NULL);
-    }
-    return status;
+    return status == DEA_OK ? relaxation_judge(t, data, &found) : status;
 }
 
 static dea_status relaxation_parse(const char *text, size_t length, const char *name, void *user, dea_error *error)
@@ -167,7 +201,8 @@ static dea_status relaxation_parse(const char *text, size_t length, const char *
     dea_relaxation_data *data = user;
     dea_table t = {.columns = relaxation_columns,
                    .column_count = sizeof relaxation_columns / sizeof *relaxation_columns,
-                   .accepted = "time_s, time_ms, time_min, stress_Pa, stress_kPa, stress_MPa"};
+                   .accepted = "time_s, time_ms, time_min, stress_Pa, stress_kPa, stress_MPa",
+                   .advice = "time counts from the end of the ramp, stress = force/area of the specimen"};
     if (data->count > 0) {
         return dea_fail(error, DEA_ERROR_USAGE, "one relaxation test at a time");
     }

@@ -12,6 +12,8 @@
 #include <stdlib.h>
 
 #include "material/fit_branches.h"
+#include "material/fit_errors.h"
+#include "material/fit_plausible.h"
 
 /* Chance of a gain by noise up to which a branch counts as significant. */
 static const double significance = 0.05;
@@ -21,14 +23,18 @@ static const double growth_chance = 1e-3;
 static const double rounding = 1e-9;
 /* Long-term share below which nothing is left. */
 static const double long_term_least = 1e-6;
+/* Standard error of ln tau beyond which the points do not tell a time: the errors are those of the tangent of the model, and where it
+ * does not hold over three of them, they cover less than they say. */
+static const double log_certain = 0.3;
+/* A branch that is faster than the ramp by this has nearly all of its share in what the ramp hides. */
+static const double ramp_hides = 10.0;
 
 dea_status dea_relaxation_add(dea_relaxation_data *data, dea_relaxation_point point, dea_error *error)
 {
     const double last = data->count > 0 ? data->points[data->count - 1].time : -1.0;
-    if (!(point.time >= 0.0) || !isfinite(point.time) || !(point.time > last) || !(point.stress >= 0.0) ||
-        !isfinite(point.stress)) {
+    if (!(point.time >= 0.0) || !isfinite(point.time) || !(point.time > last) || !isfinite(point.stress)) {
         return dea_fail(error, DEA_ERROR_USAGE,
-                        "a point of a relaxation test needs a time >= 0 after the last and a stress >= 0");
+                        "a point of a relaxation test needs a time >= 0 after the last and a finite stress");
     }
     if (data->count == data->room) {
         const size_t room = data->room > 0 ? 2 * data->room : 64;
@@ -113,8 +119,82 @@ static void trial_note(const dea_held *held, dea_relaxation *fit, const dea_bran
     fit->trials[fit->trial_count++] = (dea_relaxation_trial){sqrt(residuals / squares), chance, long_term_of(c)};
 }
 
+/* Covariances of a_inf, a_i and ln tau_i, in the order of the Jacobian (fit_errors.h). */
+typedef struct covariances {
+    size_t columns;
+    double alike[DEA_BRANCHES_COLUMNS * DEA_BRANCHES_COLUMNS], unlike[DEA_BRANCHES_COLUMNS * DEA_BRANCHES_COLUMNS];
+} covariances;
+
+/* False where the Jacobian has no full rank, or no row is left to tell the noise. */
+static bool covariances_find(dea_held *held, const dea_branches *c, covariances *found)
+{
+    const size_t columns = 2 * c->count + 1;
+    double length[DEA_BRANCHES_COLUMNS], singular[DEA_BRANCHES_COLUMNS], vt[DEA_BRANCHES_COLUMNS * DEA_BRANCHES_COLUMNS],
+        rest[DEA_BRANCHES_COLUMNS], right;
+    found->columns = columns;
+    if (held->rows <= columns) {
+        return false;
+    }
+    dea_branches_jacobian(held, c, held->matrix, held->rows);
+    dea_branches_residual(held, c, held->matrix, held->rows, held->step);
+    for (size_t j = 0; j < columns; j++) {
+        length[j] = sqrt(dea_squares(held->matrix + j * held->rows, held->rows));
+        for (size_t i = 0; i < held->rows && length[j] > 0.0; i++) {
+            held->matrix[j * held->rows + i] /= length[j];
+        }
+    }
+    const lapack_int rows = (lapack_int)held->rows, order = (lapack_int)columns;
+    if (LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'O', 'S', rows, order, held->matrix, rows, singular, &right, 1, vt, order, rest) != 0 ||
+        !(singular[columns - 1] > 1e-12 * singular[0])) {
+        return false;
+    }
+    dea_errors_covariances(&(dea_decomposed){held->rows, columns, held->matrix, singular, vt}, held->step, found->alike,
+                           found->unlike);
+    for (size_t j = 0; j < columns * columns; j++) {
+        found->alike[j] /= length[j / columns] * length[j % columns];
+        found->unlike[j] /= length[j / columns] * length[j % columns];
+    }
+    return true;
+}
+
+/* Variance of the combination of the unknowns with these weights, one a column. */
+static double variance_of(const covariances *c, const double *weights)
+{
+    double alike = 0.0, unlike = 0.0;
+    for (size_t k = 0; k < c->columns; k++) {
+        for (size_t l = 0; l < c->columns; l++) {
+            alike += weights[k] * c->alike[k * c->columns + l] * weights[l];
+            unlike += weights[k] * c->unlike[k * c->columns + l] * weights[l];
+        }
+    }
+    return fmax(alike, unlike);
+}
+
+/* Standard error of ln tau of a branch. */
+static double log_deviation(const dea_branches *c, const covariances *found, size_t branch)
+{
+    double weights[DEA_BRANCHES_COLUMNS] = {0.0};
+    weights[c->count + 1 + branch] = 1.0;
+    return sqrt(variance_of(found, weights));
+}
+
+/* Whether the points tell the time of each branch, of those that are faster than @p below: not at the end of the range that is
+ * searched, and not too uncertain. Where as many constants as points leave no noise to judge by, they do. */
+static bool times_told(dea_held *held, const dea_branches *c, double below)
+{
+    covariances found;
+    const bool known = covariances_find(held, c, &found);
+    for (size_t k = 0; k < c->count; k++) {
+        const bool inside = c->logs[k] > held->log_min && c->logs[k] < held->log_max;
+        if (exp(c->logs[k]) < below && (!inside || (known && !(log_deviation(c, &found, k) <= log_certain)))) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /* Whether the fit goes on to @p more; where not, fit->end says why. */
-static bool branch_accept(const dea_branches *more, double chance, bool asked, dea_relaxation *fit)
+static bool branch_accept(dea_held *held, const dea_branches *more, double chance, bool asked, dea_relaxation *fit)
 {
     if (!asked && (isnan(chance) ? more->count > 1 : chance > significance)) {
         fit->end = isnan(chance) ? DEA_RELAXATION_POINTS : DEA_RELAXATION_TEST;
@@ -126,6 +206,12 @@ static bool branch_accept(const dea_branches *more, double chance, bool asked, d
     }
     if (!(long_term_of(more) > long_term_least)) {
         fit->end = DEA_RELAXATION_LONG_TERM;
+        return false;
+    }
+    /* A ramp of T leaves tau/T of a fast branch in the points, so that an uncertain time is an uncertain share, however small the
+     * stress that tells of it. */
+    if (!asked && !times_told(held, more, held->data->ramp / ramp_hides)) {
+        fit->end = DEA_RELAXATION_TIME;
         return false;
     }
     return true;
@@ -150,7 +236,7 @@ static dea_branches search_run(dea_held *held, size_t asked, dea_relaxation *fit
         const dea_branches more = dea_branches_next(held, &best);
         const double chance = gain_chance(held, &best, &more);
         trial_note(held, fit, &more, chance);
-        if (!branch_accept(&more, chance, asked > 0, fit)) {
+        if (!branch_accept(held, &more, chance, asked > 0, fit)) {
             break;
         }
         best = more;
@@ -171,55 +257,22 @@ static void branches_sort(dea_branches *c)
     }
 }
 
-/* Inverse W of the singular values and directions of the Jacobian, columns scaled to length 1: W = V S^-1 D^-1, so that the
- * covariance is sigma^2 W W^T. False where the Jacobian has no full rank. */
-static bool spread_find(dea_held *held, const dea_branches *c, double spread[DEA_BRANCHES_COLUMNS][DEA_BRANCHES_COLUMNS])
-{
-    const size_t columns = 2 * c->count + 1;
-    double length[DEA_BRANCHES_COLUMNS], singular[DEA_BRANCHES_COLUMNS], vt[DEA_BRANCHES_COLUMNS * DEA_BRANCHES_COLUMNS],
-        rest[DEA_BRANCHES_COLUMNS], left;
-    dea_branches_jacobian(held, c, held->matrix, held->rows);
-    for (size_t j = 0; j < columns; j++) {
-        length[j] = sqrt(dea_squares(held->matrix + j * held->rows, held->rows));
-        for (size_t i = 0; i < held->rows && length[j] > 0.0; i++) {
-            held->matrix[j * held->rows + i] /= length[j];
-        }
-    }
-    const lapack_int rows = (lapack_int)held->rows, order = (lapack_int)columns;
-    if (LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'N', 'S', rows, order, held->matrix, rows, singular, &left, 1, vt, order, rest) != 0 ||
-        !(singular[columns - 1] > 1e-12 * singular[0])) {
-        return false;
-    }
-    for (size_t j = 0; j < columns; j++) {
-        for (size_t k = 0; k < columns; k++) {
-            spread[j][k] = vt[j * columns + k] / singular[k] / length[j];
-        }
-    }
-    return true;
-}
-
 /* Standard errors. With A = a_inf + sum a_i, dg_j = (da_j - g_j sum_k da_k)/A and dtau = tau dln tau. */
 static void deviations_find(dea_held *held, const dea_branches *c, dea_relaxation *fit)
 {
-    const size_t columns = 2 * c->count + 1;
-    const double freedom = (double)held->rows - (double)columns, sum = fit->instantaneous / held->scale;
-    double spread[DEA_BRANCHES_COLUMNS][DEA_BRANCHES_COLUMNS], variance[DEA_BRANCHES_COLUMNS] = {0.0};
-    const bool known = freedom > 0.0 && spread_find(held, c, spread);
-    const double sigma = known ? sqrt(c->squares / freedom) : NAN;
-    for (size_t k = 0; k < columns && known; k++) {
-        double all = 0.0;
-        for (size_t j = 0; j <= c->count; j++) {
-            all += spread[j][k];
+    covariances found;
+    const double sum = fit->instantaneous / held->scale;
+    const bool told = fit->end != DEA_RELAXATION_TIME && times_told(held, c, INFINITY) && covariances_find(held, c, &found);
+    for (size_t j = 0; j <= c->count; j++) {
+        double weights[DEA_BRANCHES_COLUMNS] = {0.0};
+        for (size_t k = 0; k <= c->count; k++) {
+            weights[k] = ((k == j) - c->shares[j] / sum) / sum;
         }
-        for (size_t j = 0; j < columns; j++) {
-            const double change = j <= c->count ? (spread[j][k] - c->shares[j] / sum * all) / sum : spread[j][k];
-            variance[j] += change * change;
-        }
+        const double deviation = told ? sqrt(variance_of(&found, weights)) : NAN;
+        *(j == 0 ? &fit->long_term_deviation : &fit->deviation[j - 1].g) = deviation;
     }
-    fit->long_term_deviation = sigma * sqrt(variance[0]);
     for (size_t i = 0; i < c->count; i++) {
-        fit->deviation[i].g = sigma * sqrt(variance[i + 1]);
-        fit->deviation[i].tau = sigma * sqrt(variance[c->count + 1 + i]) * fit->prony[i].tau;
+        fit->deviation[i].tau = told ? log_deviation(c, &found, i) * fit->prony[i].tau : NAN;
     }
 }
 
@@ -295,7 +348,7 @@ static dea_status data_examine(const dea_relaxation_data *data, size_t branches,
     if (!(data->ramp >= 0.0) || !isfinite(data->ramp)) {
         return dea_fail(error, DEA_ERROR_USAGE, "the duration of the ramp is negative or not finite; 0 is an ideal step");
     }
-    return DEA_OK;
+    return dea_plausible_relaxation(data, error);
 }
 
 /* What speaks against the branches found, though the search went through. */
@@ -357,6 +410,7 @@ const char *dea_relaxation_reason(const dea_relaxation *fit)
         [DEA_RELAXATION_EXACT] = "the residual is rounding",
         [DEA_RELAXATION_POINTS] = "the points determine no more",
         [DEA_RELAXATION_LONG_TERM] = "one more leaves no long-term stress",
+        [DEA_RELAXATION_TIME] = "there is one that is faster than a tenth of the ramp, and the points do not tell its time",
         [DEA_RELAXATION_FULL] = "no fit has more",
     };
     return (unsigned)fit->end < sizeof reasons / sizeof *reasons ? reasons[fit->end] : "unknown";

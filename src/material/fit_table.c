@@ -128,9 +128,9 @@ static dea_status column_unknown(const dea_table *t, const dea_field *f)
             nearest = t->columns[i].name;
         }
     }
-    char problem[200];
-    snprintf(problem, sizeof problem, "unknown column%s%s%s (accepted: %s):", nearest ? " (did you mean " : "",
-             nearest ? nearest : "", nearest ? "?)" : "", t->accepted);
+    char problem[400];
+    snprintf(problem, sizeof problem, "unknown column%s%s%s (accepted: %s%s%s):", nearest ? " (did you mean " : "",
+             nearest ? nearest : "", nearest ? "?)" : "", t->accepted, nearest ? "" : "; ", nearest ? "" : t->advice);
     return dea_table_fail(t, f->column, problem, f->text);
 }
 

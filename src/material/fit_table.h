@@ -29,6 +29,7 @@ typedef struct dea_table {
     const dea_column *columns;     /* accepted ones */
     size_t column_count;
     const char *accepted; /* the same in words */
+    const char *advice;   /* how to get them from what test machines write */
     size_t line;
     char separator;
     dea_field fields[DEA_TABLE_FIELDS];
@@ -39,7 +40,7 @@ typedef struct dea_table {
     dea_error *error;
 } dea_table;
 
-/* Begins with a text; the caller ends it with dea_table_end(). @p table holds columns, column_count and accepted. */
+/* Begins with a text; the caller ends it with dea_table_end(). @p table holds columns, column_count, accepted and advice. */
 dea_status dea_table_begin(dea_table *table, const char *text, size_t length, const char *name, dea_error *error);
 /* Frees what the table owns. */
 void dea_table_end(dea_table *table);

@@ -48,8 +48,7 @@ static dea_status fit_stretch(const dea_arguments *arguments, work *w, dea_error
         status = dea_fit_read(arguments->operands[i].path, load_of(arguments->operands[i].mode), &w->stretch, error);
     }
     if (status == DEA_OK) {
-        const int terms = arguments->terms ? (int)arguments->terms : DEA_YEOH_TERMS;
-        status = dea_fit_yeoh(&w->stretch, terms, arguments->relative, &w->yeoh, error);
+        status = dea_fit_yeoh(&w->stretch, (int)arguments->terms, arguments->relative, &w->yeoh, error);
         w->yeoh_given = &w->yeoh;
     }
     return status;
@@ -99,6 +98,17 @@ static dea_status write_fit(const work *w, const char *path, dea_error *error)
 
 static void warn(const work *w)
 {
+    if (w->yeoh_given && !isnan(w->yeoh.unloads_from)) {
+        dea_complain("warning: the data unload from stretch %.4g on: loading and unloading differ; fit the loading alone",
+                     w->yeoh.unloads_from);
+    }
+    if (w->yeoh_given && w->yeoh.trials[w->yeoh.terms - 1].p > 0.05) {
+        dea_complain("warning: the data do not tell C%d from 0 (F test, p = %.2g)", w->yeoh.terms,
+                     w->yeoh.trials[w->yeoh.terms - 1].p);
+    }
+    if (w->prony_given && w->prony.prony_count > 0 && isnan(w->prony.long_term_deviation)) {
+        dea_complain("warning: the points do not tell the standard errors of these branches");
+    }
     if (w->yeoh_given && !isnan(w->yeoh.unstable_stretch)) {
         dea_complain("warning: a tangent modulus of the fit is not positive from stretch %.4g on", w->yeoh.unstable_stretch);
     }
@@ -183,7 +193,8 @@ const dea_command dea_command_fit = {
             "\n"
             "      --uniaxial FILE     data of a uniaxial test; may be repeated\n"
             "      --equibiaxial FILE  data of an equi-biaxial test; may be repeated\n"
-            "      --terms N           1 (neo-Hookean), 2 or 3 (default) constants\n"
+            "      --terms N           1 (neo-Hookean), 2 or 3 constants; default: as many as an F\n"
+            "                          test finds significant at 5 %\n"
             "      --relaxation FILE   data of a relaxation test: columns time_s (or time_ms,\n"
             "                          time_min; since the end of the ramp) and stress_Pa (...)\n"
             "      --ramp TIME         duration of the ramp before the hold, e.g. \"2 s\"; default:\n"

@@ -1,0 +1,17 @@
+/* What measured tables can be told to be from their numbers alone. */
+#ifndef DEA_MATERIAL_FIT_PLAUSIBLE_H
+#define DEA_MATERIAL_FIT_PLAUSIBLE_H
+
+#include "deaspice/fit.h"
+
+/* DEA_ERROR_DATA where the stretches look like percent or strain, or a compression has the sign of a tension. */
+dea_status dea_plausible_stretches(const dea_fit_data *data, dea_error *error);
+/* The largest stretch before the points go back by a fifth of their range in small steps, as an unloading film does; NAN: they do
+ * not. */
+double dea_plausible_turn(const dea_fit_data *data);
+/* Whether a stress is below 0 by more than noise about 0, @p largest being the largest of its test. */
+bool dea_plausible_negative(double stress, double largest);
+/* DEA_ERROR_DATA where the stress of a relaxation test rises before it falls, DEA_ERROR_USAGE where one is negative beyond noise. */
+dea_status dea_plausible_relaxation(const dea_relaxation_data *data, dea_error *error);
+
+#endif

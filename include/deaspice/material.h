@@ -35,6 +35,7 @@ typedef struct dea_material {
     double retardation;                 /**< Kelvin-Voigt retardation time [s], > 0, NAN: none */
     double modulus;                     /**< operating modulus Y [Pa], > 0, NAN: dsigma/dlambda at the pre-stretch */
     double breakdown;                   /**< breakdown strength [V/m], > 0, NAN: never breaks down */
+    double stretches[2];                /**< least and largest stretch that the data behind the constants cover [1], 0: not known */
     bool instantaneous;                 /**< elastic constants are instantaneous (true) or long-term (false, default) */
     size_t prony_count;                 /**< branches in use */
     dea_prony prony[DEA_PRONY_MAX];     /**< relaxation of the instantaneous modulus */

@@ -61,6 +61,8 @@ static void print_yeoh(const dea_fit *fit, FILE *stream)
         print_number(stream, before[i], fit->yeoh[i], 8, " Pa");
     }
     fputs("}\n", stream);
+    print_number(stream, "stretches: [", fmin(fit->stretch_min, 1.0), 6, "");
+    print_number(stream, ", ", fmax(fit->stretch_max, 1.0), 6, "]  # that the data cover\n");
 }
 
 static void print_trials(const dea_relaxation *fit, FILE *stream)

@@ -148,11 +148,21 @@ static dea_status relaxation_add(dea_relaxation_data *data, dea_relaxation_point
     return DEA_OK;
 }
 
-/* The row of the lowest stress, and the largest stress. */
+/* The lowest stress with its place, and the largest one. */
 typedef struct extremes {
-    size_t line;
+    size_t line, column;
     double lowest, largest;
 } extremes;
+
+static void extremes_take(extremes *found, const dea_table *t, double stress)
+{
+    if (stress < found->lowest) {
+        found->lowest = stress;
+        found->line = t->line;
+        found->column = t->fields[t->fields[0].holds->role == ROLE_HELD_STRESS ? 0 : 1].column;
+    }
+    found->largest = fmax(found->largest, stress);
+}
 
 static dea_status relaxation_judge(dea_table *t, const dea_relaxation_data *data, const extremes *found)
 {
@@ -164,14 +174,14 @@ static dea_status relaxation_judge(dea_table *t, const dea_relaxation_data *data
     if (dea_plausible_negative(found->lowest, found->largest)) {
         t->line = found->line;
         snprintf(problem, sizeof problem, "a stress is not negative, in compression too: %.6g Pa", found->lowest);
-        return dea_table_fail(t, 1, problem, NULL);
+        return dea_table_fail(t, found->column, problem, NULL);
     }
     return DEA_OK;
 }
 
 static dea_status relaxation_read(dea_table *t, dea_relaxation_data *data)
 {
-    extremes found = {0, INFINITY, 0.0};
+    extremes found = {.lowest = INFINITY};
     size_t equal = 0;
     dea_status status = dea_table_header(t);
     if (status == DEA_OK && (!t->seen[ROLE_TIME] || !t->seen[ROLE_HELD_STRESS])) {
@@ -186,10 +196,8 @@ static dea_status relaxation_read(dea_table *t, dea_relaxation_data *data)
         }
         dea_relaxation_point point = {0};
         status = relaxation_point(t, data, &point);
-        found.line = point.stress < found.lowest ? t->line : found.line;
-        found.lowest = fmin(found.lowest, point.stress);
-        found.largest = fmax(found.largest, point.stress);
         if (status == DEA_OK) {
+            extremes_take(&found, t, point.stress);
             status = relaxation_add(data, point, &equal, t->error);
         }
     }

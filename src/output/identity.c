@@ -81,6 +81,7 @@ static void put_lists(FILE *out, const dea_scene *scene)
     const dea_transient *transient = &scene->transient;
     const dea_waveform *wave = &scene->drive.waveform;
     put_numbers(out, "material.prony", &material->prony[0].g, 2 * material->prony_count);
+    put_numbers(out, "material.stretches", material->stretches, 2);
     fprintf(out, "material.moduli=%s\n", material->instantaneous ? "instantaneous" : "long-term");
     fprintf(out, "drive.waveform.kind=%d\n", (int)wave->kind);
     put_numbers(out, "drive.waveform.times", wave->times, wave->point_count);

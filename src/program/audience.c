@@ -102,6 +102,9 @@ dea_exit dea_audience_tell(const dea_arguments *arguments, const dea_engine *eng
     if (!arguments->quiet && (arguments->output || arguments->plot || isatty(STDERR_FILENO))) {
         dea_findings_print(findings, engine, seconds);
     }
+    if (!arguments->quiet) {
+        dea_covered_warn(&findings->covered, findings->scene);
+    }
     if (failed > 0) {
         dea_complain("%zu %s were not solved", failed, findings->scene->study == DEA_STUDY_SWEEP ? "points" : "rows");
     }

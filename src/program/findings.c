@@ -109,6 +109,7 @@ void dea_findings_take(dea_findings *findings, size_t first, const void *points,
     const dea_layout *layout = &findings->layout;
     for (size_t i = 0; i < count; i++) {
         const char *point = (const char *)points + i * layout->point_size;
+        dea_covered_take(&findings->covered, findings->scene, layout, first + i, point);
         for (size_t k = 0; k < layout->rows; k++) {
             findings->states[dea_layout_state(layout, point + k * layout->row_size)]++;
         }

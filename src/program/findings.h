@@ -8,6 +8,7 @@
 
 #include "deaspice/engine.h"
 #include "deaspice/measures.h"
+#include "program/covered.h"
 
 typedef struct dea_findings {
     const dea_scene *scene;
@@ -24,6 +25,7 @@ typedef struct dea_findings {
     dea_summary summary;            /**< of the last transient, as the edges */
     dea_edge_answer edges[DEA_EDGES];
     size_t edge_count;
+    dea_covered covered; /**< of stretches, against the data of the material */
     dea_band band; /**< of the last frequency response */
 } dea_findings;
 

@@ -61,6 +61,7 @@ static const dea_key keys[] = {
     OTHER("material", dea_read_material, "a built-in name, the path of a material file, or a mapping"),
     OTHER("material.base", dea_read_later, "a built-in name or the path of a material file"),
     OTHER("material.source", dea_read_source, "one line of text, at most 255 bytes"),
+    OTHER("material.stretches", dea_read_stretches, "the stretches that the data cover, e.g. [1, 2]"),
     OTHER("material.yeoh", dea_read_mapping, "a mapping with C1, C2, C3, e.g. {C1: 178426 Pa}"),
     SCALAR("material.yeoh.C1", material.yeoh[0], "Pa", "_Pa", 0, INFINITY, true, DEA_KEY_BOTH, 1,
            "a modulus > 0, e.g. 178426 Pa"),

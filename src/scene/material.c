@@ -25,6 +25,9 @@ static dea_status mapping_read(dea_reader *reader, const dea_node *node)
         memcpy(material->source, source, sizeof source);
     }
     snprintf(material->name, sizeof material->name, "%s", "scene");
+    if (dea_tree_child(node, "yeoh")) { /* other constants than the base has data for */
+        memset(material->stretches, 0, sizeof material->stretches);
+    }
     return dea_reader_children(reader, "material", node);
 }
 
@@ -128,6 +131,24 @@ dea_status dea_read_source(dea_reader *reader, const dea_ref *ref, const dea_nod
     }
     snprintf(material->source, sizeof material->source, "%s", node->text);
     return DEA_OK;
+}
+
+dea_status dea_read_stretches(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    static const dea_key stretch = {.path = "material.stretches",
+                                    .unit = "1",
+                                    .high = INFINITY,
+                                    .open = true,
+                                    .kinds = DEA_KEY_BOTH,
+                                    .accepted = "two stretches > 0, e.g. [1, 2]"};
+    const dea_ref number = {.key = &stretch, .path = "material.stretches"};
+    double *range = reader->scene->material.stretches;
+    if (node->kind != DEA_NODE_SEQUENCE || node->count != 2) {
+        return dea_reader_refuse(reader, ref, node, "not a pair of stretches");
+    }
+    dea_status status = dea_reader_number(reader, &number, node->first, &range[0]);
+    status = status ? status : dea_reader_number(reader, &number, node->last, &range[1]);
+    return status || range[0] < range[1] ? status : dea_reader_refuse(reader, &number, node->last, "not above the first");
 }
 
 dea_status dea_read_permittivity(dea_reader *reader, const dea_ref *ref, const dea_node *node)

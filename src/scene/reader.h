@@ -70,6 +70,7 @@ dea_status dea_read_model(dea_reader *reader, const dea_ref *ref, const dea_node
 dea_status dea_read_later(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_material(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_source(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_stretches(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_permittivity(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_prony(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_moduli(dea_reader *reader, const dea_ref *ref, const dea_node *node);

@@ -829,7 +829,7 @@ static void bad_relaxation_tables_are_named_by_line_and_column(void **state)
         {"time_s,time_ms,stress_Pa\n", "hold.csv:1:8: a second column"},
         {"time_s,stress_Pa\n0,3\n1,2\n", "hold.csv:3:1: 2 points; a relaxation test needs at least 3"},
         {"time_s,stress_Pa\n", "hold.csv:1:1: 0 points"},
-        {"time_s,stress_Pa\n0,3\n1,-2\n2,1\n", "hold.csv:3:1: a stress is not negative, in compression too: -2 Pa"},
+        {"time_s,stress_Pa\n0,3\n1,-2\n2,1\n", "hold.csv:3:3: a stress is not negative, in compression too: -2 Pa"},
         {"time_s,stress_Pa\n-1,3\n1,2\n2,1\n", "hold.csv:2:1: a time is not negative"},
         {"time_s,stress_Pa\n0,3\n1,2\n1,1\n", "2 points"},
         {"time_s,stress_Pa\n0,3\n2,2\n1,1\n", "hold.csv:4:1: time does not increase: \"1\""},

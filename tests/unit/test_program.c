@@ -480,7 +480,7 @@ static void bad_relaxation_is_named_and_ends_with_2(void **state)
     static const struct {
         const char *text, *says;
     } files[] = {
-        {"time_s,stress_Pa\n0,3\n1,-2\n2,1\n", "bad.csv:3:3: "}, {"time_s,stress_Pa\n0,3\n0,2\n2,1\n", "bad.csv:3:1: "},
+        {"time_s,stress_Pa\n0,3\n1,-2\n2,1\n", "bad.csv:3:3: "}, {"time_s,stress_Pa\n1,3\n0,2\n2,1\n", "bad.csv:3:1: "},
         {"time_s,stress_Pa\n0,3\n1,2\n", "bad.csv:3:1: "},       {"time_s,stress_Pa\n0,3\n1,nan\n2,1\n", "bad.csv:3:3: "},
         {"time_s,stress_Pa\n0,3\n1,soft\n", "bad.csv:3:3: "},    {"time_s,stress_Pa\n0,1\n1,2\n2,3\n", "the stress grows"},
     };
@@ -503,6 +503,37 @@ static void bad_relaxation_is_named_and_ends_with_2(void **state)
     assert_non_null(strstr(last.err, "--ramp goes with --relaxation"));
     RUN("fit");
     assert_int_equal(last.status, 2);
+}
+
+static void fit_without_a_result_leaves_no_file(void **state)
+{
+    (void)state;
+    write_file("percent.csv", "stretch,stress_kPa\n110,56.9\n120,108.2\n130,157\n150,255\n180,417\n200,553\n");
+    RUN("fit", "--uniaxial", "percent.csv", "-o", "none.yaml");
+    assert_int_equal(last.status, 1);
+    assert_non_null(strstr(last.err, "look like percent"));
+    assert_false(exists("none.yaml"));
+}
+
+static void stretch_beyond_the_data_is_told(void **state)
+{
+    static const char *const inside = "study.sweep.prestretch=[1.1, 1.15]", *const outside = "study.sweep.prestretch=[1.1, 1.4, 1.5]";
+    (void)state;
+    write_file("near.csv", "stretch,stress_kPa\n1.05,32.3\n1.1,60.9\n1.15,86.7\n1.2,110.8\n");
+    RUN("fit", "--uniaxial", "near.csv", "-o", "near.yaml");
+    assert_int_equal(last.status, 0);
+    write_file("far.yaml", "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+                           "material: {base: ./near.yaml, permittivity: 2.8}\ndrive: {voltage: 500 V}\nmodel: lumped\n"
+                           "study: {sweep: {}}\n");
+    RUN("run", "far.yaml", "--engine", "direct", "--set", inside);
+    assert_int_equal(last.status, 0);
+    assert_null(strstr(last.err, "warning"));
+    RUN("run", "far.yaml", "--engine", "direct", "--set", outside);
+    assert_int_equal(last.status, 0);
+    assert_non_null(strstr(last.err, "cover stretches 1 to 1.2, the film has"));
+    assert_non_null(strstr(last.err, "at prestretch = 1.5, and 1 other point beyond"));
+    RUN("run", "far.yaml", "--engine", "direct", "--set", outside, "--set", "material.yeoh={C1: 90 kPa}");
+    assert_null(strstr(last.err, "warning"));
 }
 
 static void sleep_ms(long ms)
@@ -600,6 +631,8 @@ int main(void)
         cmocka_unit_test(disagreement_exits_with_three),
         cmocka_unit_test(materials_are_listed_and_shown),
         cmocka_unit_test(fit_recovers_the_material_of_a_curve),
+        cmocka_unit_test(fit_without_a_result_leaves_no_file),
+        cmocka_unit_test(stretch_beyond_the_data_is_told),
         cmocka_unit_test(relaxation_gives_the_branches_of_a_material),
         cmocka_unit_test(bad_relaxation_is_named_and_ends_with_2),
         cmocka_unit_test(signal_ends_the_run_and_leaves_nothing),

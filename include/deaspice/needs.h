@@ -31,7 +31,8 @@ typedef struct dea_needs {
     dea_omission omissions[DEA_OMISSIONS];
     size_t count;
     double bound;     /**< sum of theirs [1], below accuracy/4 */
-    double resonance; /**< first resonance of the relaxed film at rest [Hz], NAN without mass or where nothing can be told */
+    double resonance; /**< of the free film [Hz] and its decay [1/s], as in dea_summary; NAN also where nothing can be told */
+    double decay;
 } dea_needs;
 
 /** Finds what a transient leaves out; nothing for other studies and for parts that cost the engine nothing. All axes of @p scene

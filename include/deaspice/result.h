@@ -75,7 +75,8 @@ typedef struct dea_summary {
     double kinetic;
     double dissipated; /**< in dampers, branches and resistances */
     double residual;   /**< of the balance of these, relative to the largest of them on the way [1] */
-    double resonance;  /**< first resonance of the relaxed film at rest [Hz], NAN without mass */
+    double resonance;  /**< of the damped swing of the free film, at rest and 0 V [Hz]; NAN: it does not swing */
+    double decay;      /**< of that swing [1/s], 0: undamped; NAN: none */
 } dea_summary;
 
 /** One frequency of an AC study. */

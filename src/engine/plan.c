@@ -2,6 +2,7 @@
 
 #include "deaspice/needs.h"
 #include "engine/line.h"
+#include "network/swing.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -169,6 +170,15 @@ static void doubt_balance(const dea_scene *scene, const dea_summary *summary, de
             summary->residual);
 }
 
+/* The swing of the film with all that a run may leave out, unless the engine has found it in its own way. */
+static void tell_swing(dea_swing swing, dea_summary *summary)
+{
+    if (isnan(summary->resonance)) {
+        summary->resonance = swing.frequency;
+        summary->decay = swing.decay;
+    }
+}
+
 /* One transient, without what it does not need: the engine gets what accuracy that leaves. */
 static dea_status run_transient(const dea_plan *plan, void *session, dea_scene *here, const dea_model *model, void *result,
                                 dea_error *error)
@@ -178,7 +188,9 @@ static dea_status run_transient(const dea_plan *plan, void *session, dea_scene *
     dea_needs needs;
     if (here->full) {
         here->reduction.ring = (double)INFINITY;
-        return engine->transient(session, here, model, result, summary, error);
+        const dea_status whole = engine->transient(session, here, model, result, summary, error);
+        tell_swing(dea_swing_free(here, model), summary);
+        return whole;
     }
     dea_status status = dea_needs_find(here, model, engine, &needs, error);
     if (status == DEA_OK) {
@@ -186,7 +198,7 @@ static dea_status run_transient(const dea_plan *plan, void *session, dea_scene *
         here->accuracy -= needs.bound;
         status = engine->transient(session, here, model, result, summary, error);
     }
-    summary->resonance = isnan(summary->resonance) ? needs.resonance : summary->resonance;
+    tell_swing((dea_swing){needs.resonance, needs.decay}, summary);
     summary->omitted = needs.bound;
     summary->error += needs.bound;
     return status;

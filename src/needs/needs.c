@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "needs/surrogate.h"
+#include "network/swing.h"
 
 static const double budget = 0.25;     /* of the accuracy: all omissions */
 static const double one_share = 0.5;   /* most that one omission takes of what is left of it */
@@ -267,9 +268,6 @@ static dea_status plan(planner *p, dea_error *error)
     if (status != DEA_OK) {
         return status;
     }
-    if (p->surrogate.dynamics.mass > 0.0) {
-        p->needs->resonance = omega_of(&p->surrogate) / (2.0 * DEA_PI);
-    }
     double *room = p->now.u;
     if (dea_surrogate_solve(&p->surrogate, &p->reduction, p->now)) {
         set_peaks(p);
@@ -284,11 +282,16 @@ dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const 
 {
     planner p = {.engine = engine, .needs = needs, .left = budget * scene->accuracy};
     bool usable;
-    *needs = (dea_needs){.resonance = (double)NAN};
+    *needs = (dea_needs){.resonance = (double)NAN, .decay = (double)NAN};
     if (scene->study != DEA_STUDY_TRANSIENT || engine->omits == 0) {
         return DEA_OK;
     }
     dea_status status = dea_surrogate_open(scene, model, &p.surrogate, &usable, error);
+    if (status == DEA_OK) {
+        const dea_swing swing = dea_swing_of(&p.surrogate.dynamics, 0.0, 0.0);
+        needs->resonance = swing.frequency;
+        needs->decay = swing.decay;
+    }
     if (status == DEA_OK && usable) {
         const bool itself = p.surrogate.dynamics.linear && !(p.surrogate.dynamics.series > 0.0);
         p.safety = itself ? safe_linear : safe_nonlinear;

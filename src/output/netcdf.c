@@ -63,7 +63,7 @@ static const figure summaries[SUMMARIES] = {
     {"kinetic_energy_J", "change of the kinetic energy", "J", offsetof(dea_summary, kinetic)},
     {"dissipated_energy_J", "energy dissipated in dampers, branches and resistances", "J", offsetof(dea_summary, dissipated)},
     {"energy_residual", "residual of the energy balance, relative to the largest energy", "1", offsetof(dea_summary, residual)},
-    {"resonance_Hz", "first resonance of the relaxed film at rest", "Hz", offsetof(dea_summary, resonance)},
+    {"resonance_Hz", "damped swing of the free film", "Hz", offsetof(dea_summary, resonance)},
 };
 
 static const figure averages[AVERAGES] = {

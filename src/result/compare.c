@@ -50,6 +50,20 @@ static double value_of(const dea_comparison *comparison, const char *row, size_t
     return value;
 }
 
+/* In frequency: what 1 V would do to the film at rest. Without a bias there is no response at all, whatever its rounding. */
+static void set_least_response(dea_comparison *comparison)
+{
+    dea_dynamics dynamics;
+    if (dea_dynamics_open(comparison->scene, comparison->scene->models[0], &dynamics, NULL) == DEA_OK) {
+        const dea_response swing = {.displacement = dea_dynamics_scale(&dynamics, 1.0)};
+        for (size_t c = 0; c < comparison->column_count; c++) {
+            const bool angle = comparison->columns[c].measure == DEA_OVER_RADIAN;
+            comparison->least[c] = angle ? 0.0 : value_of(comparison, (const char *)&swing, c);
+        }
+    }
+    dea_dynamics_close(&dynamics);
+}
+
 /* A hundredth of what the largest voltage of the run would do at rest. */
 static void set_least(dea_comparison *comparison)
 {
@@ -104,6 +118,18 @@ static double difference(dea_measure measure, double a, double b, double scale, 
     return isfinite(gap) ? gap / over : (double)INFINITY;
 }
 
+/* How much the phase of a number counts: that of one that is negligible beside the largest means nothing, that of a zero is any. Its
+ * magnitude is the column before. */
+static double weight_of(const dea_comparison *comparison, const char *row, size_t number)
+{
+    if (comparison->columns[number].measure != DEA_OVER_RADIAN) {
+        return 1.0;
+    }
+    const double magnitude = fabs(value_of(comparison, row, number - 1));
+    const double least = negligible * comparison->scale[number - 1];
+    return magnitude < least ? magnitude / least : 1.0; /* a NAN is compared */
+}
+
 static bool is_failed(const dea_comparison *comparison, const char *row)
 {
     return dea_layout_state(&comparison->layout, row) == DEA_STATE_FAILED;
@@ -126,7 +152,8 @@ static void compare_rows(dea_comparison *comparison, const char *point, const ch
         for (size_t c = 0; c < comparison->column_count; c++) {
             const double found = difference(comparison->columns[c].measure, value_of(comparison, row, c),
                                             value_of(comparison, wanted, c), comparison->scale[c], peaks[c]);
-            comparison->worst[c] = fmax(comparison->worst[c], found);
+            const double weight = weight_of(comparison, wanted, c);
+            comparison->worst[c] = fmax(comparison->worst[c], weight > 0.0 ? weight * found : 0.0);
         }
     }
 }
@@ -164,6 +191,8 @@ dea_status dea_comparison_open(dea_comparison *comparison, const dea_scene *scen
     choose_columns(comparison);
     if (scene->study == DEA_STUDY_TRANSIENT) {
         set_least(comparison);
+    } else if (scene->study == DEA_STUDY_AC) {
+        set_least_response(comparison);
     }
     dea_comparison_forget(comparison);
     comparison->reference = malloc(comparison->points * comparison->layout.point_size);

@@ -89,7 +89,7 @@ dea_summary *dea_layout_summary(const dea_layout *layout, void *point)
 dea_summary dea_summary_failed(void)
 {
     const double none = (double)NAN;
-    return (dea_summary){none, 0.0, none, none, none, none, none, none, none};
+    return (dea_summary){none, 0.0, none, none, none, none, none, none, none, none};
 }
 
 void dea_layout_fail(const dea_scene *scene, const dea_layout *layout, void *point)

@@ -359,7 +359,7 @@ static void mass_that_a_damper_outweighs_costs_nothing(void **state)
     check_run(&scene, &scene, "direct", 0.0, 0);
     outcome o = run(&scene, "ngspice");
     assert_int_equal(sample_of(&o, 100).state, DEA_STATE_OK);
-    assert_true(summary_of(&scene, &o).resonance > 1e4);
+    assert_true(isnan(summary_of(&scene, &o).resonance)); /* overdamped */
     free(o.point);
 }
 

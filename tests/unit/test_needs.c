@@ -201,7 +201,7 @@ static void reduced_runs_keep_the_accuracy(void **state)
         const taken *r = &reduced[k];
         assert_true(r->summary.omitted > 0.0 && r->summary.omitted <= 0.25e-4);
         assert_true(r->summary.error > r->summary.omitted && r->summary.error <= 1e-4);
-        assert_near(r->summary.resonance, whole.summary.resonance, 1e-9 * whole.summary.resonance);
+        assert_true(isnan(r->summary.resonance) && isnan(whole.summary.resonance)); /* overdamped, with and without its mass */
         for (size_t i = 0; i < 501; i++) {
             assert_near(r->samples[i].displacement, whole.samples[i].displacement, 2e-4 * whole.samples[500].displacement);
         }

@@ -257,13 +257,15 @@ static double error_of(const run *r)
     return epsilon * (100.0 * r->walk.cancellation + 20.0 * r->turns + 4.0 * parts);
 }
 
-static double resonance_of(run *r)
+/* The complex pair of the film at 0 V. */
+static void tell_swing(const run *r, dea_summary *summary)
 {
     dea_modes modes;
-    if (r->walk.chain.mass == 0.0 || dea_modes_find(&r->walk.chain, &modes) == DEA_MODES_UNSTABLE || !modes.pair) {
-        return NAN;
+    if (r->walk.chain.mass > 0.0 && dea_modes_find(&r->walk.chain, &modes) != DEA_MODES_UNSTABLE && modes.pair &&
+        modes.square < 0.0) {
+        summary->resonance = sqrt(-modes.square) / (2.0 * DEA_PI);
+        summary->decay = -modes.sigma;
     }
-    return modes.square < 0.0 ? sqrt(-modes.square) / (2.0 * DEA_PI) : NAN;
 }
 
 /* Branch states as the dynamics have them: the stress S = K z that each has relaxed to. */
@@ -307,7 +309,7 @@ static dea_status run_segments(run *r, dea_summary *summary, dea_error *error)
         close_audit(r, &first, summary);
     }
     summary->error = error_of(r);
-    summary->resonance = resonance_of(r);
+    tell_swing(r, summary);
     return status;
 }
 

@@ -128,7 +128,6 @@ static dea_status fly(dea_flight *flight, dea_sample *samples, dea_summary *summ
     traces[1].moments = malloc(flight->rows * sizeof *traces[1].moments);
     const bool room = traces[0].moments && traces[1].moments;
     if (room) {
-        const double mass = flight->motion.dynamics->mass;
         const bool reached = refine(flight, flight->scene->accuracy, traces, summary);
         if (!reached || traces[1].end == DEA_STATE_FAILED) {
             explain(flight, summary, error);
@@ -138,7 +137,6 @@ static dea_status fly(dea_flight *flight, dea_sample *samples, dea_summary *summ
             traces[1].end = DEA_STATE_FAILED;
         }
         fill(flight, &traces[1], samples);
-        summary->resonance = mass > 0.0 ? sqrt(flight->motion.stiffness / mass) / (2.0 * DEA_PI) : (double)NAN;
     }
     free(traces[0].moments);
     free(traces[1].moments);

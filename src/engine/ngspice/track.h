@@ -33,7 +33,6 @@ typedef struct dea_route {
     double voltage;   /* most that the film sees [V] */
     double scale;     /* size of a displacement [m] */
     double omega;     /* of the ring [rad/s], 0: none */
-    double resonance; /* first resonance of the film at rest [Hz], NAN without mass */
     double unit;      /* of the times of the scene [1/s] */
 } dea_route;
 

@@ -118,7 +118,6 @@ static void fill_summary(const dea_route *route, const levels *l, dea_summary *s
     last.voltage = dea_route_voltage(route, last.source, stop.u, stop.charge);
     dea_audit_close(&audit, d, &l->fine.first, l->fine.start.z, &last, stop.z, summary);
     summary->error = l->error;
-    summary->resonance = route->resonance;
 }
 
 /* From measured errors: three runs from there on mostly do. */
@@ -308,11 +307,6 @@ static bool is_weightless(dea_dynamics *d, double accuracy)
     return d->mass * dea_dynamics_stiffness(d, 0.0, 0.0, false) <= 1e-3 * accuracy * resistance * resistance;
 }
 
-static double resonance_of(dea_dynamics *d)
-{
-    return d->mass > 0.0 ? sqrt(dea_dynamics_stiffness(d, 0.0, 0.0, false) / d->mass) / (2.0 * DEA_PI) : (double)NAN;
-}
-
 /* A point of a netlist stands at a time of the run, which tells no two of them apart within an edge that is very short beside it:
  * refused where the film is as fast. */
 static dea_status can_tell_edges(const dea_route *route, const dea_pace *pace, dea_error *error)
@@ -405,10 +399,8 @@ static dea_status run_inside(dea_ngspice *library, const dea_scene *scene, const
     dea_dynamics dynamics;
     dea_mobility mobility = {0};
     dea_signal signal = {0};
-    double resonance = (double)NAN;
     dea_status status = dea_dynamics_open(scene, model, &dynamics, error);
     if (status == DEA_OK) {
-        resonance = resonance_of(&dynamics);
         if (is_weightless(&dynamics, scene->accuracy)) {
             dynamics.mass = 0.0;
         }
@@ -430,7 +422,6 @@ static dea_status run_inside(dea_ngspice *library, const dea_scene *scene, const
                            .dynamics = &dynamics,
                            .mobility = &mobility,
                            .signal = &signal,
-                           .resonance = resonance,
                            .unit = unit,
                            .samples = dea_layout_of(scene).rows};
         status = run_on(&route, samples, summary, error);
@@ -475,6 +466,7 @@ dea_status dea_ngspice_transient(dea_ngspice *library, const dea_scene *scene, c
 {
     dea_units units;
     dea_scene inside;
+    *summary = dea_summary_failed();
     dea_status status = dea_ngspice_units(scene, model, &units, error);
     if (status == DEA_OK) {
         status = dea_units_enter(&units, scene, &inside, error);

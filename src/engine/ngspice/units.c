@@ -146,5 +146,4 @@ void dea_units_return_summary(const dea_units *units, dea_summary *summary)
     summary->elastic /= energy;
     summary->kinetic /= energy;
     summary->dissipated /= energy;
-    summary->resonance *= units->time;
 }

@@ -1,0 +1,73 @@
+/* When two answers agree: what a phase, a zero and a sign count for. */
+#include "scenes.h"
+
+#include "child_program.h"
+
+#include "result/compare.h"
+
+/* A response of the paper's film about a bias, of three frequencies. */
+static dea_scene response_scene(double bias)
+{
+    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, (double)NAN);
+    scene.models[0] = dea_model_find("lumped");
+    scene.study = DEA_STUDY_AC;
+    scene.ac = (dea_ac){.from = 10.0, .to = 1000.0, .points_per_decade = 1, .bias = bias};
+    return scene;
+}
+
+/* Difference of two responses that are alike but for their displacement per volt. */
+static double difference_of(double wanted, double wanted_phase, double found, double found_phase)
+{
+    const dea_scene scene = response_scene(3000.0);
+    dea_response rows[8] = {{.frequency = 0.0}}; /* room for what stands behind the rows */
+    dea_comparison comparison;
+    assert_int_equal(dea_comparison_open(&comparison, &scene, NULL), DEA_OK);
+    assert_int_equal(comparison.layout.rows, 3);
+    for (int i = 0; i < 3; i++) {
+        rows[i] = (dea_response){10.0, 1e-7, 0.0, 1e6, -90.0, DEA_STATE_OK};
+    }
+    rows[1].displacement = wanted;
+    rows[1].displacement_phase = wanted_phase;
+    assert_int_equal(dea_comparison_take(&comparison, 0, rows, 1, NULL), DEA_OK);
+    comparison.filling = false;
+    rows[1].displacement = found;
+    rows[1].displacement_phase = found_phase;
+    assert_int_equal(dea_comparison_take(&comparison, 0, rows, 1, NULL), DEA_OK);
+    const double worst = dea_comparison_worst(&comparison);
+    dea_comparison_close(&comparison);
+    return worst;
+}
+
+static void phase_of_a_zero_is_any(void **state)
+{
+    (void)state;
+    assert_true(difference_of(0.0, 0.0, 0.0, 180.0) == 0.0);
+    assert_true(difference_of(0.0, 0.0, -0.0, -90.0) == 0.0);
+    assert_true(difference_of(1e-24, 0.0, 1e-24, 180.0) < 1e-6); /* rounding beside 1e-7 */
+    assert_relative(difference_of(1e-7, 90.0, 1e-7, 90.5), 0.5 * DEA_PI / 180.0, 1e-12);
+    assert_relative(difference_of(1e-12, 0.0, 1e-12, 1.0), DEA_PI / 180.0, 1e-12); /* small, but a number */
+    assert_true(difference_of(0.0, 0.0, 1e-12, 0.0) > 1e3);                        /* no zero at all */
+    assert_true(isinf(difference_of(1e-7, 0.0, (double)NAN, (double)NAN)));
+}
+
+static void engines_agree_about_a_film_without_bias(void **state)
+{
+    (void)state;
+    static const char scene[] = "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+                                "material: {base: elastosil-2030, retardation: 10 us}\n"
+                                "drive: {series_resistance: 100 kOhm}\n"
+                                "model: [lumped, lame, coverage]\n"
+                                "study: {ac: {from: 20 Hz, to: 10 kHz, points_per_decade: 5, bias: 0 V}}\n";
+    file_write("zero.yaml", scene, strlen(scene));
+    RUN("check", "zero.yaml");
+    assert_status(0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(phase_of_a_zero_is_any),
+        cmocka_unit_test(engines_agree_about_a_film_without_bias),
+    };
+    return cmocka_run_group_tests(tests, child_enter, child_leave);
+}

@@ -43,13 +43,31 @@ DEA_API dea_status dea_needs_find(const dea_scene *scene, const dea_model *model
 /** The reduction that leaves out @p count omissions. */
 DEA_API dea_reduction dea_needs_reduction(const dea_omission *omissions, size_t count);
 
-/** Measures what each omission of a run truly changes on top of those before it, by running it with and without by an engine that
- * can do both.
- * @param[out] changes needs->count of them [1], NAN where no engine could tell
- * @param[out] noise   error that the measured changes may have [1]
+/** What a judge says of a bound. */
+typedef enum dea_verdict {
+    DEA_NOT_JUDGED, /**< no engine can tell, or the judge's own error hides what it looks for */
+    DEA_HELD,
+    DEA_BROKEN
+} dea_verdict;
+
+/** What an omission truly changes. */
+typedef struct dea_measured {
+    double change; /**< of the samples, on top of the omissions before it [1]; infinite where only one of the runs ends early, NAN
+                      where no engine could tell */
+    double error;  /**< that the change may have: by how much the judge's runs at two accuracies differ [1] */
+    double ended;  /**< time at which only one of the two runs ends [s], else NAN */
+    dea_verdict verdict;
+    const char *why; /**< static text where it is not judged, else NULL */
+} dea_measured;
+
+/** Measures what each omission of a run truly changes, by running it with and without by an engine of this process, each at two
+ * accuracies. A bound is judged only where the judge's error is below it, or below what the change exceeds it by. Of a ring the
+ * swing counts that is left behind its time, by its velocity: no judge drops the mass within a run, and a film without mass
+ * forgets what its swing did to slow branches.
+ * @param[out] measured needs->count of them
  * @return DEA_OK, DEA_ERROR_MEMORY or what the engine's session said */
-DEA_API dea_status dea_needs_measure(const dea_scene *scene, const dea_model *model, const dea_needs *needs, double *changes,
-                                     double *noise, dea_error *error);
+DEA_API dea_status dea_needs_measure(const dea_scene *scene, const dea_model *model, const dea_needs *needs,
+                                     dea_measured *measured, dea_error *error);
 
 /** A model chosen for `model: auto`. */
 typedef struct dea_model_choice {

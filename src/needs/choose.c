@@ -5,10 +5,11 @@
 
 #include "deaspice/needs.h"
 #include "engine/line.h"
-#include "needs/surrogate.h"
+#include "needs/trial.h"
 
-static const double share = 0.5;  /* of the accuracy that a model error may take */
-static const double safety = 1.5; /* bound over the largest error of the probes */
+static const double share = 0.5;        /* of the accuracy that a model error may take */
+static const double safety = 1.5;       /* bound over the largest error of the probes */
+static const double trial_share = 0.03; /* of the accuracy: what a run may be off by that a model is judged by */
 
 enum { VOLTAGES = 4, MOST_MODELS = 16 };
 
@@ -71,48 +72,82 @@ static double static_error(const dea_scene *scene, const dea_model *model, const
     return fabs(row.strain - wanted.strain) / fabs(wanted.strain);
 }
 
-/* ---- in time: the static error up to the largest voltage, and what the film's change of stiffness does on the way: the
- * stand-ins about rest and about the loaded film differ by it */
+/* ---- in time: the static error up to the largest voltage of the run, and where that is small the runs themselves. A film swings
+ * with a frequency of its own: a model that is off by a thousandth of it is off by all of the displacement after a few hundred
+ * periods, whatever its static error. */
 
-static dea_status stiffness_error(const dea_scene *scene, const dea_model *truth, double *change, double *largest,
-                                  dea_error *error)
+static double largest_error(const dea_scene *scene, const dea_model *model, const dea_model *truth, double largest)
 {
-    dea_surrogate s;
-    bool usable;
-    const dea_reduction nothing = {0};
-    *change = (double)INFINITY;
-    dea_status status = dea_surrogate_open(scene, truth, &s, &usable, error);
-    *largest = status == DEA_OK ? s.source.largest : 0.0;
-    double *u = status == DEA_OK && usable ? malloc(2 * DEA_SURROGATE_POINTS * s.count * sizeof *u) : NULL;
-    if (status == DEA_OK && usable && !u) {
-        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a model is chosen");
+    double change = 0.0;
+    dea_scene still = *scene;
+    for (int i = 1; i <= VOLTAGES; i++) {
+        still.drive.voltage = largest * i / VOLTAGES;
+        change = fmax(change, static_error(&still, model, truth));
     }
-    if (u && s.point_count < DEA_SURROGATE_POINTS) {
-        *change = 0.0;
-    } else if (u && dea_surrogate_solve(&s, &nothing, (dea_surrogate_answer){u, u + DEA_SURROGATE_POINTS * s.count})) {
-        double peak = 0.0;
-        *change = 0.0;
-        for (size_t i = 0; i < s.count; i++) {
-            peak = fmax(peak, fabs(u[i]));
-            *change = fmax(*change, fabs(u[i] - u[s.count + i]));
+    return change;
+}
+
+/* Largest difference of the displacement over the truth's peak, and what both runs may be off by; infinite where the states
+ * differ. */
+static double swing_error(const dea_trial_run *run, const dea_trial_run *truth, size_t rows)
+{
+    double change = 0.0, peak = 0.0;
+    for (size_t i = 0; i < rows; i++) {
+        const dea_sample *a = &run->samples[i], *b = &truth->samples[i];
+        if (a->state != b->state) {
+            return (double)INFINITY;
         }
-        *change = *change > 0.0 ? *change / peak : 0.0;
+        peak = fmax(peak, fabs(b->displacement));
+        change = fmax(change, fabs(a->displacement - b->displacement));
     }
-    free(u);
-    dea_surrogate_close(&s);
+    return run->error + truth->error + (change > 0.0 ? change / peak : 0.0);
+}
+
+/* Runs one model; false where no engine of this process solves it. */
+static bool run_model(const dea_scene *scene, const dea_model *model, dea_trial_run *run, dea_status *status, dea_error *error)
+{
+    dea_trial trial;
+    const dea_reduction all = {.ring = (double)INFINITY};
+    *status = dea_trial_open(scene, model, &all, trial_share * scene->accuracy, &trial, error);
+    bool solved = *status == DEA_OK && trial.engine;
+    if (solved) {
+        run->samples = malloc(trial.layout.point_size);
+        *status = run->samples ? DEA_OK : dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a model is chosen");
+        solved = run->samples && dea_trial_fly(&trial, &all, trial.scene.accuracy, run);
+    }
+    dea_trial_close(&trial);
+    return solved;
+}
+
+static dea_status trial_error(const dea_scene *scene, const dea_model *model, const dea_model *truth, double *change,
+                              dea_error *error)
+{
+    dea_trial_run run = {0}, wanted = {0};
+    dea_status status;
+    *change = (double)INFINITY;
+    if (run_model(scene, model, &run, &status, error) && run_model(scene, truth, &wanted, &status, error)) {
+        *change = swing_error(&run, &wanted, dea_layout_of(scene).rows);
+    }
+    free(run.samples);
+    free(wanted.samples);
     return status;
 }
 
-static dea_status moving_error(const dea_scene *scene, const dea_model *model, const dea_model *truth, double *change,
-                               dea_error *error)
+/* A model that statics alone rule out is not run. */
+static dea_status moving_error(const dea_scene *scene, const dea_model *model, const dea_model *truth, double enough,
+                               double *change, dea_error *error)
 {
-    double largest;
-    dea_scene still = *scene;
-    const dea_status status = stiffness_error(scene, truth, change, &largest, error);
-    for (int i = 1; i <= VOLTAGES; i++) {
-        still.drive.voltage = largest * i / VOLTAGES;
-        *change = fmax(*change, static_error(&still, model, truth));
+    dea_signal signal;
+    dea_status status = dea_signal_open(scene, &signal, error);
+    if (status == DEA_OK) {
+        *change = largest_error(scene, model, truth, signal.largest);
     }
+    if (status == DEA_OK && safety * *change <= enough) {
+        double moving;
+        status = trial_error(scene, model, truth, &moving, error);
+        *change = fmax(*change, moving);
+    }
+    dea_signal_close(&signal);
     return status;
 }
 
@@ -162,11 +197,11 @@ static dea_status small_error(const dea_scene *scene, const dea_model *model, co
 
 /* ---- the choice */
 
-static dea_status error_at(const dea_scene *here, const dea_model *model, const dea_model *truth, double *change,
+static dea_status error_at(const dea_scene *here, const dea_model *model, const dea_model *truth, double enough, double *change,
                            dea_error *error)
 {
     if (here->study == DEA_STUDY_TRANSIENT) {
-        return moving_error(here, model, truth, change, error);
+        return moving_error(here, model, truth, enough, change, error);
     }
     if (here->study == DEA_STUDY_AC) {
         return small_error(here, model, truth, change, error);
@@ -175,16 +210,17 @@ static dea_status error_at(const dea_scene *here, const dea_model *model, const 
     return DEA_OK;
 }
 
-/* Bound of a model's error over the study. A probe whose numbers are out of range says nothing. */
-static dea_status bound_of(const dea_scene *scene, const dea_model *model, const dea_model *truth, double *bound,
+/* Bound of a model's error over the study; from @p enough on it may be any number that large. A probe whose numbers are out of
+ * range says nothing. */
+static dea_status bound_of(const dea_scene *scene, const dea_model *model, const dea_model *truth, double enough, double *bound,
                            dea_error *error)
 {
     const size_t count = probe_count(scene);
     *bound = 0.0;
-    for (size_t i = 0; model != truth && i < count; i++) {
+    for (size_t i = 0; model != truth && i < count && *bound <= enough; i++) {
         double change = 0.0;
         const dea_scene here = scene_at(scene, i);
-        const dea_status status = error_at(&here, model, truth, &change, error);
+        const dea_status status = error_at(&here, model, truth, enough, &change, error);
         if (status != DEA_OK && status != DEA_ERROR_USAGE) {
             return status;
         }
@@ -220,6 +256,16 @@ static size_t list_models(const dea_scene *scene, const dea_engine *engine, cons
     return count;
 }
 
+static bool includes(const dea_model *const *list, size_t count, const dea_model *model)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (list[i] == model) {
+            return true;
+        }
+    }
+    return false;
+}
+
 const dea_model *dea_needs_truth(dea_study_kind study)
 {
     const dea_model *truth = NULL;
@@ -236,9 +282,12 @@ dea_status dea_needs_model(const dea_scene *scene, const dea_engine *engine, dea
     const dea_model *list[MOST_MODELS];
     const size_t count = list_models(scene, engine, list);
     *choice = (dea_model_choice){.truth = dea_needs_truth(scene->study), .bound = (double)INFINITY};
+    /* who cannot do the truth itself is told how good the best of the others is */
+    const double wanted = share * scene->accuracy;
+    const double enough = includes(list, count, choice->truth) ? wanted : (double)INFINITY;
     for (size_t i = 0; i < count && !choice->model; i++) {
         double bound;
-        const dea_status status = bound_of(scene, list[i], choice->truth, &bound, error);
+        const dea_status status = bound_of(scene, list[i], choice->truth, enough, &bound, error);
         if (status != DEA_OK) {
             return status;
         }
@@ -246,7 +295,7 @@ dea_status dea_needs_model(const dea_scene *scene, const dea_engine *engine, dea
             choice->next = list[i];
             choice->bound = bound;
         }
-        if (bound <= share * scene->accuracy) {
+        if (bound <= wanted) {
             choice->model = list[i];
         }
     }

@@ -8,6 +8,8 @@
 #include "program/omissions.h"
 #include "result/compare.h"
 
+static const double choice_fine = 0.05; /* of a model error's bound: accuracy of the runs that measure it */
+
 /* Everything that one engine leaves out of the runs. */
 typedef struct dea_sum {
     size_t runs, omissions;
@@ -20,41 +22,53 @@ static bool is_single(const dea_scene *scene)
     return dea_scene_point_count(scene) == 1;
 }
 
-static void judge(const dea_arguments *arguments, const dea_scene *scene, const dea_omission *omission, double change,
-                  double noise, dea_sum *sum)
+static void print_verdict(const dea_measured *m)
+{
+    char text[64];
+    if (m->verdict == DEA_NOT_JUDGED) {
+        printf("not judged: %s", m->why);
+        if (isfinite(m->change) && isfinite(m->error)) {
+            printf(" (measured %.1e, by a judge that may be off by %.1e)", m->change, m->error);
+        }
+    } else if (!isnan(m->ended)) {
+        printf("with or without it alone the run ends at %s", dea_quantity_text(m->ended, "s", text));
+    } else if (m->change < m->error) {
+        printf("measured below %s", dea_bound_text(m->error, text));
+    } else {
+        printf("measured %.1e", m->change);
+    }
+    puts(m->verdict == DEA_BROKEN ? ": BROKEN" : "");
+}
+
+static void judge(const dea_arguments *arguments, const dea_scene *scene, const dea_omission *omission, const dea_measured *m,
+                  dea_sum *sum)
 {
     char text[DEA_OMISSION_LENGTH];
-    const bool broken = change > omission->bound + noise;
     sum->omissions++;
-    sum->bounds.broken += broken ? 1 : 0;
-    sum->bounds.unjudged += isnan(change) ? 1 : 0;
-    sum->closest = fmax(sum->closest, change / (omission->bound + noise));
-    if (arguments->quiet || (!broken && !is_single(scene))) {
-        return;
+    sum->bounds.broken += m->verdict == DEA_BROKEN ? 1 : 0;
+    sum->bounds.unjudged += m->verdict == DEA_NOT_JUDGED ? 1 : 0;
+    if (m->verdict != DEA_NOT_JUDGED) {
+        sum->closest = fmax(sum->closest, m->change / omission->bound);
     }
-    printf("    left out: %s, measured ", dea_omission_text(omission, scene, text));
-    if (isnan(change)) {
-        puts("by no engine");
-    } else if (change < noise) {
-        printf("below %s%s\n", dea_bound_text(noise, text), broken ? ": BROKEN" : "");
-    } else {
-        printf("%.1e%s\n", change, broken ? ": BROKEN" : "");
+    if (!arguments->quiet && (m->verdict == DEA_BROKEN || is_single(scene))) {
+        printf("    left out: %s, ", dea_omission_text(omission, scene, text));
+        print_verdict(m);
     }
 }
 
 static void check_run(const dea_arguments *arguments, const dea_scene *scene, const dea_engine *engine, size_t number,
                       dea_sum *sum)
 {
-    double changes[DEA_OMISSIONS], noise = 0.0;
+    dea_measured measured[DEA_OMISSIONS];
     dea_needs needs;
     const dea_scene placed = dea_scene_of_run(scene, number);
     if (dea_needs_find(&placed, placed.models[0], engine, &needs, NULL) != DEA_OK ||
-        dea_needs_measure(&placed, placed.models[0], &needs, changes, &noise, NULL) != DEA_OK) {
+        dea_needs_measure(&placed, placed.models[0], &needs, measured, NULL) != DEA_OK) {
         return;
     }
     sum->runs += needs.count > 0 ? 1 : 0;
     for (size_t i = 0; i < needs.count; i++) {
-        judge(arguments, scene, &needs.omissions[i], changes[i], noise, sum);
+        judge(arguments, scene, &needs.omissions[i], &measured[i], sum);
     }
 }
 
@@ -88,30 +102,65 @@ static dea_status take_points(void *user, size_t first, const void *points, size
     return dea_comparison_take(user, first, points, count, error);
 }
 
-/* Runs a model by the first engine that can do it. */
-static bool run_model(const dea_arguments *arguments, const dea_scene *scene, const dea_model *model, dea_comparison *comparison)
+/* The first engine that can do a model, at that accuracy or at the tightest above it that it promises; NULL: none. */
+static const dea_engine *find_judge(dea_scene *scene, const dea_model *model, double wanted)
+{
+    const double loosest = scene->accuracy;
+    for (size_t i = 0; i < dea_engine_count(); i++) {
+        for (scene->accuracy = fmin(wanted, loosest); scene->accuracy <= loosest; scene->accuracy *= 10.0) {
+            if (!dea_engine_refuses(dea_engine_at(i), scene, model)) {
+                return dea_engine_at(i);
+            }
+        }
+    }
+    return NULL;
+}
+
+/* Runs a model finer than what is judged; by how much it may be off, NAN where nobody ran it. */
+static double run_model(const dea_arguments *arguments, const dea_scene *scene, const dea_model *model, double wanted,
+                        dea_comparison *comparison)
 {
     dea_scene here = *scene;
     here.models[0] = model;
     here.full = true;
     const dea_run_options options = {
         .jobs = arguments->jobs ? arguments->jobs : 1, .points = take_points, .stop = dea_signals_stop, .user = comparison};
-    for (size_t i = 0; i < dea_engine_count(); i++) {
-        if (!dea_engine_refuses(dea_engine_at(i), &here, model)) {
-            return dea_study_run(&here, dea_engine_at(i), &options, NULL) == DEA_OK;
-        }
-    }
-    return false;
+    const dea_engine *engine = find_judge(&here, model, wanted);
+    const bool done = engine && dea_study_run(&here, engine, &options, NULL) == DEA_OK && comparison->failed == 0;
+    return done ? fmax(here.accuracy, isnan(comparison->error) ? 0.0 : comparison->error) : (double)NAN;
 }
 
 /* The columns that the bound is about: strain, displacement over time, all of a frequency response. */
-static double error_of(const dea_comparison *comparison)
+static double change_of(const dea_comparison *comparison)
 {
-    double worst = comparison->states > 0 ? (double)INFINITY : comparison->worst[0];
+    double worst = comparison->worst[0];
     for (size_t c = 1; c < comparison->column_count && comparison->scene->study == DEA_STUDY_AC; c++) {
         worst = fmax(worst, comparison->worst[c]);
     }
     return worst;
+}
+
+/* What a choice is off by, and what that measurement may be off by, NAN where it was not made. */
+static dea_measured measure_choice(const dea_arguments *arguments, const dea_scene *scene, double bound,
+                                   dea_comparison *comparison)
+{
+    const double wanted = choice_fine * bound;
+    dea_measured m = {.error = run_model(arguments, scene, dea_needs_truth(scene->study), wanted, comparison)};
+    comparison->filling = false;
+    dea_comparison_forget(comparison);
+    m.error += isnan(m.error) ? 0.0 : run_model(arguments, scene, scene->models[0], wanted, comparison);
+    m.change = change_of(comparison);
+    m.ended = (double)NAN;
+    if (isnan(m.error)) {
+        m.why = "no engine solved both models";
+    } else if (comparison->states > 0 || m.change > bound + m.error) {
+        m.verdict = DEA_BROKEN;
+    } else if (m.error < bound) {
+        m.verdict = DEA_HELD;
+    } else {
+        m.why = "the judges' own errors are larger than the bound";
+    }
+    return m;
 }
 
 dea_bounds dea_check_choice(const dea_arguments *arguments, const dea_scene *scene, double bound)
@@ -127,16 +176,15 @@ dea_bounds dea_check_choice(const dea_arguments *arguments, const dea_scene *sce
         bounds.unjudged++;
         return bounds;
     }
-    bool judged = run_model(arguments, scene, truth, &comparison);
-    comparison.filling = false;
-    dea_comparison_forget(&comparison);
-    judged = judged && run_model(arguments, scene, scene->models[0], &comparison);
-    const double change = judged ? error_of(&comparison) : (double)NAN;
-    bounds.unjudged += judged ? 0 : 1;
-    bounds.broken += change > bound + 2.0 * scene->accuracy ? 1 : 0;
+    const dea_measured m = measure_choice(arguments, scene, bound, &comparison);
+    bounds.broken += m.verdict == DEA_BROKEN ? 1 : 0;
+    bounds.unjudged += m.verdict == DEA_NOT_JUDGED ? 1 : 0;
     if (!arguments->quiet) {
-        printf("  %s instead of %s (<= %s), measured %.1e%s\n", scene->models[0]->name, truth->name, dea_bound_text(bound, text),
-               change, bounds.broken > 0 ? ": BROKEN" : "");
+        printf("  %s instead of %s (<= %s), ", scene->models[0]->name, truth->name, dea_bound_text(bound, text));
+        if (m.verdict == DEA_BROKEN && comparison.states > 0) {
+            printf("states of %zu row%s differ, else ", comparison.states, comparison.states == 1 ? "" : "s");
+        }
+        print_verdict(&m);
     }
     dea_comparison_close(&comparison);
     return bounds;

@@ -14,8 +14,7 @@ const char *dea_bound_text(double bound, char text[32])
     return text;
 }
 
-/* "1.23 ms" */
-static const char *quantity(double value, const char *unit, char text[64])
+const char *dea_quantity_text(double value, const char *unit, char text[64])
 {
     char number[DEA_NUMBER_LENGTH];
     const dea_scale scale = dea_scale_choose(fabs(value), unit);
@@ -39,10 +38,10 @@ const char *dea_omission_text(const dea_omission *omission, const dea_scene *sce
     dea_bound_text(omission->bound, bound);
     if (omission->part == DEA_PART_BRANCH) {
         snprintf(text, DEA_OMISSION_LENGTH, "branch %zu (tau %s%s, <= %s)", omission->branch + 1,
-                 quantity(scene->material.prony[omission->branch].tau, "s", time), forms[omission->form], bound);
+                 dea_quantity_text(scene->material.prony[omission->branch].tau, "s", time), forms[omission->form], bound);
     } else if (omission->part == DEA_PART_RING) {
         snprintf(text, DEA_OMISSION_LENGTH, "mass from %.40s behind each corner of the voltage on (<= %s)",
-                 quantity(omission->from, "s", time), bound);
+                 dea_quantity_text(omission->from, "s", time), bound);
     } else {
         snprintf(text, DEA_OMISSION_LENGTH, "%s (<= %s)", names[omission->part], bound);
     }

@@ -12,6 +12,8 @@ enum { DEA_OMISSION_LENGTH = 128 };
 const char *dea_omission_text(const dea_omission *omission, const dea_scene *scene, char text[DEA_OMISSION_LENGTH]);
 /** Writes a bound rounded up to two digits, e.g. "2.1e-05"; returns @p text. */
 const char *dea_bound_text(double bound, char text[32]);
+/** Writes e.g. "1.23 ms"; returns @p text. */
+const char *dea_quantity_text(double value, const char *unit, char text[64]);
 /** The scene of run number @p number of its study, all axes at their place; its lists still belong to @p scene. */
 dea_scene dea_scene_of_run(const dea_scene *scene, size_t number);
 

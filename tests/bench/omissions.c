@@ -90,16 +90,16 @@ typedef struct tally {
 
 static void count_bounds(const dea_scene *scene, const dea_needs *needs, tally *t)
 {
-    double changes[DEA_OMISSIONS], noise = 0.0;
-    if (dea_needs_measure(scene, scene->models[0], needs, changes, &noise, NULL) != DEA_OK) {
+    dea_measured measured[DEA_OMISSIONS];
+    if (dea_needs_measure(scene, scene->models[0], needs, measured, NULL) != DEA_OK) {
         bench_give_up("omissions could not be measured");
     }
     for (size_t i = 0; i < needs->count; i++) {
-        const double allowed = needs->omissions[i].bound + noise;
+        const bool judged = measured[i].verdict != DEA_NOT_JUDGED;
         t->omissions++;
-        t->unjudged += isnan(changes[i]) ? 1 : 0;
-        t->broken += changes[i] > allowed ? 1 : 0;
-        t->closest = fmax(t->closest, changes[i] / allowed);
+        t->unjudged += judged ? 0 : 1;
+        t->broken += measured[i].verdict == DEA_BROKEN ? 1 : 0;
+        t->closest = fmax(t->closest, judged ? measured[i].change / needs->omissions[i].bound : 0.0);
     }
 }
 

@@ -16,18 +16,18 @@ static const dea_engine *thrifty(void)
 /* Omissions of random scenes, each measured; how many there were. */
 static size_t check_scene(int number, const dea_scene *scene)
 {
-    double changes[DEA_OMISSIONS], noise = 0.0;
+    dea_measured measured[DEA_OMISSIONS];
     dea_needs needs;
     dea_error error = {0};
     assert_int_equal(dea_needs_find(scene, scene->models[0], thrifty(), &needs, &error), DEA_OK);
     assert_true(needs.bound <= 0.25 * scene->accuracy);
-    assert_int_equal(dea_needs_measure(scene, scene->models[0], &needs, changes, &noise, &error), DEA_OK);
+    assert_int_equal(dea_needs_measure(scene, scene->models[0], &needs, measured, &error), DEA_OK);
     for (size_t i = 0; i < needs.count; i++) {
         const dea_omission *o = &needs.omissions[i];
-        if (changes[i] > o->bound + noise) {
+        if (measured[i].verdict == DEA_BROKEN) {
             fail_msg("scene %d, %s, accuracy %.2g: part %d, branch %zu, form %d, from %g: bound %.3g, measured %.3g", number,
                      scene->models[0]->name, scene->accuracy, (int)o->part, o->branch, (int)o->form, o->from, o->bound,
-                     changes[i]);
+                     measured[i].change);
         }
     }
     return needs.count;
@@ -263,6 +263,152 @@ static void accuracy_decides_which_model_is_chosen(void **state)
     assert_true(choice_at(1e-3, 200.0, NULL).bound < choice_at(0.3, 4000.0, NULL).bound);
 }
 
+static const char *const swinging =
+    "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1}\n"
+    "material: {yeoh: {C1: 178426 Pa, C2: -6023 Pa, C3: 4234 Pa}, permittivity: 2.8, density: 1080 kg/m^3}\n"
+    "drive: {waveform: {step: {on: 1 ms, voltage: 3 kV, rise: 1 us}}}\n"
+    "model: auto\naccuracy: 0.1\nstudy: {transient: {until: 50 ms, every: 0.1 ms}}\n";
+
+static dea_model_choice choice_in_time(const char *const *settings, size_t count, dea_scene *scene)
+{
+    dea_setting all[8];
+    dea_model_choice choice;
+    dea_error error = {0};
+    for (size_t i = 0; i < count; i++) {
+        all[i].text = settings[i];
+    }
+    if (dea_scene_parse(swinging, strlen(swinging), "needs", ".", all, count, NULL, scene, &error) != DEA_OK) {
+        fail_msg("%s", error.message);
+    }
+    assert_int_equal(dea_needs_model(scene, NULL, &choice, &error), DEA_OK);
+    return choice;
+}
+
+/* Within 2 % in statics, and off by 0.998, 0.38 and 0.098 of the peak in time: the swing of a linear film gets out of step. */
+static void a_swing_decides_which_model_is_chosen(void **state)
+{
+    (void)state;
+    static const char *const damped[] = {"material.retardation=2 us"};
+    static const char *const lens[] = {"kind=lens",       "frame_radius=15.608 mm", "coverage=0.57915", "film_thickness=68.44 um",
+                                       "prestretch=1.02", "voltage=1600 V",         "every=57 us"};
+    static const char *const weak[] = {"voltage=30 V"};
+    dea_scene scene;
+    assert_string_equal(choice_in_time(NULL, 0, &scene).model->name, "coverage");
+    dea_scene_free(&scene);
+    assert_string_equal(choice_in_time(damped, 1, &scene).model->name, "coverage");
+    dea_scene_free(&scene);
+    assert_string_equal(choice_in_time(lens, 7, &scene).model->name, "coverage");
+    dea_scene_free(&scene);
+    const dea_model_choice choice = choice_in_time(weak, 1, &scene);
+    assert_string_equal(choice.model->name, "lumped");
+    assert_true(choice.bound > 0.0 && choice.bound <= 0.05);
+    dea_scene_free(&scene);
+}
+
+static double displacement_gap(const dea_scene *scene, const dea_model *model, const dea_model *truth)
+{
+    enum { MOST = 1024 };
+    static struct {
+        dea_sample samples[MOST];
+        dea_summary summary;
+    } runs[2];
+    const dea_model *const models[] = {model, truth};
+    const dea_engine *ida = dea_engine_find("ida");
+    const size_t rows = dea_layout_of(scene).rows;
+    double gap = 0.0, peak = 0.0;
+    void *session = NULL;
+    assert_true(rows <= MOST);
+    assert_int_equal(ida->begin(&session, NULL), DEA_OK);
+    for (int k = 0; k < 2; k++) {
+        dea_scene here = *scene;
+        here.accuracy = 1e-6;
+        assert_int_equal(ida->transient(session, &here, models[k], runs[k].samples, &runs[k].summary, NULL), DEA_OK);
+    }
+    ida->end(session);
+    for (size_t i = 0; i < rows; i++) {
+        peak = fmax(peak, fabs(runs[1].samples[i].displacement));
+        gap = fmax(gap, fabs(runs[0].samples[i].displacement - runs[1].samples[i].displacement));
+    }
+    return gap / peak;
+}
+
+/* Films near a pre-stretch of 1, where a linear film is near in statics, under voltages that let some of them pass. */
+static void chosen_models_keep_their_bounds_in_time(void **state)
+{
+    (void)state;
+    enum { FILMS = 40 };
+    int cheaper = 0;
+    for (int i = 0; i < FILMS; i++) {
+        uint64_t seed = 5000011u * (uint64_t)(i + 1);
+        dea_scene scene;
+        random_transient(&seed, &scene);
+        scene.actuator.prestretch = random_chance(&seed, 0.5) ? 1.0 : 1.0 + random_decades(&seed, 1e-6, 0.02);
+        scene.material.density = 1080.0;
+        scene.material.retardation = random_chance(&seed, 0.5) ? (double)NAN : scene.material.retardation;
+        scene.transient.until = random_between(&seed, 5.0, 40.0) / random_frequency(&scene);
+        scene.transient.every = scene.transient.until / 200.0;
+        scene.drive.series_resistance = scene.drive.leakage_resistance = (double)NAN;
+        random_wave(&seed, &scene, pull_in_voltage(&scene, "coverage") * random_decades(&seed, 0.01, 0.5));
+        scene.accuracy = random_decades(&seed, 1e-2, 0.3);
+        scene.automatic = true;
+        dea_model_choice choice;
+        assert_int_equal(dea_needs_model(&scene, NULL, &choice, NULL), DEA_OK);
+        if (choice.model != choice.truth) {
+            const double gap = displacement_gap(&scene, choice.model, choice.truth);
+            cheaper++;
+            if (!(gap <= choice.bound)) {
+                fail_msg("film %d: %s is off by %.3g, the bound is %.3g", i, choice.model->name, gap, choice.bound);
+            }
+        }
+    }
+    assert_true(cheaper >= FILMS / 10);
+}
+
+/* 10 MOhm, two slow branches and a swing: a film without mass is off by 1.5e-7 for seconds, since the swing has left its mark in
+ * the branches. A run that drops the mass behind it keeps that mark, and holds its bound of 2e-8. */
+static void a_swing_that_left_its_mark_is_no_broken_bound(void **state)
+{
+    (void)state;
+    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.2, (double)NAN);
+    dea_measured measured[DEA_OMISSIONS];
+    scene.models[0] = dea_model_find("lumped");
+    scene.study = DEA_STUDY_TRANSIENT;
+    scene.transient = (dea_transient){.until = 25.0, .every = 0.01};
+    scene.material.density = 1080.0;
+    scene.material.retardation = 2e-5;
+    scene.material.prony_count = 2;
+    scene.material.prony[0] = (dea_prony){.g = 0.08, .tau = 0.2};
+    scene.material.prony[1] = (dea_prony){.g = 0.05, .tau = 2.0};
+    scene.drive.series_resistance = 1e7;
+    scene.drive.waveform =
+        (dea_waveform){.kind = DEA_WAVE_STEP, .step = {5.0, 15.0, 4500.0, 1e-6}, .period = (double)NAN};
+    const dea_needs needs = needs_of(&scene, "ngspice");
+    assert_int_equal(needs.count, 1);
+    assert_int_equal(needs.omissions[0].part, DEA_PART_RING);
+    assert_int_equal(dea_needs_measure(&scene, scene.models[0], &needs, measured, NULL), DEA_OK);
+    assert_int_equal(measured[0].verdict, DEA_HELD);
+    assert_true(measured[0].error < needs.omissions[0].bound);
+}
+
+/* Nobody resolves the 1e-17 that a branch of 3e10 years relaxes within the run: neither held nor broken. One of 2 s is. */
+static void a_judge_that_is_too_coarse_does_not_judge(void **state)
+{
+    (void)state;
+    dea_scene scene = scene_of("model=coverage");
+    dea_needs needs = {.count = 1, .omissions = {{.part = DEA_PART_BRANCH, .branch = 2, .form = DEA_BRANCH_SPRING, .bound = 1e-15}}};
+    dea_measured measured[DEA_OMISSIONS];
+    scene.material.prony[2].tau = 1e18;
+    assert_int_equal(dea_needs_measure(&scene, scene.models[0], &needs, measured, NULL), DEA_OK);
+    assert_int_equal(measured[0].verdict, DEA_NOT_JUDGED);
+    assert_non_null(measured[0].why);
+    assert_true(measured[0].error > 1e-15);
+    needs.omissions[0] = (dea_omission){.part = DEA_PART_BRANCH, .branch = 1, .form = DEA_BRANCH_OUT, .bound = 1e-15};
+    assert_int_equal(dea_needs_measure(&scene, scene.models[0], &needs, measured, NULL), DEA_OK);
+    assert_int_equal(measured[0].verdict, DEA_BROKEN);
+    assert_near(measured[0].change, 0.12, 0.05);
+    dea_scene_free(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -273,6 +419,10 @@ int main(void)
         cmocka_unit_test(reduced_runs_keep_the_accuracy),
         cmocka_unit_test(simpler_forms_of_a_branch_are_springs_and_dampers),
         cmocka_unit_test(accuracy_decides_which_model_is_chosen),
+        cmocka_unit_test(a_swing_decides_which_model_is_chosen),
+        cmocka_unit_test(chosen_models_keep_their_bounds_in_time),
+        cmocka_unit_test(a_swing_that_left_its_mark_is_no_broken_bound),
+        cmocka_unit_test(a_judge_that_is_too_coarse_does_not_judge),
     };
     return cmocka_run_group_tests_name("needs", tests, NULL, NULL);
 }

@@ -48,6 +48,17 @@ jet film_cauchy(const true_film *film, long double stretch)
     return cauchy(film, (jet){stretch, 1.0L, 0.0L});
 }
 
+/* sigma(l (1 + e)) - sigma(l), factored in d = y - l^2 with y = l^2 (1 + e)^2, so that a strain of any size keeps its digits. */
+long double film_cauchy_change(const true_film *f, long double e)
+{
+    const long double rest = f->prestretch * f->prestretch, d = rest * e * (2.0L + e), y = rest + d;
+    const long double fall = (y + rest) / (y * y * rest * rest); /* (rest^-2 - y^-2)/d */
+    const long double dg = d * (1.0L + fall), dj = d * (2.0L - fall), j = 2.0L * rest + 1.0L / (rest * rest) - 3.0L;
+    const long double w = f->yeoh[0] + 2.0L * f->yeoh[1] * (j + dj) + 3.0L * f->yeoh[2] * (j + dj) * (j + dj);
+    const long double dw = dj * (2.0L * f->yeoh[1] + 3.0L * f->yeoh[2] * (2.0L * j + dj));
+    return 2.0L * (dg * w + (rest - 1.0L / (rest * rest)) * dw);
+}
+
 static void set_material(const dea_scene *scene, true_film *f)
 {
     const dea_material *m = &scene->material;
@@ -185,6 +196,7 @@ static true_edge edge_hyperelastic(const true_film *f, long double u)
     const long double unit = f->permittivity * l * l * l * l / (f->thickness * f->thickness);
     const jet area = times(section, inverse(disc)), active = f->dot ? disc : annulus, square = by(active, active);
     true_edge e = {.area = area, .stress = plus(inner, times(-1.0L, outer))};
+    e.stress.value = film_cauchy_change(f, s.value) - film_cauchy_change(f, -p * s.value);
     e.push = times(f->dot ? unit : -unit, by(area, by(square, square)));
     const long double rest = f->permittivity * l * l / f->thickness * pi;
     if (f->dot) {

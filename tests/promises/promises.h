@@ -39,6 +39,8 @@ typedef struct true_edge {
 
 /* Yeoh film under equal stretches: sigma and its derivatives over the stretch. */
 jet film_cauchy(const true_film *film, long double stretch);
+/* Change of sigma from rest by a strain of both directions. */
+long double film_cauchy_change(const true_film *film, long double strain);
 true_film film_of(const dea_scene *scene, const dea_model *model);
 true_edge film_edge(const true_film *film, long double u);
 /* F_DEA as rows have it, and what else a row holds, under the film voltage. */
@@ -56,6 +58,8 @@ typedef struct true_row {
 
 /* All axes of the scene at their place; the voltage multiplied. */
 true_row still_truth(const dea_scene *scene, const dea_model *model, double factor);
+/* The model `field`, under a film voltage (membrane.c). */
+true_row membrane_truth(const true_film *film, long double voltage);
 /* Displacement at rest under a film voltage; NAN: pull-in. Dynamic models. */
 long double still_displacement(const true_film *film, long double voltage);
 

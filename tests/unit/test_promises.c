@@ -91,6 +91,55 @@ static void static_truths_are_the_reference_numbers(void **state)
     }
 }
 
+/* A lens whose film is slack at full voltage, far from rest, and has no fold on the way from 0 V (by continuation in the voltage,
+ * with a mesh of its own). */
+static void a_branch_without_fold_is_slack_and_not_pulled_in(void **state)
+{
+    (void)state;
+    dea_scene scene = paper_scene(DEA_LENS, 1.5693241206611201, 0.62042566361617546, 6944.3905247800994);
+    scene.actuator.frame_radius = 0.024754959020879968;
+    scene.actuator.film_thickness = 7.2125087429179705e-05;
+    const double yeoh[DEA_YEOH_TERMS] = {274260.40509514743, -51349.261979301722, 12893.589445386473};
+    memcpy(scene.material.yeoh, yeoh, sizeof yeoh);
+    scene.material.permittivity = 7.9816706174601144;
+    scene.material.permittivity_per_stretch = -0.45465024897083184;
+    scene.drive.series_resistance = 15179.256271806953;
+    scene.drive.leakage_resistance = 35626576342.392639;
+    const true_row truth = still_truth(&scene, dea_model_find("field"), 1.0);
+    assert_int_equal(truth.row.state, DEA_STATE_SLACK);
+    assert_relative(truth.row.strain, -0.26648725643474, 1e-13);
+    assert_true(truth.error < 1e-13);
+}
+
+/* Folds: 4^(1/6) of a free neo-Hookean film (physics.md, section 4); the golden sections of tests/hard/pull-in-*.yaml. */
+static void a_branch_folds_at_its_critical_voltage(void **state)
+{
+    (void)state;
+    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.1, 0.0);
+    scene.material.yeoh[1] = scene.material.yeoh[2] = 0.0;
+    dea_scene loose = scene;
+    loose.actuator.prestretch = 1.0;
+    const double pressure = 2.0 * loose.material.yeoh[0] * 0.75 * cbrt(0.25); /* M at the fold, U/H = 0.6874 sqrt(mu/eps) */
+    const struct {
+        const dea_scene *scene;
+        const char *model;
+        double voltage, within;
+    } folds[] = {
+        {&scene, "field", 6714.45485555, 1e-11},
+        {&scene, "coverage", 5988.85653365, 1e-11},
+        {&loose, "constant_force",
+         loose.actuator.film_thickness * sqrt(pressure / (DEA_EPSILON_0 * loose.material.permittivity)), 1e-13},
+    };
+    for (size_t i = 0; i < sizeof folds / sizeof *folds; i++) {
+        dea_scene here = *folds[i].scene;
+        const dea_model *model = dea_model_find(folds[i].model);
+        here.drive.voltage = folds[i].voltage * (1.0 - folds[i].within);
+        assert_int_not_equal(still_truth(&here, model, 1.0).row.state, DEA_STATE_PULL_IN);
+        here.drive.voltage = folds[i].voltage * (1.0 + folds[i].within);
+        assert_int_equal(still_truth(&here, model, 1.0).row.state, DEA_STATE_PULL_IN);
+    }
+}
+
 /* ---- the judge */
 
 static dea_status sweep_badly(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count,
@@ -163,6 +212,8 @@ int main(void)
         cmocka_unit_test(the_truth_of_a_ring_is_its_closed_form),
         cmocka_unit_test(the_truth_of_a_slow_film_ends_at_rest),
         cmocka_unit_test(static_truths_are_the_reference_numbers),
+        cmocka_unit_test(a_branch_without_fold_is_slack_and_not_pulled_in),
+        cmocka_unit_test(a_branch_folds_at_its_critical_voltage),
         cmocka_unit_test(an_engine_that_is_off_by_three_times_the_accuracy_is_found),
         cmocka_unit_test(engines_keep_their_promises_on_random_scenes),
     };

@@ -18,6 +18,7 @@ extern "C" {
 #endif
 
 struct dea_model;
+struct dea_files;
 
 /** Most models that one scene compares (`model: [lumped, coverage]`). */
 enum { DEA_SCENE_MODELS = 8 };
@@ -152,12 +153,21 @@ typedef struct dea_scene {
     dea_ac ac;               /**< of an AC study */
     dea_axis *axes;          /**< axes of the sweep, or of `over`, in the order of the file; none is one point */
     size_t axis_count;
+    struct dea_files *files; /**< those that were read for it, owned; NULL: none */
 } dea_scene;
 
 /** One `key=value` of the command line. */
 typedef struct dea_setting {
     const char *text; /**< e.g. "actuator.prestretch=1.3" */
 } dea_setting;
+
+/** How a scene is read; zeroed: as its file says. */
+typedef struct dea_reading {
+    const dea_setting *settings; /**< setting_count of them, which replace what the file says; NULL: none */
+    size_t setting_count;
+    const char *model; /**< model name, or names with commas between, that replaces the scene's; NULL: the scene's */
+    bool no_files;     /**< true: a scene that names another file (material, waveform) is refused; default false */
+} dea_reading;
 
 /** Reads a scene.
  *
@@ -178,6 +188,8 @@ typedef struct dea_setting {
  */
 DEA_API dea_status dea_scene_read(const char *path, const dea_setting *settings, size_t setting_count, const char *model,
                                   dea_scene *scene, dea_error *error);
+/** Same, with more to say about how. */
+DEA_API dea_status dea_scene_read_as(const char *path, const dea_reading *how, dea_scene *scene, dea_error *error);
 /** Same from memory; @p name stands in messages and relative material files are found beside @p folder. */
 DEA_API dea_status dea_scene_parse(const char *text, size_t length, const char *name, const char *folder,
                                    const dea_setting *settings, size_t setting_count, const char *model, dea_scene *scene,

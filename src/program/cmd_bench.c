@@ -247,10 +247,6 @@ static dea_exit run(const dea_arguments *arguments)
     dea_scene scene;
     dea_exit outcome = DEA_EXIT_USAGE;
     const char *path = arguments->operands[0].path;
-    if (arguments->plot && arguments->output && strcmp(arguments->plot, arguments->output) == 0) {
-        dea_complain("%s is the target of both the table and the plot", arguments->plot);
-        return DEA_EXIT_USAGE;
-    }
     if (!dea_scene_open(arguments, path, &scene, &outcome)) {
         return outcome;
     }
@@ -296,6 +292,8 @@ const dea_command dea_command_bench = {
             "                        short, fewer where the budget ends\n"
             "      --budget SECONDS  time that all may take, roughly; default 60. What it does\n"
             "                        not reach is listed as skipped\n"
+            "      --force               a target may overwrite a file that was read\n"
+            "      --no-files            refuse a scene that names other files (material, waveform)\n"
             "  -q, --quiet           no table and no progress\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"

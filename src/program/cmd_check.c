@@ -252,6 +252,7 @@ const dea_command dea_command_check = {
             "      --set KEY=VALUE   change a value of the scene; may be repeated\n"
             "  -j, --jobs N          worker processes, auto: one per core; default 1, so that\n"
             "                        the times of the engines compare\n"
+            "      --no-files            refuse a scene that names other files (material, waveform)\n"
             "  -q, --quiet           no table\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"

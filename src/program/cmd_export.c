@@ -127,12 +127,15 @@ static dea_status library_path(const kind *as, const char *path, char library[PA
 }
 
 /* A symbol and its library: both or none, unless the disk fails in between. */
-static dea_status write_symbol(const kind *as, dea_export *export, const char *path, dea_error *error)
+static dea_status write_symbol(const kind *as, dea_export *export, const char *path, bool force, dea_error *error)
 {
     char library[PATH_ROOM];
     sheet symbol = {.text = NULL};
     sheet part = {.text = NULL};
     dea_status status = library_path(as, path, library, error);
+    if (status == DEA_OK) {
+        status = dea_files_target(export->scene->files, library, force, error);
+    }
     if (status != DEA_OK) {
         return status;
     }
@@ -219,8 +222,8 @@ static bool is_one_model(const dea_scene *scene)
 static dea_exit write_scene(const dea_arguments *arguments, const kind *as, dea_export *export)
 {
     dea_error error = {0};
-    const dea_status status =
-        as->ending ? write_symbol(as, export, arguments->output, &error) : write_one(as, export, arguments->output, &error);
+    const dea_status status = as->ending ? write_symbol(as, export, arguments->output, arguments->force, &error)
+                                         : write_one(as, export, arguments->output, &error);
     if (status != DEA_OK) {
         return dea_complain_error(&error);
     }
@@ -278,6 +281,8 @@ const dea_command dea_command_export = {
             "      --model M         model instead of the scene's\n"
             "      --set KEY=VALUE   change a value of the scene, e.g. actuator.prestretch=1.3;\n"
             "                        may be repeated\n"
+            "      --force               a target may overwrite a file that was read\n"
+            "      --no-files            refuse a scene that names other files (material, waveform)\n"
             "  -q, --quiet           no notes\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"

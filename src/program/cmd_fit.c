@@ -160,7 +160,10 @@ static dea_exit run(const dea_arguments *arguments)
 {
     work w = {.yeoh_given = NULL};
     dea_error error = {0};
-    if (complain_mismatch(arguments)) {
+    dea_files files = {0};
+    const bool fits = !complain_mismatch(arguments) && dea_inputs_note(arguments, &files) && dea_targets_free(arguments, &files);
+    dea_files_free(&files);
+    if (!fits) {
         return DEA_EXIT_USAGE;
     }
     dea_signals_catch();
@@ -204,6 +207,7 @@ const dea_command dea_command_fit = {
             "      --relative          relative instead of absolute errors count\n"
             "  -o, --output FILE       write the material to FILE, - is standard output\n"
             "      --plot FILE         draw data and fit, FILE ends in .svg or .png\n"
+            "      --force             a target may overwrite a file that was read\n"
             "  -q, --quiet             no summary\n"
             "  -h, --help              this text\n"
             "  -V, --version           the version\n"

@@ -5,8 +5,8 @@
 #include "deaspice/material.h"
 #include "deaspice/plot.h"
 #include "output/atomic.h"
-#include "support/number.h"
 #include "program/program.h"
+#include "support/number.h"
 
 enum { CURVE_POINTS = 101, MOST_MATERIALS = 64, CURVE_COLUMNS = 4 };
 
@@ -125,6 +125,11 @@ static dea_exit run(const dea_arguments *arguments)
     const dea_material *material = material_choose(arguments->operands[0].path);
     if (!material)
         return DEA_EXIT_USAGE;
+    dea_files files = {0};
+    const bool apart = dea_targets_free(arguments, &files);
+    dea_files_free(&files);
+    if (!apart)
+        return DEA_EXIT_USAGE;
     dea_error error = {0};
     dea_status status = DEA_OK;
     dea_signals_catch();
@@ -150,6 +155,7 @@ const dea_command dea_command_materials = {
             "  -o, --output FILE     write stress and modulus over stretch as CSV, - is standard\n"
             "                        output\n"
             "      --plot FILE       draw them, FILE ends in .svg or .png\n"
+            "      --force               a target may overwrite a file that was read\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"
             "\n"

@@ -67,25 +67,11 @@ static dea_exit merge_scene(const dea_arguments *arguments, const dea_scene *sce
     return dea_audience_tell(arguments, engine, &merge.audience.findings, dea_seconds() - start);
 }
 
-static bool is_a_part(const dea_arguments *arguments, const char *target)
-{
-    for (size_t i = 1; target && i < arguments->operand_count; i++) {
-        if (strcmp(arguments->operands[i].path, target) == 0) {
-            dea_complain("%s is a part, and shall not be overwritten", target);
-            return true;
-        }
-    }
-    return false;
-}
-
 static dea_exit merge(const dea_arguments *arguments)
 {
     const dea_engine *engine = dea_engine_choose(arguments->engine ? arguments->engine : "ngspice");
     dea_scene scene;
     dea_exit outcome = DEA_EXIT_USAGE;
-    if (is_a_part(arguments, arguments->output) || is_a_part(arguments, arguments->plot)) {
-        return DEA_EXIT_USAGE;
-    }
     if (!engine || !dea_scene_open(arguments, arguments->operands[0].path, &scene, &outcome)) {
         return outcome;
     }
@@ -113,6 +99,8 @@ const dea_command dea_command_merge = {
             "      --model M         as in the runs\n"
             "      --set KEY=VALUE   as in the runs\n"
             "      --full            as in the runs\n"
+            "      --force               a target may overwrite a file that was read\n"
+            "      --no-files            refuse a scene that names other files (material, waveform)\n"
             "  -q, --quiet           no summary and no progress\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"

@@ -37,10 +37,6 @@ static dea_exit run(const dea_arguments *arguments)
     const dea_engine *engine = dea_engine_choose(arguments->engine ? arguments->engine : "ngspice");
     dea_scene scene;
     dea_exit outcome = DEA_EXIT_USAGE;
-    if (arguments->plot && arguments->output && strcmp(arguments->plot, arguments->output) == 0) {
-        dea_complain("%s is the target of both the result and the plot", arguments->plot);
-        return DEA_EXIT_USAGE;
-    }
     if (!dea_journaled_fits(arguments)) {
         return DEA_EXIT_USAGE;
     }
@@ -78,6 +74,8 @@ const dea_command dea_command_run = {
             "                        merge joins with the others\n"
             "      --resume          go on where a run with --resume stopped, however it ended;\n"
             "                        what is solved is kept in FILE.journal until FILE is there\n"
+            "      --force               a target may overwrite a file that was read\n"
+            "      --no-files            refuse a scene that names other files (material, waveform)\n"
             "  -q, --quiet           no summary and no progress\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"

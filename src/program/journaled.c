@@ -119,7 +119,10 @@ static dea_status open_journal(recorder *run, dea_error *error)
     if (!run->path) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
-    return dea_journal_open(&run->study, run->shard, run->path, &run->journal, error);
+    const bool apart = strcmp(run->path, arguments->output) != 0; /* of the result: no part that is gone on with */
+    dea_files *files = run->study.scene->files;
+    const dea_status status = apart ? dea_files_target(files, run->path, arguments->force, error) : DEA_OK;
+    return status == DEA_OK ? dea_journal_open(&run->study, run->shard, run->path, &run->journal, error) : status;
 }
 
 static const char *noun(const recorder *run)

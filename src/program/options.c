@@ -110,6 +110,20 @@ static bool set_full(dea_arguments *arguments, const char *value)
     return true;
 }
 
+static bool set_force(dea_arguments *arguments, const char *value)
+{
+    (void)value;
+    arguments->force = true;
+    return true;
+}
+
+static bool set_no_files(dea_arguments *arguments, const char *value)
+{
+    (void)value;
+    arguments->no_files = true;
+    return true;
+}
+
 static bool set_tolerance(dea_arguments *arguments, const char *value)
 {
     char *end;
@@ -253,9 +267,11 @@ static const option_entry entries[] = {
     {"engine", 0, true, DEA_TAKES_ENGINE, set_engine},
     {"model", 0, true, DEA_TAKES_SCENE, set_model},
     {"set", 0, true, DEA_TAKES_SCENE, set_setting},
+    {"no-files", 0, false, DEA_TAKES_SCENE, set_no_files},
     {"output", 'o', true, DEA_TAKES_OUTPUT, set_output},
     {"format", 0, true, DEA_TAKES_FORMAT, set_format},
     {"plot", 0, true, DEA_TAKES_PLOT, set_plot},
+    {"force", 0, false, DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_PLOT, set_force},
     {"jobs", 'j', true, DEA_TAKES_JOBS, set_jobs},
     {"quiet", 'q', false, DEA_TAKES_QUIET, set_quiet},
     {"full", 0, false, DEA_TAKES_FULL, set_full},

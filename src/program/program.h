@@ -6,6 +6,7 @@
 
 #include "deaspice/engine.h"
 #include "deaspice/scene.h"
+#include "support/files.h"
 
 /** Exit status of the program. */
 typedef enum dea_exit {
@@ -18,7 +19,7 @@ typedef enum dea_exit {
 /** What a command takes besides --help and --version; one bit each. */
 typedef enum dea_takes {
     DEA_TAKES_ENGINE = 1 << 0,
-    DEA_TAKES_SCENE = 1 << 1, /**< --model, --set */
+    DEA_TAKES_SCENE = 1 << 1, /**< --model, --set, --no-files */
     DEA_TAKES_OUTPUT = 1 << 2,
     DEA_TAKES_FORMAT = 1 << 3,
     DEA_TAKES_PLOT = 1 << 4,
@@ -53,6 +54,8 @@ typedef struct dea_arguments {
     size_t jobs; /**< 0: not given; "auto" is already the number of cores */
     bool quiet;
     bool full;
+    bool force;       /**< targets may overwrite inputs */
+    bool no_files;    /**< scenes may name no files */
     double tolerance; /**< NAN: not given */
     unsigned terms;   /**< 0: not given */
     bool relative;
@@ -106,7 +109,13 @@ dea_exit dea_complain_error(const dea_error *error);
 void dea_complain_unknown(const char *what, const char *given, const char *const *names, size_t count);
 /** Engine of that name, complaining with a guess when there is none. */
 const dea_engine *dea_engine_choose(const char *name);
-/** Reads a scene with the settings of the command line; on failure says so and sets @p outcome. */
+/** Notes the files of the command line as read; false, with a complaint, without memory. */
+bool dea_inputs_note(const dea_arguments *arguments, dea_files *files);
+/** False, with a complaint, where a target of the arguments is one of the files that were read, or another target; see
+ * dea_files_target(). */
+bool dea_targets_free(const dea_arguments *arguments, dea_files *files);
+/** Reads a scene with the settings of the command line, and sees to it that no target is one of its files; on failure says so
+ * and sets @p outcome. */
 bool dea_scene_open(const dea_arguments *arguments, const char *path, dea_scene *scene, dea_exit *outcome);
 /** Complains about an engine that refuses a model and names those that can do it; true where it does. */
 bool dea_engine_unfit(const dea_engine *engine, const dea_scene *scene);

@@ -23,13 +23,49 @@ const dea_engine *dea_engine_choose(const char *name)
     return engine;
 }
 
+bool dea_inputs_note(const dea_arguments *arguments, dea_files *files)
+{
+    dea_error error = {0};
+    dea_status status = arguments->relaxation ? dea_files_note_path(files, arguments->relaxation, &error) : DEA_OK;
+    for (size_t i = 0; i < arguments->operand_count && status == DEA_OK; i++) {
+        status = dea_files_note_path(files, arguments->operands[i].path, &error);
+    }
+    if (status != DEA_OK) {
+        dea_complain_error(&error);
+    }
+    return status == DEA_OK;
+}
+
+bool dea_targets_free(const dea_arguments *arguments, dea_files *files)
+{
+    const char *standard = arguments->output || arguments->plot ? NULL : "-";
+    const char *paths[] = {arguments->output, arguments->plot, standard};
+    dea_error error = {0};
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        if (paths[i] && dea_files_target(files, paths[i], arguments->force, &error) != DEA_OK) {
+            dea_complain_error(&error);
+            return false;
+        }
+    }
+    return true;
+}
+
 bool dea_scene_open(const dea_arguments *arguments, const char *path, dea_scene *scene, dea_exit *outcome)
 {
     dea_error error = {0};
-    dea_status status = dea_scene_read(path, arguments->settings, arguments->setting_count, arguments->model, scene, &error);
+    const dea_reading how = {.settings = arguments->settings,
+                             .setting_count = arguments->setting_count,
+                             .model = arguments->model,
+                             .no_files = arguments->no_files};
+    const dea_status status = dea_scene_read_as(path, &how, scene, &error);
     if (status == DEA_OK) {
         scene->full = arguments->full;
-        return true;
+        *outcome = DEA_EXIT_USAGE;
+        if (dea_inputs_note(arguments, scene->files) && dea_targets_free(arguments, scene->files)) {
+            return true;
+        }
+        dea_scene_free(scene);
+        return false;
     }
     *outcome = dea_complain_error(&error);
     if (status == DEA_ERROR_IO) {

@@ -4,6 +4,16 @@
 
 #include "scene/reader.h"
 
+dea_status dea_reader_names_file(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    char shown[DEA_TEXT_ROOM];
+    if (reader->no_files) {
+        return dea_place_fail(&node->place, reader->error, ref->path,
+                              "names a file (%s), and none may be named here (--no-files)", dea_reader_show(node, shown));
+    }
+    return node->place.origin->folder ? DEA_OK : dea_reader_refuse(reader, ref, node, "files cannot be named here");
+}
+
 char *dea_reader_path(dea_reader *reader, const dea_node *node)
 {
     const char *folder = node->text[0] == '/' ? "" : node->place.origin->folder;

@@ -55,24 +55,37 @@ static const char *type_refused(mode_t mode, bool pipe)
     return NULL;
 }
 
-dea_status dea_file_read(const char *path, bool pipe, size_t most, char **text, size_t *length, const char **why)
+static const char *fault_of(bool failed)
 {
-    struct stat status;
+    return failed ? strerror(errno) : NULL;
+}
+
+/* Opens a file of the right type; asked before too, since opening alone can wait for ever or do harm. */
+static const char *open_typed(const char *path, bool pipe, int *file, struct stat *about)
+{
+    const char *refused = fault_of(stat(path, about) != 0);
+    refused = refused ? refused : type_refused(about->st_mode, pipe);
+    if (!refused) {
+        *file = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
+        refused = fault_of(*file < 0 || fstat(*file, about) != 0);
+    }
+    return refused ? refused : type_refused(about->st_mode, pipe);
+}
+
+dea_status dea_file_read(const char *path, bool pipe, size_t most, char **text, size_t *length, dea_files *seen, const char **why)
+{
+    struct stat about;
+    const bool standard = strcmp(path, "-") == 0;
+    int file = standard ? STDIN_FILENO : -1;
     *text = NULL;
     *length = 0;
-    const char *refused = NULL;
-    if (strcmp(path, "-") == 0) {
-        refused = drain(STDIN_FILENO, most, text, length);
-    } else {
-        refused = stat(path, &status) ? strerror(errno) : type_refused(status.st_mode, pipe);
-        const int file = refused ? -1 : open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
-        if (!refused) {
-            refused = file < 0 ? strerror(errno) : fstat(file, &status) ? strerror(errno) : type_refused(status.st_mode, pipe);
-            refused = refused ? refused : drain(file, most, text, length);
-        }
-        if (file >= 0) {
-            close(file);
-        }
+    const char *refused = standard ? fault_of(fstat(file, &about) != 0) : open_typed(path, pipe, &file, &about);
+    if (!refused && seen && dea_files_note(seen, standard ? "standard input" : path, &about, NULL) != DEA_OK) {
+        refused = no_memory;
+    }
+    refused = refused ? refused : drain(file, most, text, length);
+    if (file >= 0 && !standard) {
+        close(file);
     }
     *why = refused;
     if (!refused) {

@@ -31,6 +31,20 @@ static dea_status mapping_read(dea_reader *reader, const dea_node *node)
     return dea_reader_children(reader, "material", node);
 }
 
+/* Does it hold any key of a material? The words of another file are not for a message. */
+static bool is_material(const dea_node *root)
+{
+    char path[DEA_NAME_LENGTH];
+    dea_ref ref;
+    for (const dea_node *child = root->first; child; child = child->next) {
+        const int length = snprintf(path, sizeof path, "material.%s", child->key);
+        if (length > 0 && (size_t)length < sizeof path && !strpbrk(child->key, ".#") && dea_key_find(path, &ref)) {
+            return true;
+        }
+    }
+    return root->kind == DEA_NODE_MAPPING && !root->first;
+}
+
 static dea_status file_parse(dea_reader *reader, const char *path, const char *text, size_t length)
 {
     dea_node *root = NULL;
@@ -39,9 +53,9 @@ static dea_status file_parse(dea_reader *reader, const char *path, const char *t
         return dea_reader_memory(reader);
     }
     dea_status status = dea_tree_parse(text, length, origin, &reader->arena, &root, reader->error);
-    if (!status && root->kind != DEA_NODE_MAPPING) {
-        status = dea_place_fail(&root->place, reader->error, "material",
-                                "not a mapping; accepted: keys such as yeoh, permittivity, density");
+    if (!status && !is_material(root)) {
+        status = dea_place_fail(&root->place, reader->error, "material", "%s; accepted: keys such as yeoh, permittivity, density",
+                                root->kind == DEA_NODE_MAPPING ? "no key of a material" : "not a mapping");
     }
     return status ? status : mapping_read(reader, root);
 }
@@ -60,7 +74,7 @@ static dea_status file_read(dea_reader *reader, const dea_ref *ref, const dea_no
         return dea_reader_refuse(reader, ref, node, "materials name each other as base in a circle");
     }
     const char *refused = NULL;
-    const dea_status read = dea_file_read(path, false, DEA_FILE_MAX, &text, &length, &refused);
+    const dea_status read = dea_file_read(path, false, DEA_FILE_MAX, &text, &length, reader->scene->files, &refused);
     if (read == DEA_ERROR_MEMORY) {
         return dea_reader_memory(reader);
     }
@@ -109,10 +123,8 @@ static dea_status base_read(dea_reader *reader, const dea_ref *ref, const dea_no
     if (!strpbrk(node->text, "./")) {
         return fail_name(reader, ref, node);
     }
-    if (!node->place.origin->folder) {
-        return dea_reader_refuse(reader, ref, node, "files cannot be named here");
-    }
-    return file_read(reader, ref, node);
+    const dea_status named = dea_reader_names_file(reader, ref, node);
+    return named ? named : file_read(reader, ref, node);
 }
 
 dea_status dea_read_material(dea_reader *reader, const dea_ref *ref, const dea_node *node)

@@ -32,6 +32,7 @@ struct dea_reader {
     const char *model;       /* replaces the scene's model, may be NULL */
     dea_override *overrides; /* settings of scalars, in order */
     bool kind_known;
+    bool no_files;                                 /* none may be named */
     size_t material_depth;                         /* files that name files */
     const char *axes;                              /* path of the mapping that the axes stand in */
     const dea_node *model_names[DEA_SCENE_MODELS]; /* who named the scene's models */
@@ -81,6 +82,8 @@ dea_status dea_read_average(dea_reader *reader, const dea_ref *ref, const dea_no
 dea_status dea_read_start(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_points_per_decade(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 
+/* Refuses the value of a key that is a file's name where no file may be named, or it names none. */
+dea_status dea_reader_names_file(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 /* The file that @p node names, seen from the folder of the file that names it; NULL without memory. */
 char *dea_reader_path(dea_reader *reader, const dea_node *node);
 /* What stands before positions in the file @p path, NULL without memory. */

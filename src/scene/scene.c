@@ -29,6 +29,7 @@ static dea_status scene_clear(dea_scene *scene)
         .transient = {.until = NAN, .every = NAN},
         .ac = {.from = NAN, .to = NAN, .points_per_decade = 50, .bias = NAN},
         .accuracy = 1e-6,
+        .files = scene->files,
     };
     return scene->title ? DEA_OK : DEA_ERROR_MEMORY;
 }
@@ -84,8 +85,8 @@ static dea_status reader_run(dea_reader *reader, const char *text, size_t length
     return status ? status : dea_reader_finish(reader);
 }
 
-dea_status dea_scene_parse(const char *text, size_t length, const char *name, const char *folder, const dea_setting *settings,
-                           size_t setting_count, const char *model, dea_scene *scene, dea_error *error)
+static dea_status scene_parse(const char *text, size_t length, const char *name, const char *folder, const dea_reading *how,
+                              dea_scene *scene, dea_error *error)
 {
     char shown[10 * 256 + 8];
     const dea_origin origin = {.name = dea_text_clip(name, 256, shown, sizeof shown), .folder = folder};
@@ -98,8 +99,9 @@ dea_status dea_scene_parse(const char *text, size_t length, const char *name, co
         reader->scene = scene;
         reader->error = error;
         reader->units = units;
-        reader->model = model;
-        status = reader_run(reader, text, length, &origin, settings, setting_count);
+        reader->model = how->model;
+        reader->no_files = how->no_files;
+        status = reader_run(reader, text, length, &origin, how->settings, how->setting_count);
     }
     if (reader) {
         dea_arena_free(&reader->arena);
@@ -112,32 +114,55 @@ dea_status dea_scene_parse(const char *text, size_t length, const char *name, co
     return status;
 }
 
-dea_status dea_scene_read(const char *path, const dea_setting *settings, size_t setting_count, const char *model,
-                          dea_scene *scene, dea_error *error)
+dea_status dea_scene_parse(const char *text, size_t length, const char *name, const char *folder, const dea_setting *settings,
+                           size_t setting_count, const char *model, dea_scene *scene, dea_error *error)
 {
-    char *text = NULL;
-    size_t length = 0;
+    const dea_reading how = {.settings = settings, .setting_count = setting_count, .model = model};
+    *scene = (dea_scene){0};
+    return scene_parse(text, length, name, folder, &how, scene, error);
+}
+
+/* Bytes of the scene's file, and the folder that it lies in; both malloc'd. */
+static dea_status scene_load(const char *path, dea_files *files, char **text, size_t *length, char **folder, dea_error *error)
+{
     char shown[10 * 256 + 8];
     const bool input = strcmp(path, "-") == 0;
     const char *slash = input ? NULL : strrchr(path, '/');
-    *scene = (dea_scene){0};
     const char *refused = NULL;
-    const dea_status read = dea_file_read(path, true, DEA_FILE_MAX, &text, &length, &refused);
+    const dea_status read = dea_file_read(path, true, DEA_FILE_MAX, text, length, files, &refused);
     if (read) {
         return dea_fail(error, read, "%s: cannot read the scene: %s",
                         input ? "standard input" : dea_text_clip(path, 256, shown, sizeof shown), refused);
     }
-    char *folder = slash ? strndup(path, slash == path ? 1 : (size_t)(slash - path)) : strdup(".");
-    dea_status status = DEA_ERROR_MEMORY;
-    if (folder) {
-        status =
-            dea_scene_parse(text, length, input ? "standard input" : path, folder, settings, setting_count, model, scene, error);
+    *folder = slash ? strndup(path, slash == path ? 1 : (size_t)(slash - path)) : strdup(".");
+    return *folder ? DEA_OK : dea_fail(error, DEA_ERROR_MEMORY, "out of memory while reading the scene");
+}
+
+dea_status dea_scene_read_as(const char *path, const dea_reading *how, dea_scene *scene, dea_error *error)
+{
+    char *text = NULL, *folder = NULL;
+    size_t length = 0;
+    *scene = (dea_scene){.files = calloc(1, sizeof *scene->files)};
+    if (!scene->files) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while reading the scene");
+    }
+    dea_status status = scene_load(path, scene->files, &text, &length, &folder, error);
+    if (status) {
+        dea_scene_free(scene);
     } else {
-        dea_fail(error, DEA_ERROR_MEMORY, "out of memory while reading the scene");
+        const bool input = strcmp(path, "-") == 0;
+        status = scene_parse(text, length, input ? "standard input" : path, folder, how, scene, error);
     }
     free(folder);
     free(text);
     return status;
+}
+
+dea_status dea_scene_read(const char *path, const dea_setting *settings, size_t setting_count, const char *model,
+                          dea_scene *scene, dea_error *error)
+{
+    const dea_reading how = {.settings = settings, .setting_count = setting_count, .model = model};
+    return dea_scene_read_as(path, &how, scene, error);
 }
 
 void dea_scene_free(dea_scene *scene)
@@ -150,6 +175,10 @@ void dea_scene_free(dea_scene *scene)
         free(scene->drive.waveform.times);
         free(scene->drive.waveform.voltages);
         free(scene->title);
+        if (scene->files) {
+            dea_files_free(scene->files);
+            free(scene->files);
+        }
         *scene = (dea_scene){0};
     }
 }

@@ -17,6 +17,7 @@ typedef struct table {
     const dea_origin *origin;
     const char *next, *end; /* the rest of the text */
     int line;
+    bool numbers; /* a row of numbers is in it: what it holds may be quoted */
 } table;
 
 /* Part of a line, without blanks around it. */
@@ -36,7 +37,7 @@ static dea_status table_fail(const table *self, int column, const char *what, co
     const dea_place place = {.origin = self->origin, .line = self->line, .column = column};
     char text[CELL_LENGTH] = "";
     char shown[DEA_TEXT_ROOM] = "";
-    if (culprit) {
+    if (culprit && self->numbers) {
         snprintf(text, sizeof text, "%.*s", (int)(culprit->length < sizeof text ? culprit->length : sizeof text - 1),
                  culprit->text);
         dea_text_clip(text, DEA_TEXT_SHOWN, shown, sizeof shown);
@@ -113,6 +114,34 @@ static dea_status row_read(const table *self, const row *at, size_t index)
     return fault ? table_fail(self, at->cells[0].column, fault, &at->cells[0], "times >= 0 that increase strictly") : DEA_OK;
 }
 
+/* A line of numbers with something between them, in whatever format. */
+static bool is_of_numbers(const char *line, const char *stop)
+{
+    bool digit = false, apart = false;
+    for (const char *at = line; at < stop; at++) {
+        digit = digit || (*at >= '0' && *at <= '9');
+        apart = apart || (digit && strchr(",; \t", *at));
+        if (!*at || !strchr("0123456789+-.eE,; \t\r", *at)) {
+            return false;
+        }
+    }
+    return apart;
+}
+
+/* Is the file a table at all? What else it may be, a message is no place for. */
+static bool has_numbers(const table *self)
+{
+    const char *stop;
+    for (const char *line = self->next; line < self->end; line = stop + 1) {
+        stop = memchr(line, '\n', (size_t)(self->end - line));
+        stop = stop ? stop : self->end;
+        if (is_of_numbers(line, stop)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static size_t lines_of(const table *self)
 {
     size_t lines = 1;
@@ -154,6 +183,7 @@ static dea_status table_read(table *self, const char *text, size_t length)
     self->next = text + mark;
     self->end = text + length;
     self->line = 0;
+    self->numbers = has_numbers(self);
     return rows_read(self);
 }
 
@@ -166,12 +196,14 @@ dea_status dea_read_wave_file(dea_reader *reader, const dea_ref *ref, const dea_
     if (node->kind != DEA_NODE_SCALAR || !node->text[0]) {
         return dea_reader_refuse(reader, ref, node, node->kind == DEA_NODE_SCALAR ? "has no value" : "not a file name");
     }
-    if (!node->place.origin->folder) {
-        return dea_reader_refuse(reader, ref, node, "files cannot be named here");
+    const dea_status named = dea_reader_names_file(reader, ref, node);
+    if (named) {
+        return named;
     }
     char *path = dea_reader_path(reader, node);
     const dea_origin *origin = path ? dea_reader_origin(reader, path) : NULL;
-    const dea_status read = origin ? dea_file_read(path, false, DEA_WAVE_FILE_MAX, &text, &length, &refused) : DEA_ERROR_MEMORY;
+    const dea_status read =
+        origin ? dea_file_read(path, false, DEA_WAVE_FILE_MAX, &text, &length, reader->scene->files, &refused) : DEA_ERROR_MEMORY;
     if (read == DEA_ERROR_MEMORY) {
         return dea_reader_memory(reader);
     }

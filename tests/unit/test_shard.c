@@ -168,7 +168,7 @@ static void gaps_and_overlaps_are_named(void **state)
     refused("they are of different divisions", WORDS(MERGE, "part-1.dea", "half.dea"));
     refused("part-9.dea", WORDS(MERGE, "part-9.dea"));
     refused("needs a scene and its parts", WORDS("merge", "sweep.yaml"));
-    refused("shall not be overwritten", WORDS("merge", "sweep.yaml", "part-1.dea", "-o", "part-1.dea"));
+    refused("part-1.dea would overwrite part-1.dea, an input", WORDS("merge", "sweep.yaml", "part-1.dea", "-o", "part-1.dea"));
     assert_true(file_exists("part-1.dea"));
 }
 

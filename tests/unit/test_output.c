@@ -167,7 +167,14 @@ static void point_make(const dea_scene *scene, const dea_layout *layout, size_t 
     }
     if (scene->study == DEA_STUDY_TRANSIENT) {
         const double x = (double)number;
-        *dea_layout_summary(layout, point) = (dea_summary){1e-9, 0.0, 1.0 + x, 2.0 + x, 3.0 + x, 4.0 + x, 5.0 + x, 1e-8, 700.0 + x};
+        *dea_layout_summary(layout, point) = (dea_summary){.error = 1e-9,
+                                                              .work = 1.0 + x,
+                                                              .electric = 2.0 + x,
+                                                              .elastic = 3.0 + x,
+                                                              .kinetic = 4.0 + x,
+                                                              .dissipated = 5.0 + x,
+                                                              .residual = 1e-8,
+                                                              .resonance = 700.0 + x};
     }
 }
 

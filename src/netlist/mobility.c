@@ -181,6 +181,24 @@ static void write_motion(const writer *w)
     }
 }
 
+/* Corners of a segment up to its end. The library meets each, and from one to the next takes four steps at least, which it would
+ * not shorten for an edge that is shorter than one: corners on its line do that. */
+static void write_ramp(const writer *w, const dea_segment *segment)
+{
+    const dea_mobility_piece *p = w->piece;
+    const double from = fmax(segment->from, p->from);
+    const double end = fmin(segment->to, p->to);
+    const bool brief = segment->start != segment->end && end - from < p->parts * p->step;
+    const double parts = brief ? p->parts : 1.0;
+    for (double part = 1.0; part <= parts; part++) {
+        const double time = part == parts ? end : from + (end - from) * (part / parts);
+        fputc(' ', w->out);
+        dea_netlist_number(w->out, time - p->from);
+        fputc(' ', w->out);
+        dea_netlist_number(w->out, dea_segment_voltage(p->signal, segment, time));
+    }
+}
+
 /* The voltage of the source from the begin of the piece on: its segments as breakpoints, or a sine. */
 static void write_source(const writer *w, const char *node)
 {
@@ -204,11 +222,7 @@ static void write_source(const writer *w, const char *node)
     fputs("pwl(0 ", w->out);
     dea_netlist_number(w->out, dea_segment_voltage(p->signal, segment, p->from));
     for (size_t i = p->segment; i < p->signal->count && p->signal->segments[i].from < p->to; i++) {
-        const double end = fmin(p->signal->segments[i].to, p->to);
-        fputc(' ', w->out);
-        dea_netlist_number(w->out, end - p->from);
-        fputc(' ', w->out);
-        dea_netlist_number(w->out, dea_segment_voltage(p->signal, &p->signal->segments[i], end));
+        write_ramp(w, &p->signal->segments[i]);
     }
     fputs(")\n", w->out);
 }

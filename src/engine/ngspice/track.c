@@ -6,6 +6,9 @@
 /* Most time steps of one netlist: what its plot takes of memory. */
 static const double most_steps = 300000.0;
 
+/* Parts of an edge that is shorter than a time step, at fineness 1. */
+static const double edge_parts = 2.0;
+
 /* Share of a step within which a film charges at once. */
 static const double at_once = 1e-2;
 
@@ -26,6 +29,7 @@ typedef struct runner {
     bool rings; /* so does the film in this piece */
     bool slow;  /* the piece steps over the ring, which is dead */
     double step;
+    double parts;           /* of an edge that is shorter than a step */
     double speed;           /* velocities of the film over those of the matched network [1] */
     bool euler;             /* the next step is the first behind a corner */
     double complex lag;     /* what irregular steps since the last corner did to a ring: to multiply by */
@@ -340,6 +344,7 @@ static void set_piece(runner *r, dea_mobility_piece *piece, double to, double st
                                   .from = r->last.moment.time,
                                   .to = to,
                                   .step = step,
+                                  .parts = r->parts,
                                   .scale = route->scale,
                                   .force = route->scale * dea_dynamics_stiffness(route->dynamics, 0.0, 0.0, false),
                                   .tolerance = fmin(1e-7, 1e-3 * route->scene->accuracy),
@@ -462,7 +467,7 @@ static bool start(runner *r)
 
 dea_status dea_track_run(const dea_route *route, double fineness, dea_track *track, dea_error *error)
 {
-    runner r = {.route = route, .track = track, .speed = 1.0};
+    runner r = {.route = route, .track = track, .speed = 1.0, .parts = ceil(edge_parts / fineness)};
     *track = (dea_track){.end = DEA_STATE_OK};
     track->points = malloc(route->samples * sizeof *track->points);
     if (!track->points) {

@@ -9,17 +9,48 @@
 /* Most segments of a run: a waveform that repeats more often than this wants shorter runs. */
 enum { MOST_SEGMENTS = 8000000 };
 
+/* A corner counts as none where it lies off the line through its neighbours by no more than rounding makes of times and voltages
+ * that were written in decimals and in another unit: so many units in the last place of the voltage, and of the time. */
+static const double rounding = 8.0 * DBL_EPSILON;
+
 typedef struct builder {
     const dea_scene *scene;
     dea_signal *signal;
     double until;
     size_t room;
+    double least, most; /* slopes of a line from the begin of the last segment that pass all corners that it took in [V/s] */
     bool exhausted;
 } builder;
 
-static bool continues(const dea_segment *last, double start, double end)
+/* The range of those slopes with one more corner. */
+static void narrow(builder *b, const dea_segment *last, double slope)
 {
-    return !last->sine && last->start == last->end && last->end == start && start == end;
+    const double width = last->to - last->from;
+    const double off = rounding * (fmax(fabs(last->start), fabs(last->end)) + fabs(slope) * last->to);
+    b->least = fmax(b->least, (last->end - last->start - off) / width);
+    b->most = fmin(b->most, (last->end - last->start + off) / width);
+}
+
+/* Takes a linear segment into the last one where it goes on on the same line: constant voltages, or a ramp that passes every
+ * corner of the ramp before it. */
+static bool joins(builder *b, double to, double start, double end)
+{
+    dea_signal *signal = b->signal;
+    dea_segment *last = signal->count > 0 ? &signal->segments[signal->count - 1] : NULL;
+    if (!last || last->sine || last->end != start || (last->start == last->end) != (start == end)) {
+        return false;
+    }
+    if (start != end) {
+        const double slope = (end - last->start) / (to - last->from);
+        narrow(b, last, slope);
+        if (!(slope >= b->least && slope <= b->most)) {
+            return false;
+        }
+    }
+    last->to = to;
+    last->end = end;
+    signal->largest = fmax(signal->largest, fabs(end));
+    return true;
 }
 
 /* An edge that rounding alone keeps off the time of a sample lies there, so that the sample sees what is before the edge. */
@@ -46,8 +77,7 @@ static void add(builder *b, double from, double to, double start, double end, bo
         end = sine ? end : start + (end - start) * ((b->until - from) / (to - from));
         to = b->until;
     }
-    if (signal->count > 0 && !sine && continues(&signal->segments[signal->count - 1], start, end)) {
-        signal->segments[signal->count - 1].to = to;
+    if (!sine && joins(b, to, start, end)) {
         return;
     }
     if (signal->count == b->room) {
@@ -61,6 +91,8 @@ static void add(builder *b, double from, double to, double start, double end, bo
         b->room = room;
     }
     signal->segments[signal->count++] = (dea_segment){from, to, start, end, sine};
+    b->least = -INFINITY;
+    b->most = INFINITY;
     signal->largest = fmax(signal->largest, fmax(fabs(start), fabs(end)));
 }
 

@@ -18,7 +18,8 @@ typedef struct dea_signal {
 } dea_signal;
 
 /* Segments of the scene's waveform from 0 to `until`; the caller ends it with dea_signal_close(), also after a failure.
- * Neighbours that continue each other are one segment. DEA_ERROR_MEMORY. */
+ * Neighbours that continue each other are one segment: a corner
+ * that rounding of its time and voltage can explain is none. DEA_ERROR_MEMORY. */
 dea_status dea_signal_open(const dea_scene *scene, dea_signal *signal, dea_error *error);
 void dea_signal_close(dea_signal *signal);
 

@@ -39,6 +39,7 @@ typedef struct dea_pool {
     size_t done;      /* points handed over */
     dea_damage damage;
     double clock, last; /* [s] */
+    double passed;      /* in the last tick of the clock [s] */
     void *memory;       /* shared: points of the slots, then errors of the workers */
     size_t memory_size;
 } dea_pool;
@@ -54,7 +55,8 @@ static void pool_tick(dea_pool *pool)
 {
     double now = seconds_now();
     double passed = now - pool->last;
-    pool->clock += passed < longest_tick ? passed : longest_tick;
+    pool->passed = passed < longest_tick ? passed : longest_tick;
+    pool->clock += pool->passed;
     pool->last = now;
 }
 
@@ -203,6 +205,7 @@ static dea_status pool_staff(dea_pool *pool, dea_error *error)
             return DEA_OK;
         }
         worker->deadline = pool->clock + start_time;
+        worker->used = worker->waited = 0.0;
         alive++;
     }
     return DEA_OK;
@@ -230,6 +233,7 @@ static void pool_dispatch(dea_pool *pool)
         slot->busy = true;
         worker->slot = (size_t)(slot - pool->slots);
         worker->state = DEA_WORKER_BUSY;
+        worker->waited = 0.0;
         worker->deadline = pool->clock + pool->beyond + dea_plan_patience(pool->plan, order.count);
     }
 }
@@ -275,6 +279,20 @@ static dea_status worker_reported(dea_pool *pool, dea_worker *worker, dea_error 
     return DEA_OK;
 }
 
+/* Patience is for the work of a worker: while others have the processor its deadline waits, so that a loaded machine makes no run
+ * fail. One that takes no processor time at all any more has its deadline as it is. */
+static void worker_waits(const dea_pool *pool, dea_worker *worker)
+{
+    const double used = dea_worker_used(worker);
+    const double own = used - worker->used;
+    worker->waited += pool->passed;
+    if (own > 0.0) {
+        worker->deadline += worker->waited > own ? worker->waited - own : 0.0;
+        worker->used = used;
+        worker->waited = 0.0;
+    }
+}
+
 static dea_status worker_overdue(dea_pool *pool, dea_worker *worker, dea_error *error)
 {
     bool waits = worker->state == DEA_WORKER_IDLE || worker->state == DEA_WORKER_NONE;
@@ -297,6 +315,8 @@ static dea_status pool_listen(dea_pool *pool, dea_error *error)
     pool_tick(pool);
     dea_status status = DEA_OK;
     for (size_t i = 0; i < pool->worker_count && status == DEA_OK; i++) {
+        if (pool->workers[i].state != DEA_WORKER_NONE)
+            worker_waits(pool, &pool->workers[i]);
         if (ready > 0 && pool->polls[i].revents != 0)
             status = worker_reported(pool, &pool->workers[i], error);
         else

@@ -10,6 +10,7 @@
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 /* The parent alone decides about an interrupt; its death ends the worker by SIGKILL. */
@@ -127,6 +128,15 @@ bool dea_worker_send(const dea_worker *worker, const dea_order *order)
 bool dea_worker_receive(const dea_worker *worker, dea_status *status)
 {
     return receive(worker->socket, status, sizeof *status) == (ssize_t)sizeof *status;
+}
+
+double dea_worker_used(const dea_worker *worker)
+{
+    clockid_t clock;
+    struct timespec used;
+    if (clock_getcpuclockid(worker->pid, &clock) != 0 || clock_gettime(clock, &used) != 0)
+        return 0.0;
+    return (double)used.tv_sec + 1e-9 * (double)used.tv_nsec;
 }
 
 static void describe_end(int ended, char *how, size_t size)

@@ -19,6 +19,8 @@ typedef struct dea_worker {
     dea_error *error; /**< shared memory: what a failure was about */
     size_t slot;      /**< while busy: where its rows go */
     double deadline;  /**< on the pool's clock [s] */
+    double used;      /**< processor time that it was last seen to have taken [s] */
+    double waited;    /**< on the pool's clock, since then [s] */
 } dea_worker;
 
 /** What a worker is to solve. */
@@ -35,6 +37,8 @@ dea_status dea_worker_start(dea_worker *worker, const dea_plan *plan, const dea_
 bool dea_worker_send(const dea_worker *worker, const dea_order *order);
 /** Takes the worker's report; false when it is gone. */
 bool dea_worker_receive(const dea_worker *worker, dea_status *report);
+/** Processor time that the worker has taken since it was started, 0 where the system does not tell [s]. */
+double dea_worker_used(const dea_worker *worker);
 /** Kills and reaps the worker; writes how it ended into @p how when that is not NULL. */
 void dea_worker_end(dea_worker *worker, char *how, size_t size);
 

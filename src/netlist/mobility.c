@@ -181,6 +181,24 @@ static void write_motion(const writer *w)
     }
 }
 
+/* Corners of a segment up to its end. The library meets each, and from one to the next takes four steps at least, which it would
+ * not shorten for an edge that is shorter than one: corners on its line do that. */
+static void write_ramp(const writer *w, const dea_segment *segment)
+{
+    const dea_mobility_piece *p = w->piece;
+    const double from = fmax(segment->from, p->from);
+    const double end = fmin(segment->to, p->to);
+    const bool brief = segment->start != segment->end && end - from < p->parts * p->step;
+    const double parts = brief ? p->parts : 1.0;
+    for (double part = 1.0; part <= parts; part++) {
+        const double time = part == parts ? end : from + (end - from) * (part / parts);
+        fputc(' ', w->out);
+        dea_netlist_number(w->out, time - p->from);
+        fputc(' ', w->out);
+        dea_netlist_number(w->out, dea_segment_voltage(p->signal, segment, time));
+    }
+}
+
 /* The voltage of the source from the begin of the piece on: its segments as breakpoints, or a sine. */
 static void write_source(const writer *w, const char *node)
 {
@@ -204,11 +222,7 @@ static void write_source(const writer *w, const char *node)
     fputs("pwl(0 ", w->out);
     dea_netlist_number(w->out, dea_segment_voltage(p->signal, segment, p->from));
     for (size_t i = p->segment; i < p->signal->count && p->signal->segments[i].from < p->to; i++) {
-        const double end = fmin(p->signal->segments[i].to, p->to);
-        fputc(' ', w->out);
-        dea_netlist_number(w->out, end - p->from);
-        fputc(' ', w->out);
-        dea_netlist_number(w->out, dea_segment_voltage(p->signal, &p->signal->segments[i], end));
+        write_ramp(w, &p->signal->segments[i]);
     }
     fputs(")\n", w->out);
 }
@@ -301,7 +315,10 @@ static void write_start(writer *w)
     fputc('\n', out);
 }
 
-/* The steps are as long as they may be, the step control of the library is off: its errors would follow no order. The library
+/* Pivots are the largest elements (pivrel=1): with smaller ones the velocity of a spring's end, the difference of two fluxes over a
+ * step, is taken from the row that rounds it most, by 1e-16 u/h, which no tolerance of a velocity allows for.
+ *
+ * The steps are as long as they may be, the step control of the library is off: its errors would follow no order. The library
  * takes a corner at the print interval, with a first step of the Euler rule behind it, which would damp a ring: with mass that
  * interval is short. */
 static void write_analysis(const writer *w)
@@ -312,12 +329,12 @@ static void write_analysis(const writer *w)
     /* rounding of the velocity: of that of a ring, or where no mass holds it, of differences of u over a step */
     const double ring = p->mass > 0.0 ? 1e-14 * sqrt(p->force * p->scale / p->mass) : 1e-11 * speed;
     const double noise = w->mobility->displaced ? 0.0 : ring;
-    fputs(".options method=trap trtol=1e30 itl4=50 pivtol=1e-60 pivrel=0.3 reltol=", w->out);
+    fputs(".options method=trap trtol=1e30 itl4=50 pivtol=1e-60 pivrel=1 reltol=", w->out);
     dea_netlist_number(w->out, p->tolerance);
     fputs(" vntol=", w->out);
-    dea_netlist_number(w->out, 1e-11 * fmin(speed, p->scale) + noise);
+    dea_netlist_number(w->out, p->loose * (1e-11 * fmin(speed, p->scale) + noise));
     fputs(" abstol=", w->out);
-    dea_netlist_number(w->out, current_tolerance(w));
+    dea_netlist_number(w->out, p->loose * current_tolerance(w));
     fputs(" chgtol=1e-30\n.save", w->out);
     for (size_t i = 1; i < vectors.count; i++) {
         const char *name = vectors.names[i];

@@ -29,9 +29,11 @@ typedef struct dea_mobility_piece {
     size_t segment;     /* of `from` */
     double from, to;    /* [s] */
     double step;        /* longest time step [s] */
+    double parts;       /* an edge that is shorter than so many steps is cut into as many parts by corners */
     double scale;       /* size of a displacement, for tolerances [m] */
     double force;       /* that goes with it, for tolerances [N] */
     double tolerance;   /* of Newton's method in a step, relative [1] */
+    double loose;       /* absolute tolerances over the tightest that rounding is thought to allow, >= 1 */
     double mass;        /* [kg] */
     double conductance; /* 0: none; resistor beside the mass that fits the rule's damping to the film's [N s/m] */
     dea_mobility_state start;

@@ -14,17 +14,23 @@ typedef struct arguments {
     size_t first, count;
     long dump;          /* -1: none */
     const char *engine; /* NULL: all */
+    char *(*draw)(uint64_t seed, size_t number);
     bool verbose;
 } arguments;
 
-static const char *const usage = "Usage: promises [--scenes N] [--first K] [--seed S] [--engine E] [--dump K] [--verbose]\n";
+static const char *const usage =
+    "Usage: promises [--scenes N] [--first K] [--seed S] [--engine E] [--dump K] [--stalls] [--verbose]\n";
 
 static bool parse(int count, char **words, arguments *a)
 {
-    *a = (arguments){.seed = 1, .count = 500, .dump = -1};
+    *a = (arguments){.seed = 1, .count = 500, .dump = -1, .draw = draw_scene};
     for (int i = 1; i < count; i++) {
         if (strcmp(words[i], "--verbose") == 0) {
             a->verbose = true;
+            continue;
+        }
+        if (strcmp(words[i], "--stalls") == 0) {
+            a->draw = draw_stall;
             continue;
         }
         char *end = NULL;
@@ -86,7 +92,7 @@ static void print_table(tally tallies[MOST_ENGINES][STUDIES])
 static size_t judge_scene(const arguments *a, size_t number, tally tallies[MOST_ENGINES][STUDIES])
 {
     static const double asked[] = {1e-2, 1e-4, 1e-6};
-    char *text = draw_scene(a->seed, number), line[LINE];
+    char *text = a->draw(a->seed, number), line[LINE];
     size_t broken = 0;
     judged j;
     const double start = now();
@@ -134,7 +140,7 @@ int main(int count, char **words)
         return 2;
     }
     if (a.dump >= 0) {
-        char *text = draw_scene(a.seed, (size_t)a.dump);
+        char *text = a.draw(a.seed, (size_t)a.dump);
         fputs(text ? text : "", stdout);
         free(text);
         return 0;

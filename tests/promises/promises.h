@@ -82,6 +82,8 @@ double response_truth(const dea_scene *scene, const dea_model *model, dea_respon
 
 /* YAML of the scene of that number; freed by the caller. */
 char *draw_scene(uint64_t seed, size_t number);
+/* The same of one kind of transients, which names its accuracy (stalls.c). */
+char *draw_stall(uint64_t seed, size_t number);
 
 /* ---- judging (judge.c) */
 

@@ -1,6 +1,8 @@
 /* The moving network: mass, capacitance, energy, waveform; what every engine in the time domain builds on. */
 #include "scenes.h"
 
+#include <stdlib.h>
+
 #include "drive/signal.h"
 #include "network/dynamics.h"
 
@@ -217,6 +219,43 @@ static void segments_cover_the_run_without_gaps(void **state)
     }
 }
 
+static size_t segments_of(dea_waveform wave)
+{
+    const dea_scene scene = waved(wave, 0.5);
+    dea_signal signal;
+    assert_int_equal(dea_signal_open(&scene, &signal, NULL), DEA_OK);
+    const size_t count = signal.count;
+    dea_signal_close(&signal);
+    return count;
+}
+
+/* A ramp, a hold and a ramp down as a recorder writes them, in decimals; each corner is moved by @p off of its voltage. */
+static size_t segments_of_record(double off)
+{
+    enum { POINTS = 5001 };
+    static double times[POINTS], voltages[POINTS];
+    for (int i = 0; i < POINTS; i++) {
+        char text[32];
+        const double volts = i < 1000 ? 3.0 * i : i < 2000 ? 3000.0 : 5000.0 - i;
+        snprintf(text, sizeof text, "%.4f", 1e-4 * i);
+        times[i] = strtod(text, NULL);
+        voltages[i] = volts * (1.0 + (i % 2 ? off : -off));
+    }
+    return segments_of(
+        (dea_waveform){.kind = DEA_WAVE_POINTS, .times = times, .voltages = voltages, .point_count = POINTS, .period = (double)NAN});
+}
+
+static void corners_on_a_line_are_none(void **state)
+{
+    (void)state;
+    assert_int_equal(segments_of_record(0.0), 3);
+    assert_true(segments_of_record(1e-12) > 4950); /* far below what a film shows, above rounding but where the ramp ends */
+    static double times[] = {0.0, 0.1, 0.2, 0.3, 0.4}, voltages[] = {0.0, 1e-6, 2e-6, 3e3, 3e3};
+    const dea_waveform small = {
+        .kind = DEA_WAVE_POINTS, .times = times, .voltages = voltages, .point_count = 5, .period = (double)NAN};
+    assert_int_equal(segments_of(small), 3);
+}
+
 static double voltage_at(const dea_scene *scene, double time)
 {
     dea_signal signal;
@@ -383,6 +422,7 @@ int main(void)
         cmocka_unit_test(focal_length_of_a_shallow_cap_goes_with_the_fourth_power),
         cmocka_unit_test(displacement_past_the_frame_is_pull_in),
         cmocka_unit_test(segments_cover_the_run_without_gaps),
+        cmocka_unit_test(corners_on_a_line_are_none),
         cmocka_unit_test(waveforms_have_their_voltages),
         cmocka_unit_test(swept_edges_out_of_order_are_refused),
         cmocka_unit_test(jump_and_creep_close_the_energy_balance),

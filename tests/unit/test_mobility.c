@@ -39,7 +39,7 @@ static char *netlist_of(const dea_scene *scene)
     assert_int_equal(dea_mobility_open(scene, &dynamics, &mobility, &error), DEA_OK);
     assert_int_equal(dea_signal_open(scene, &signal, &error), DEA_OK);
     const dea_mobility_piece piece = {
-        .signal = &signal, .to = scene->transient.until, .step = 1e-3, .scale = 1e-3, .force = 1.0, .mass = dynamics.mass};
+        .signal = &signal, .to = scene->transient.until, .step = 1e-3, .loose = 1.0, .scale = 1e-3, .force = 1.0, .mass = dynamics.mass};
     assert_int_equal(dea_mobility_write(&mobility, &piece, &text, &error), DEA_OK);
     dea_signal_close(&signal);
     dea_mobility_close(&mobility);

@@ -24,6 +24,7 @@ struct dea_ngspice {
     bool complained;           /* a line of the log names an error */
     bool lost;                 /* the library asked to be detached */
     bool loaded;               /* a circuit is loaded */
+    size_t limit;              /* most points of the next run, 0: no limit */
 };
 
 /* Words of a line that names a failure; texts differ from version to version. */
@@ -169,6 +170,25 @@ static void clear_log(dea_ngspice *library)
     library->complained = false;
 }
 
+void dea_ngspice_limit(dea_ngspice *library, size_t points)
+{
+    library->limit = points;
+}
+
+/* Runs the loaded circuit; a breakpoint of the library ends it at the limit. */
+static void run_loaded(size_t limit)
+{
+    char stop[64];
+    snprintf(stop, sizeof stop, "stop after %zu", limit);
+    if (limit > 0) {
+        command(stop);
+    }
+    command("run");
+    if (limit > 0) {
+        command("delete all");
+    }
+}
+
 /* Cuts a copy of the netlist into cards and loads it. */
 static dea_status load(dea_ngspice *library, const char *netlist, dea_error *error)
 {
@@ -290,6 +310,8 @@ dea_status dea_ngspice_run_all(dea_ngspice *library, const char *netlist, const 
 {
     char before[64];
     *table = (dea_ngspice_table){0};
+    const size_t limit = library->limit;
+    library->limit = 0;
     clear_log(library);
     if (library->loaded) {
         command("remcirc"); /* else a refused circuit would leave the old one to run again */
@@ -302,7 +324,7 @@ dea_status dea_ngspice_run_all(dea_ngspice *library, const char *netlist, const 
     command("optran 1 1 1 0 0 0"); /* no rescue by a transient: it gives wrong numbers without an error */
     const char *plot = ngSpice_CurPlot();
     snprintf(before, sizeof before, "%s", plot ? plot : "");
-    command("run");
+    run_loaded(limit);
     const dea_status copied = library->lost ? dea_fail(error, DEA_ERROR_ENGINE, "ngspice gave up: %s", library->log)
                                             : copy(before, names, name_count, table, error);
     command("destroy all");

@@ -28,6 +28,9 @@ void dea_ngspice_name(char *text, size_t size);
 dea_status dea_ngspice_open(dea_ngspice **library, dea_error *error);
 void dea_ngspice_close(dea_ngspice *library);
 
+/* Ends the next run, and no other, once it has so many points. */
+void dea_ngspice_limit(dea_ngspice *library, size_t points);
+
 /* Loads a netlist (one card a line), runs its analysis and copies the vectors @p names of the new plot, DEA_NGSPICE_COLUMNS at
  * most. A run that ends early is no failure of this call: it gives the points before its end. DEA_ERROR_ENGINE with the library's
  * log: the netlist was refused, or the library is lost. */

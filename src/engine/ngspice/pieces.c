@@ -6,6 +6,16 @@
 /* Most corners of the voltage in one piece: the library walks through all of them at every step. */
 enum { MOST_CORNERS = 64 };
 
+/* Segments of a drive from which on its netlists cost more than their time steps: then a piece joins the one before it where that
+ * takes no more than so many steps more, what is left of a segment is no piece of its own below such a share of one, and a short
+ * edge shortens no step. */
+enum { MANY_SEGMENTS = 200 };
+static const double netlist_steps = 50.0;
+static const double rest_share[2] = {0.1, 0.5};
+
+/* Longest edge that counts as short, over the film's fastest time: its netlist cuts it by corners of its own. */
+static const double short_edge = 0.1;
+
 /* Coefficients of D(s). */
 typedef struct film {
     const dea_dynamics *dynamics;
@@ -116,11 +126,19 @@ typedef struct cutter {
     const dea_signal *signal;
     const dea_pace *pace;
     double life; /* of a ring [s] */
+    bool many;   /* segments */
     dea_pieces *pieces;
     size_t room;
     size_t corners; /* of the voltage inside the last piece */
     bool exhausted;
 } cutter;
+
+/* Time steps that two pieces would take with the shorter of their steps, beyond those that they take. */
+static double more_steps(const dea_piece *a, const dea_piece *b)
+{
+    const double step = fmin(a->step, b->step);
+    return (a->to - a->from) * (1.0 / step - 1.0 / a->step) + (b->to - b->from) * (1.0 / step - 1.0 / b->step);
+}
 
 /* True where the last piece can go on with that step through this segment. */
 static bool goes_on(const cutter *c, const dea_piece *next)
@@ -131,7 +149,7 @@ static bool goes_on(const cutter *c, const dea_piece *next)
     }
     const dea_piece *last = &c->pieces->pieces[c->pieces->count - 1];
     const bool alike = next->step <= 1.5 * last->step && last->step <= 1.5 * next->step;
-    return alike && !c->signal->segments[last->segment].sine && !c->signal->segments[next->segment].sine;
+    return (alike || (c->many && more_steps(last, next) <= netlist_steps)) && !c->signal->segments[last->segment].sine && !c->signal->segments[next->segment].sine;
 }
 
 static void add(cutter *c, dea_piece next)
@@ -186,15 +204,17 @@ static void cut_segment(cutter *c, size_t index, bool quiet)
     const bool still = !segment->sine && segment->start == segment->end;
     const double turn = 2.0 * DEA_PI * c->signal->sine.frequency;
     const double limit = still ? length : segment->sine ? fmin(0.5 / turn, 0.25 * length) : 0.25 * length;
+    const bool brief = c->many && !segment->sine && length <= short_edge * c->pace->fastest;
     const bool jump = index > 0 && c->signal->segments[index - 1].end != segment->start;
     double age = 0.0;
     while (age < length && !c->exhausted) {
         double until = length;
         const double wanted = quiet ? length : step_at(c, age, &until);
-        if (!(until < length - 0.1 * (until - age))) {
+        if (!(until < length - rest_share[c->many] * (until - age))) {
             until = length;
         }
-        const double step = fmin(fmin(limit, wanted), 0.125 * (until - age)); /* finer steps must differ from the first few */
+        const double seen = fmin(fmin(limit, wanted), 0.125 * (until - age)); /* finer steps must differ from the first few */
+        const double step = brief ? wanted : seen;
         add(c, (dea_piece){.from = segment->from + age,
                            .to = until == length ? segment->to : segment->from + until,
                            .step = step,
@@ -210,6 +230,7 @@ dea_status dea_pieces_cut(const dea_signal *signal, const dea_pace *pace, double
 {
     cutter c = {.signal = signal, .pace = pace, .pieces = pieces};
     *pieces = (dea_pieces){0};
+    c.many = signal->count > MANY_SEGMENTS;
     c.life = life > 0.0 ? life : pace->decay > 0.0 ? log(10.0 / accuracy) / pace->decay : (double)INFINITY;
     for (size_t i = 0; i < signal->count; i++) {
         const dea_segment *segment = &signal->segments[i];

@@ -30,9 +30,6 @@ static const column columns[] = {
     {DEA_STUDY_SWEEP, offsetof(dea_row, field), OVER_ITSELF, "field"},
     {DEA_STUDY_TRANSIENT, offsetof(dea_sample, displacement), OVER_PEAK, "displacement"},
     {DEA_STUDY_TRANSIENT, offsetof(dea_sample, strain), OVER_PEAK, "strain"},
-    {DEA_STUDY_TRANSIENT, offsetof(dea_sample, force), OVER_PEAK, "force"},
-    {DEA_STUDY_TRANSIENT, offsetof(dea_sample, charge), OVER_PEAK, "charge"},
-    {DEA_STUDY_TRANSIENT, offsetof(dea_sample, focal_length), OVER_PEAK, "focal_length"},
     {DEA_STUDY_AC, offsetof(dea_response, displacement), OVER_ITSELF, "displacement"},
     {DEA_STUDY_AC, offsetof(dea_response, displacement_phase), OVER_RADIAN, "phase"},
     {DEA_STUDY_AC, offsetof(dea_response, impedance), OVER_ITSELF, "impedance"},
@@ -52,7 +49,7 @@ static double spent(void)
     return sum;
 }
 
-static double number_at(const void *row, size_t offset)
+double number_at(const void *row, size_t offset)
 {
     double value;
     memcpy(&value, (const char *)row + offset, sizeof value);
@@ -224,10 +221,7 @@ static void set_least(const judged *j, const column *chosen, size_t count, doubl
     const double push = fabs((double)e.push.value) * volts * volts;
     const double u = fmin(push / (double)(e.area.value * e.stress.slope), (double)fminl(film.divide, film.frame - film.divide));
     const dea_sample swing = {.displacement = u,
-                              .strain = u / (double)film.divide,
-                              .force = push,
-                              .charge = (double)e.capacitance * volts,
-                              .focal_length = fmax(0.0, (double)film.focal_length)};
+                              .strain = u / (double)film.divide};
     for (size_t c = 0; c < count; c++) {
         least[c] = least_swing * number_at(&swing, chosen[c].offset);
     }
@@ -300,6 +294,15 @@ static found compare(const judged *j, const void *points, double accuracy)
                     worst.row = i;
                 }
             }
+        }
+    }
+    for (size_t p = 0; p < j->points && j->scene.study == DEA_STUDY_TRANSIENT && !worst.state; p++) {
+        const column_error other = columns_error(j, p, (const dea_sample *)(const void *)row_of(j, points, p, 0), accuracy);
+        if (other.error > worst.error) {
+            worst.error = other.error;
+            worst.column = other.column;
+            worst.point = p;
+            worst.row = other.row;
         }
     }
     return worst;

@@ -2,6 +2,7 @@
  * second time a thousand times tighter, so that the difference bounds the error. Branches are eliminated from the equations of a
  * step: with the stages' stress S, Z = (1 + h/tau A)^-1 (z + h/tau A S). */
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -189,6 +190,18 @@ static long double source_at(const motion *m, long double time)
         return m->factor * (sine->offset + sine->amplitude * sinl(2.0L * pi * (turns - floorl(turns)) + sine->phase));
     }
     return m->factor * (s->start + ((long double)s->end - s->start) * (time / ((long double)s->to - s->from)));
+}
+
+static long double source_slope(const motion *m, long double time)
+{
+    const dea_segment *s = m->segment;
+    const dea_sine *sine = &m->signal.sine;
+    if (s->sine) {
+        const long double pace = 2.0L * pi * (long double)sine->frequency;
+        const long double turns = (long double)sine->frequency * (s->from + time - (long double)sine->delay);
+        return m->factor * sine->amplitude * pace * cosl(2.0L * pi * (turns - floorl(turns)) + sine->phase);
+    }
+    return m->factor * ((long double)s->end - s->start) / ((long double)s->to - s->from);
 }
 
 /* (1 + h/tau A)^-1 and that times h/tau A, for each branch. */
@@ -423,7 +436,46 @@ static bool is_free(const true_film *f)
     return f->mass == 0.0L && f->retardation == 0.0L;
 }
 
-static bool record(motion *m, double time, const state *s)
+/* Velocity: of the mass, the state's. Without one it follows from the balance of forces, with neither mass nor damper from the rate
+ * of that balance: the stages of a step tell an algebraic displacement, not its slope. */
+static long double velocity_of(const motion *m, long double time, const state *s)
+{
+    const true_film *f = &m->film;
+    const true_edge e = film_edge(f, s->u);
+    if (f->mass > 0.0L) {
+        return s->v;
+    }
+    if (f->retardation > 0.0L) {
+        const long double rest = e.push.value * s->w * s->w - e.area.value * branch_stress(f, &e, s);
+        return rest / (e.area.value * f->retardation * e.stress.slope);
+    }
+    const bool series = f->series > 0.0L;
+    const long double pull = 2.0L * e.push.value * s->w; /* dF/dU */
+    long double rate = 0.0L, slope = source_slope(m, time), drag = 0.0L;
+    for (size_t b = 0; b < f->branches; b++) {
+        rate += e.area.value * f->share[b] * (e.stress.value - s->z[b]) / f->tau[b];
+    }
+    if (series) { /* U' = (i - U/R_p - C' U v)/C */
+        slope = ((source_at(m, time) - s->w) / f->series - s->w * f->conductance) / e.capacitance;
+        drag = pull * pull / e.capacitance;
+    }
+    return (rate + pull * slope) / (held_stiffness(f, s) + drag);
+}
+
+/* Current of the source: what the series resistance drops, or what charges the film and leaks through it. */
+static long double current_of(const motion *m, long double time, const state *s)
+{
+    const true_film *f = &m->film;
+    if (f->series > 0.0L) {
+        return (source_at(m, time) - s->w) / f->series;
+    }
+    const true_edge e = film_edge(f, s->u);
+    return e.capacitance * source_slope(m, time) + 2.0L * e.push.value * velocity_of(m, time, s) * s->w +
+           s->w * f->conductance;
+}
+
+/* A sample, the time behind the begin of the segment. */
+static bool record(motion *m, double time, long double here, const state *s)
 {
     const true_film *f = &m->film;
     if (!inside(m, s->u)) {
@@ -435,9 +487,9 @@ static bool record(motion *m, double time, const state *s)
         .voltage = (double)s->w,
         .displacement = row.displacement,
         .strain = row.strain,
-        .velocity = (double)s->v,
+        .velocity = (double)velocity_of(m, here, s),
         .force = row.force,
-        .current = (double)NAN,
+        .current = (double)current_of(m, here, s),
         .charge = (double)s->q,
         .focal_length = isnan((double)f->focal_length) ? (double)NAN : (double)film_focal_length(f, s->u / f->divide),
         .state = row.state};
@@ -459,7 +511,7 @@ static bool record_step(motion *m, const state *from, long double time, long dou
         if (here < time + h && !last && here > time && !step_by(m, from, time, here - time, &s)) {
             return false;
         }
-        if (!record(m, at, &s)) {
+        if (!record(m, at, here, &s)) {
             return false;
         }
     }
@@ -581,7 +633,7 @@ static void run(motion *m, long double tolerance)
             s.q = film_edge(&m->film, s.u).capacitance * to;
         }
         if (i == 0 && !m->gone) {
-            m->gone = !record(m, 0.0, &s);
+            m->gone = !record(m, 0.0, 0.0L, &s);
         }
         if (m->gone || !run_segment(m, &s)) {
             return;
@@ -617,6 +669,16 @@ static double gap(const motion *m, const dea_sample *a, size_t count)
     return (double)most;
 }
 
+/* Largest difference of a column [its unit]. */
+static double apart(const motion *m, const dea_sample *a, size_t count, size_t offset)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        most = fmax(most, fabs(number_at(&a[i], offset) - number_at(&m->samples[i], offset)));
+    }
+    return most;
+}
+
 static void solve_twice(motion *m, true_run *run_out)
 {
     dea_sample *first = malloc(m->rows * sizeof *first), *second = m->samples;
@@ -634,6 +696,8 @@ static void solve_twice(motion *m, true_run *run_out)
     }
     run_out->good = m->done;
     run_out->error = count == m->done ? 1e-16 + gap(m, first, count) : (double)INFINITY;
+    run_out->velocity_error = apart(m, first, count, offsetof(dea_sample, velocity));
+    run_out->current_error = apart(m, first, count, offsetof(dea_sample, current));
     run_out->steps = m->steps;
     run_out->why = m->why;
     free(first);

@@ -68,6 +68,7 @@ typedef struct true_run {
     dea_sample *samples; /* owned */
     size_t count, good;  /* rows, and those before a pull-in */
     double error;
+    double velocity_error, current_error; /* [m/s], [A] */
     double steps;
     const char *why; /* NULL: judged, else why the truth was not found */
 } true_run;
@@ -116,10 +117,24 @@ typedef struct judged {
     const char *why; /* NULL, or why nothing is judged */
 } judged;
 
+/* A number of a row. */
+double number_at(const void *row, size_t offset);
+
 bool judge_open(judged *j, const char *text, size_t number);
 void judge_close(judged *j);
 /* Runs an engine at one accuracy; adds to the tally. True where the promise was broken; *text then says how. */
 bool judge_engine(judged *j, const dea_engine *engine, double accuracy, tally *t, char *text, size_t size);
+
+/* What columns of transients that follow from displacement and charge are off by (columns.c). */
+typedef struct column_error {
+    const char *column;
+    size_t row;
+    double error; /* over what the column promises for an accuracy of 1 */
+} column_error;
+
+/* Worst of them in the rows of a point, of those whose truth is good to a tenth of what it judges. */
+column_error columns_error(const judged *j, size_t point, const dea_sample *rows, double accuracy);
+
 /* The tightest accuracy that the engine promises for such a study. */
 double best_accuracy(const dea_engine *engine, const dea_scene *scene);
 

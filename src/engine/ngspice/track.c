@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Most time steps of one netlist: what its plot takes of memory. */
 static const double most_steps = 300000.0;
@@ -21,6 +22,22 @@ static const double edge_parts = 2.0;
 /* Share of a step within which a film charges at once. */
 static const double at_once = 1e-2;
 
+/* Steps over a time of the network, above which the trapezoidal rule turns the sign of what is left of its motion at every step. */
+static const double alternating = 2.0;
+
+/* Rates of the states that steps do not resolve: what is left of a fast motion alternates there from step to step, and where a
+ * rate is a small difference over a short time, such as (S - z)/tau, it drowns. Their slopes over two steps leave it out,
+ * (y(t + h) - y(t - h))/2h, with an error that is even in h as the rule's own. */
+typedef struct fast_rates {
+    bool any, u, charge; /* which */
+    bool z[DEA_PRONY_MAX];
+} fast_rates;
+
+typedef struct slopes {
+    double u, charge; /* [m/s], [A] */
+    double z[DEA_PRONY_MAX];
+} slopes;
+
 /* An accepted point of the library with the slopes that go with it inside one segment. */
 typedef struct node {
     dea_moment moment;
@@ -28,6 +45,7 @@ typedef struct node {
     double stress;         /* S */
     double acceleration;   /* with mass [m/s^2] */
     double current;        /* slope of the charge, with series resistance [A] */
+    double rate[DEA_PRONY_MAX]; /* slopes of z */
     double complex change; /* what correct() has added [m] */
 } node;
 
@@ -45,6 +63,9 @@ typedef struct runner {
     double complex lag;     /* what irregular steps since the last corner did to a ring: to multiply by */
     double complex carried; /* what those before it did: to add [m] */
     size_t segment;
+    fast_rates fast;
+    dea_mobility_state before; /* the state before the last point, */
+    double before_time;        /* at that time, if it lies in the segment [s] */
     node last;      /* in the segment that begins there */
     double pending; /* weight of its powers [s] */
 } runner;
@@ -69,17 +90,31 @@ static double acceleration(const dea_dynamics *d, const dea_edge *e, const node 
     return (e->push * n->moment.voltage * n->moment.voltage - e->area * stress) / d->mass;
 }
 
+/* Rates of the branches: (S - z)/tau, or the slopes of those that are too fast for the steps. */
+static void set_rates(const runner *r, node *n, const slopes *slope)
+{
+    const dea_dynamics *d = r->route->dynamics;
+    for (size_t i = 0; i < d->branch_count; i++) {
+        n->rate[i] = slope && r->fast.z[i] ? slope->z[i] : (n->stress - n->state.z[i]) / d->branches[i].tau;
+    }
+}
+
 /* Velocity of a film without mass, or of one whose ring has died away: what is left of that would count too much over a long
  * step. */
-static void set_velocity(dea_dynamics *d, const dea_edge *e, node *n)
+static void set_velocity(const runner *r, const dea_edge *e, node *n)
 {
+    dea_dynamics *d = r->route->slow;
     dea_moment *m = &n->moment;
+    double z[DEA_PRONY_MAX]; /* that go with the rates */
+    for (size_t i = 0; i < d->branch_count; i++) {
+        z[i] = r->fast.z[i] ? n->stress - d->branches[i].tau * n->rate[i] : n->state.z[i];
+    }
     if (d->series > 0.0) {
         const double slope = n->current / e->capacitance;
-        m->v = dea_dynamics_velocity_charged(d, m->u, m->voltage, slope, n->state.z);
+        m->v = dea_dynamics_velocity_charged(d, m->u, m->voltage, slope, z);
         m->slope = slope - e->capacitance_slope * m->voltage / e->capacitance * m->v;
     } else {
-        m->v = dea_dynamics_velocity(d, m->u, m->voltage, m->slope, n->state.z);
+        m->v = dea_dynamics_velocity(d, m->u, m->voltage, m->slope, z);
     }
 }
 
@@ -107,8 +142,15 @@ static void follow_source(const runner *r, const dea_edge *e, node *n)
     }
 }
 
-/* A state at a time inside the segment. The velocity of a film without mass follows from the rest. */
-static node node_at(const runner *r, double time, const dea_mobility_state *state)
+/* True where the equation of motion itself gives the velocity's slope. */
+static bool is_heavy(const runner *r)
+{
+    return r->route->dynamics->mass > 0.0 && !r->slow && !r->fast.u;
+}
+
+/* A state at a time inside the segment, with the slopes of what is too fast for the steps, NULL: all is resolved. The velocity of
+ * a film without mass follows from the rest. */
+static node node_at(const runner *r, double time, const dea_mobility_state *state, const slopes *slope)
 {
     const dea_route *route = r->route;
     dea_dynamics *d = route->dynamics;
@@ -119,12 +161,17 @@ static node node_at(const runner *r, double time, const dea_mobility_state *stat
     n.moment.slope = dea_segment_slope(route->signal, segment, time);
     n.moment.voltage = d->series > 0.0 ? state->charge / e.capacitance : n.moment.source;
     if (d->series > 0.0) {
-        n.current = (n.moment.source - n.moment.voltage) / d->series - n.moment.voltage * d->conductance;
+        n.current = slope && r->fast.charge
+                        ? slope->charge
+                        : (n.moment.source - n.moment.voltage) / d->series - n.moment.voltage * d->conductance;
     }
-    if (r->slow || !(d->mass > 0.0)) {
-        set_velocity(route->slow, &e, &n);
-    } else {
+    set_rates(r, &n, slope);
+    if (slope && r->fast.u) {
+        n.moment.v = slope->u;
+    } else if (is_heavy(r)) {
         n.acceleration = acceleration(d, &e, &n);
+    } else {
+        set_velocity(r, &e, &n);
     }
     if (d->series > 0.0) {
         follow_source(r, &e, &n);
@@ -139,6 +186,13 @@ static double cubic(double a, double slope_a, double b, double slope_b, double h
     return a * y * y * (1.0 + 2.0 * x) + b * x * x * (1.0 + 2.0 * y) + h * x * y * (slope_a * y - slope_b * x);
 }
 
+/* Its slope. */
+static double cubic_slope(double a, double slope_a, double b, double slope_b, double h, double x)
+{
+    const double y = 1.0 - x;
+    return 6.0 * x * y * (b - a) / h + slope_a * y * (y - 2.0 * x) + slope_b * x * (x - 2.0 * y);
+}
+
 /* Quintic through two values, slopes and curvatures. */
 static double quintic(const node *a, const node *b, double h, double x)
 {
@@ -150,26 +204,35 @@ static double quintic(const node *a, const node *b, double h, double x)
            0.5 * h * h * (a->acceleration * y3 * x * x + b->acceleration * x3 * y * y);
 }
 
+/* Slopes between two points of one segment. */
+static slopes slopes_between(const runner *r, const node *a, const node *b, double x)
+{
+    const double h = b->moment.time - a->moment.time;
+    slopes s = {.u = cubic_slope(a->moment.u, a->moment.v, b->moment.u, b->moment.v, h, x),
+                .charge = cubic_slope(a->state.charge, a->current, b->state.charge, b->current, h, x)};
+    for (size_t i = 0; i < r->route->dynamics->branch_count; i++) {
+        s.z[i] = cubic_slope(a->state.z[i], a->rate[i], b->state.z[i], b->rate[i], h, x);
+    }
+    return s;
+}
+
 /* State between two points of one segment. */
 static node between(const runner *r, const node *a, const node *b, double time)
 {
-    const dea_dynamics *d = r->route->dynamics;
     const double h = b->moment.time - a->moment.time;
     const double x = (time - a->moment.time) / h;
     dea_mobility_state s = {.charge = cubic(a->state.charge, a->current, b->state.charge, b->current, h, x)};
-    for (size_t i = 0; i < d->branch_count; i++) {
-        const double rate = h / d->branches[i].tau;
-        const double slope_a = (a->stress - a->state.z[i]) * rate;
-        const double slope_b = (b->stress - b->state.z[i]) * rate;
-        s.z[i] = cubic(a->state.z[i], slope_a, b->state.z[i], slope_b, 1.0, x);
+    for (size_t i = 0; i < r->route->dynamics->branch_count; i++) {
+        s.z[i] = cubic(a->state.z[i], a->rate[i], b->state.z[i], b->rate[i], h, x);
     }
-    if (d->mass > 0.0 && !r->slow) {
+    if (is_heavy(r)) {
         s.u = quintic(a, b, h, x);
         s.v = cubic(a->moment.v, a->acceleration, b->moment.v, b->acceleration, h, x);
     } else {
         s.u = cubic(a->moment.u, a->moment.v, b->moment.u, b->moment.v, h, x);
     }
-    return node_at(r, time, &s);
+    const slopes slope = r->fast.any ? slopes_between(r, a, b, x) : (slopes){0};
+    return node_at(r, time, &s, r->fast.any ? &slope : NULL);
 }
 
 /* The edge lies between centre and frame. A linear film knows no frame: of what it does there only the samples tell. */
@@ -274,7 +337,8 @@ static void enter_segment(runner *r, double time, double next)
         r->carried = r->last.change;
         r->lag = 1.0;
         r->euler = true;
-        r->last = node_at(r, time, &state);
+        r->last = node_at(r, time, &state, NULL);
+        r->before_time = time;
     }
 }
 
@@ -299,12 +363,58 @@ static dea_state verdict(const runner *r)
     return lost ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
 }
 
-/* Takes one more point; false where the film has left what it can do. */
-static bool advance(runner *r, double time, const dea_mobility_state *state)
+/* Slope at @p time of the parabola through three values. */
+static double parabola_slope(const double time[3], double a, double b, double c, double at)
 {
-    enter_segment(r, r->last.moment.time, time);
-    node n = node_at(r, time, state);
-    correct(r, time - r->last.moment.time, &n);
+    const double left = (b - a) / (time[1] - time[0]), right = (c - b) / (time[2] - time[1]);
+    return left + (right - left) * (2.0 * at - time[0] - time[1]) / (time[2] - time[0]);
+}
+
+/* Slopes over three points, at the time of one of them. */
+static slopes slopes_over(const runner *r, const double time[3], const dea_mobility_state *const state[3], double at)
+{
+    slopes s = {.u = parabola_slope(time, state[0]->u, state[1]->u, state[2]->u, at),
+                .charge = parabola_slope(time, state[0]->charge, state[1]->charge, state[2]->charge, at)};
+    for (size_t i = 0; i < r->route->dynamics->branch_count; i++) {
+        s.z[i] = r->fast.z[i] ? parabola_slope(time, state[0]->z[i], state[1]->z[i], state[2]->z[i], at) : 0.0;
+    }
+    return s;
+}
+
+/* The point at hand and, in its segment, the one behind it: next_time <= time where there is none. */
+typedef struct ahead {
+    double time, next_time;
+    dea_mobility_state state, next;
+} ahead;
+
+/* Reads a point with its neighbours; the first of a segment is read anew once those behind it are known. */
+static node read_point(runner *r, const ahead *p)
+{
+    const bool follows = p->next_time > p->time, alone = !(r->before_time < r->last.moment.time);
+    if (!r->fast.any || (alone && !follows)) {
+        return node_at(r, p->time, &p->state, NULL);
+    }
+    const dea_mobility_state last = r->last.state;
+    const double ends[3] = {r->before_time, r->last.moment.time, p->time};
+    const double middle[3] = {r->last.moment.time, p->time, p->next_time};
+    const dea_mobility_state *const behind[3] = {&r->before, &last, &p->state};
+    const dea_mobility_state *const around[3] = {&last, &p->state, &p->next};
+    if (alone) {
+        const slopes first = slopes_over(r, middle, around, r->last.moment.time);
+        const double complex change = r->last.change;
+        r->last = node_at(r, r->last.moment.time, &last, &first);
+        r->last.change = change;
+    }
+    const slopes here = follows ? slopes_over(r, middle, around, p->time) : slopes_over(r, ends, behind, p->time);
+    return node_at(r, p->time, &p->state, &here);
+}
+
+/* Takes one more point; false where the film has left what it can do. */
+static bool advance(runner *r, const ahead *p)
+{
+    enter_segment(r, r->last.moment.time, p->time);
+    node n = read_point(r, p);
+    correct(r, p->time - r->last.moment.time, &n);
     if (!is_possible(r, &n)) {
         /* mass and damper carry the film out; without them Newton's method may have found a root of no film */
         const bool carried = !is_free(r->route->dynamics);
@@ -316,6 +426,8 @@ static bool advance(runner *r, double time, const dea_mobility_state *state)
     }
     add_step(r, &n);
     take_samples(r, &n);
+    r->before = r->last.state;
+    r->before_time = r->last.moment.time;
     r->last = n;
     return true;
 }
@@ -326,12 +438,32 @@ static dea_mobility_state scaled(dea_mobility_state state, double speed)
     return state;
 }
 
-/* Reads the last point anew where the way of reading it has changed: another segment, or another piece. */
+/* Which rates the steps do not resolve: a branch; a film that charges, but for what follow_source() sees; the velocity of a
+ * damper that bridges springs, r/K, or that a damper holds against the mass, m/r. */
+static void find_fast(runner *r)
+{
+    dea_dynamics *d = r->route->dynamics;
+    const dea_edge e = dea_dynamics_edge(d, r->last.moment.u);
+    const double resistance = e.area * d->retardation * e.stress_slope, limit = r->step / alternating;
+    const double held = dea_dynamics_stiffness(d, r->last.moment.u, r->last.moment.voltage, false);
+    const double heavy = d->mass > 0.0 ? (r->rings || r->slow ? (double)INFINITY : d->mass / resistance) : resistance / held;
+    r->fast = (fast_rates){.u = !is_free(d) && heavy < limit,
+                           .charge = d->series > 0.0 && d->series * e.capacitance < limit && !r->rings};
+    r->fast.any = r->fast.u || r->fast.charge;
+    for (size_t i = 0; i < d->branch_count; i++) {
+        r->fast.z[i] = d->branches[i].tau < limit;
+        r->fast.any = r->fast.any || r->fast.z[i];
+    }
+}
+
+/* Reads the last point anew as the piece does; rates that it does not resolve stay, but for those of a corner. */
 static void start_again(runner *r)
 {
     const dea_mobility_state state = r->last.state;
+    slopes known = {.u = r->last.moment.v, .charge = r->last.current};
+    memcpy(known.z, r->last.rate, sizeof known.z);
     settle(r);
-    r->last = node_at(r, r->last.moment.time, &state);
+    r->last = node_at(r, r->last.moment.time, &state, r->before_time < r->last.moment.time ? &known : NULL);
 }
 
 static void set_piece(runner *r, dea_mobility_piece *piece, double to, double step)
@@ -348,6 +480,7 @@ static void set_piece(runner *r, dea_mobility_piece *piece, double to, double st
     r->lag = 1.0;
     r->carried = 0.0;
     r->euler = true;
+    find_fast(r);
     start_again(r);
     *piece = (dea_mobility_piece){.signal = route->signal,
                                   .segment = r->segment,
@@ -364,10 +497,27 @@ static void set_piece(runner *r, dea_mobility_piece *piece, double to, double st
                                   .start = scaled(r->last.state, 1.0 / r->speed)};
 }
 
+/* The point at hand, and where rates need it the next one of its segment. */
+static ahead read_ahead(const runner *r, const dea_ngspice_table *table, size_t index, double time, double from, double to)
+{
+    const double *const *columns = (const double *const *)table->columns;
+    const dea_signal *signal = r->route->signal;
+    ahead p = {.time = time, .state = scaled(dea_mobility_read(r->route->mobility, columns, index), r->speed)};
+    if (!r->fast.any || index + 1 >= table->count || !(time < to)) {
+        return p;
+    }
+    const double next = fmin(from + table->columns[0][index + 1], to);
+    const size_t segment = dea_signal_find(signal, r->segment, 0.5 * (r->last.moment.time + time));
+    if (next > time && dea_signal_find(signal, segment, 0.5 * (time + next)) == segment) {
+        p.next_time = next;
+        p.next = scaled(dea_mobility_read(r->route->mobility, columns, index + 1), r->speed);
+    }
+    return p;
+}
+
 /* The points of one netlist. */
 static void absorb(runner *r, const dea_ngspice_table *table, double from, double to)
 {
-    const double *const *columns = (const double *const *)table->columns;
     const double *times = table->columns[0];
     const double length = to - from;
     for (size_t i = 0; i < table->count; i++) {
@@ -376,8 +526,8 @@ static void absorb(runner *r, const dea_ngspice_table *table, double from, doubl
         if (!(time > r->last.moment.time) || (time >= to && !last)) {
             continue; /* late in a run the steps of a short edge are finer than its time can be told */
         }
-        const dea_mobility_state state = scaled(dea_mobility_read(r->route->mobility, columns, i), r->speed);
-        if (!advance(r, time, &state) || last) {
+        const ahead p = read_ahead(r, table, i, time, from, to);
+        if (!advance(r, &p) || last) {
             return;
         }
     }
@@ -452,7 +602,8 @@ static void jump(runner *r, size_t segment)
         }
         dea_audit_jump(&r->track->audit, d, u, state.u, state.z);
     }
-    r->last = node_at(r, r->last.moment.time, &state);
+    r->last = node_at(r, r->last.moment.time, &state, NULL);
+    r->before_time = r->last.moment.time;
 }
 
 static dea_status run_piece(runner *r, const dea_piece *piece, double fineness, dea_error *error)
@@ -492,7 +643,7 @@ static bool start(runner *r)
             state.z[i] = e.stress;
         }
     }
-    r->last = node_at(r, 0.0, &state);
+    r->last = node_at(r, 0.0, &state, NULL);
     r->track->start = state;
     r->track->first = r->last.moment;
     r->track->first.v = 0.0;

@@ -1,0 +1,115 @@
+#include "result/scales.h"
+
+#include <math.h>
+#include <stddef.h>
+
+static const double missed = 0.01;  /* share of what the largest voltage does at rest below which a peak counts as that */
+static const double promised = 10.0; /* accuracies, of what follows from displacement and charge */
+
+double dea_scales_allowance(size_t offset)
+{
+    return offset == offsetof(dea_sample, displacement) || offset == offsetof(dea_sample, strain) ? 1.0 : promised;
+}
+
+/* Time in which the film answers a jump; *creep: only by its branches, of those that are not held [s]. */
+static double answer_time(dea_dynamics *d, bool *creep)
+{
+    const double held = dea_dynamics_stiffness(d, 0.0, 0.0, false);
+    const dea_edge e = dea_dynamics_edge(d, 0.0);
+    double time = d->series * e.capacitance;
+    if (d->mass > 0.0 && held > 0.0) {
+        time = fmax(time, sqrt(d->mass / held));
+    }
+    time = fmax(time, d->retardation);
+    *creep = !(time > 0.0);
+    if (*creep) {
+        double rate = 0.0;
+        for (size_t i = 0; i < d->branch_count; i++) {
+            rate += d->branches[i].share / (1.0 + d->total_share) / d->branches[i].tau;
+        }
+        time = rate > 0.0 ? 1.0 / rate : (double)INFINITY;
+    }
+    return time;
+}
+
+/* Change of the voltage within a segment over the largest one, and its time. */
+static double change_within(const dea_signal *signal, const dea_segment *segment, double *width)
+{
+    if (segment->sine) {
+        *width = 1.0 / (2.0 * DEA_PI * fabs(signal->sine.frequency));
+        return fabs(signal->sine.amplitude) / signal->largest;
+    }
+    *width = segment->to - segment->from;
+    return fabs(segment->end - segment->start) / signal->largest;
+}
+
+/* 1/T; @p follows: what changes with the voltage itself does so at once, and a jump of it is no rate. */
+static double pace_of(const dea_signal *signal, double first, double time, bool follows)
+{
+    double pace = 0.0, before = first;
+    for (size_t i = 0; i < signal->count; i++) {
+        const dea_segment *segment = &signal->segments[i];
+        double width;
+        const double change = change_within(signal, segment, &width);
+        const double jump = fabs(segment->start - before) / signal->largest;
+        pace = fmax(pace, fmax(jump / time, change / (follows ? width : fmax(width, time))));
+        before = segment->end;
+    }
+    return pace;
+}
+
+static void set_least(dea_scales *scales, dea_dynamics *d, const dea_signal *signal)
+{
+    const dea_edge e = dea_dynamics_edge(d, 0.0);
+    const double u = missed * dea_dynamics_scale(d, signal->largest);
+    scales->least = (dea_sample){.displacement = u,
+                                 .strain = u / d->radius,
+                                 .force = missed * fabs(e.push) * signal->largest * signal->largest,
+                                 .charge = missed * e.capacitance * signal->largest,
+                                 .focal_length = missed * fmax(0.0, d->focal_length)};
+}
+
+static void set_rates(dea_scales *scales, dea_dynamics *d, const dea_signal *signal, double first)
+{
+    bool creeps;
+    const dea_edge e = dea_dynamics_edge(d, 0.0);
+    const double answer = answer_time(d, &creeps), charging = d->series * e.capacitance;
+    scales->pace = pace_of(signal, first, answer, creeps);
+    scales->charging = pace_of(signal, first, charging > 0.0 ? charging : (double)INFINITY, !(charging > 0.0));
+    scales->motional = fabs(e.capacitance_slope) * signal->largest;
+}
+
+dea_scales dea_scales_open(const dea_scene *scene, const dea_model *model)
+{
+    dea_scene full = *scene; /* borrows what the scene owns */
+    dea_dynamics dynamics;
+    dea_signal signal = {0};
+    dea_scales scales = {0};
+    full.reduction = (dea_reduction){0};
+    if (dea_dynamics_open(&full, model, &dynamics, NULL) == DEA_OK && dea_signal_open(scene, &signal, NULL) == DEA_OK &&
+        signal.largest > 0.0) {
+        set_least(&scales, &dynamics, &signal);
+        set_rates(&scales, &dynamics, &signal, scene->transient.from_bias ? signal.segments[0].start : 0.0);
+    }
+    dea_signal_close(&signal);
+    dea_dynamics_close(&dynamics);
+    return scales;
+}
+
+dea_sample dea_scales_of(const dea_scales *scales, const dea_sample *samples, size_t count)
+{
+    dea_sample peak = scales->least;
+    for (size_t i = 0; i < count; i++) { /* fmax drops the NAN of rows without numbers */
+        peak.displacement = fmax(peak.displacement, fabs(samples[i].displacement));
+        peak.strain = fmax(peak.strain, fabs(samples[i].strain));
+        peak.velocity = fmax(peak.velocity, fabs(samples[i].velocity));
+        peak.force = fmax(peak.force, fabs(samples[i].force));
+        peak.current = fmax(peak.current, fabs(samples[i].current));
+        peak.charge = fmax(peak.charge, fabs(samples[i].charge));
+        peak.focal_length = fmax(peak.focal_length, fabs(samples[i].focal_length));
+    }
+    peak.velocity = fmax(peak.velocity, peak.displacement * scales->pace);
+    peak.current =
+        fmax(peak.current, peak.charge * scales->charging + scales->motional * peak.displacement * scales->pace);
+    return peak;
+}

@@ -1,0 +1,36 @@
+/* What the numbers of a transient's columns are measured by: an error counts relative to these.
+ *
+ *   displacement, strain, force, charge, focal length   their own peak over the samples, no less than a hundredth of what the
+ *                                                       largest voltage of the run does at rest
+ *   velocity, current   their own peak over the samples, no less than displacement and charge over the run's fastest time T
+ *
+ * The samples may miss the peak of a velocity behind an edge; T tells what it was. With a segment of the drive that changes the
+ * voltage by dU within w (a jump: w = 0; a sine of angular frequency f: its amplitude within 1/f),
+ *
+ *   1/T = max over the segments of (dU/U_max)/max(w, t)
+ *
+ * t is the time in which the film answers: the largest of sqrt(m/K), tau_KV and R C of those that it has, as each holds back what
+ * is faster (current: R C alone). A film that has none of them follows its voltage, so that its velocity in a jump is no number
+ * of the run; it creeps behind it in t = 1/sum(g_i/tau_i), its g of the instantaneous modulus. */
+#ifndef DEA_SCALES_H
+#define DEA_SCALES_H
+
+#include "drive/signal.h"
+#include "network/dynamics.h"
+
+typedef struct dea_scales {
+    dea_sample least; /* of the columns that are no rates */
+    double pace;      /* 1/T of the displacement [1/s] */
+    double charging;  /* 1/T of the charge [1/s] */
+    double motional;  /* C' U_max: current of a velocity [A s/m] */
+} dea_scales;
+
+/* Accuracies that a column of a transient promises, relative to its scale: 1 for displacement and strain, 10 for the others. */
+double dea_scales_allowance(size_t offset);
+
+/* Of the scene's full network under its drive, axes at their place; all 0 where that cannot be built. */
+dea_scales dea_scales_open(const dea_scene *scene, const dea_model *model);
+/* Scales of the columns over the rows of a run that have numbers, in the fields of a sample; time and voltage 0. */
+dea_sample dea_scales_of(const dea_scales *scales, const dea_sample *samples, size_t count);
+
+#endif

@@ -1,0 +1,67 @@
+/* Columns of transients that follow from displacement and charge: each within ten accuracies of its scale, as `deaspice check`
+ * measures them. */
+#include <math.h>
+#include <stddef.h>
+
+#include "engine/line.h"
+#include "promises.h"
+#include "result/scales.h"
+
+static const struct {
+    size_t offset;
+    const char *name;
+} columns[] = {
+    {offsetof(dea_sample, velocity), "velocity"}, {offsetof(dea_sample, force), "force"},
+    {offsetof(dea_sample, current), "current"},   {offsetof(dea_sample, charge), "charge"},
+    {offsetof(dea_sample, focal_length), "focal_length"},
+};
+
+/* How far off the truth of a column may be [its unit]; the others follow from displacement and voltage. */
+static double doubt(const true_run *run, size_t offset)
+{
+    return offset == offsetof(dea_sample, velocity)  ? run->velocity_error
+           : offset == offsetof(dea_sample, current) ? run->current_error
+                                                     : 0.0;
+}
+
+static bool has(const judged *j, size_t offset)
+{
+    for (size_t i = 0; i < j->layout.column_count; i++) {
+        if (j->layout.columns[i].offset == offset) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void hold(const true_run *truth, const dea_sample *rows, size_t column, double scale, column_error *worst)
+{
+    for (size_t i = 0; i < truth->good; i++) {
+        const double got = number_at(&rows[i], columns[column].offset);
+        const double wanted = number_at(&truth->samples[i], columns[column].offset);
+        const bool delivered = rows[i].state != DEA_STATE_FAILED && rows[i].state != DEA_STATE_PULL_IN;
+        const double gap = fabs(got - wanted);
+        const double error = !delivered || gap <= 0.0 ? 0.0 : isfinite(gap) ? gap / scale : (double)INFINITY;
+        if (error > worst->error) {
+            *worst = (column_error){columns[column].name, i, error};
+        }
+    }
+}
+
+column_error columns_error(const judged *j, size_t point, const dea_sample *rows, double accuracy)
+{
+    column_error worst = {.column = ""};
+    dea_scene here = j->scene;
+    dea_axes_place(&here, point);
+    const true_run *truth = &j->runs[point];
+    const dea_scales scales = dea_scales_open(&here, here.models[0]);
+    const dea_sample scale = dea_scales_of(&scales, truth->samples, truth->good);
+    for (size_t c = 0; c < sizeof columns / sizeof *columns; c++) {
+        const size_t offset = columns[c].offset;
+        const double promise = dea_scales_allowance(offset) * number_at(&scale, offset);
+        if (has(j, offset) && doubt(truth, offset) <= 0.1 * accuracy * promise) {
+            hold(truth, rows, c, promise, &worst);
+        }
+    }
+    return worst;
+}

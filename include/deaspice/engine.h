@@ -39,7 +39,8 @@ typedef struct dea_engine {
      * Anything but DEA_OK leaves the session unusable; rows are then undefined. */
     dea_status (*sweep)(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count, dea_row *rows,
                         dea_error *error);
-    /** Runs one transient: fills the samples of the layout, and the summary. All axes of @p scene are at their place. A run that
+    /** Runs one transient: fills the samples of the layout, and the summary (of its means those of windows that end before the
+     * last row with numbers count). All axes of @p scene are at their place. A run that
      * ends early (pull_in, failed) is no failure of this call: the rows tell, and where they are failed the message of @p error
      * says why. NULL: the engine has no time domain. */
     dea_status (*transient)(void *session, const dea_scene *scene, const dea_model *model, dea_sample *samples,

@@ -13,12 +13,6 @@
 extern "C" {
 #endif
 
-/** Means over a window of time, by the trapezoidal rule with interpolated ends. */
-typedef struct dea_average {
-    double strain;       /**< [1] */
-    double displacement; /**< [m] */
-} dea_average;
-
 /** The answer of the displacement to one edge of a step. The final value is the last one before the next edge or the end of the
  * run: with a slow creep it is no equilibrium. */
 typedef struct dea_edge_answer {
@@ -38,8 +32,6 @@ typedef struct dea_band {
     double bandwidth; /**< where it first falls to 1/sqrt(2) of its value at the lowest frequency [Hz] */
 } dea_band;
 
-/** Means of @p count samples over @p window. */
-DEA_API dea_average dea_measure_average(const dea_sample *samples, size_t count, dea_window window);
 /** Answers to the edges of the scene's step, those of its first period where it repeats; returns how many, 0 for every other
  * waveform. An edge with no sample behind it is left out. All axes of @p scene are at their place. */
 DEA_API size_t dea_measure_edges(const dea_scene *scene, const dea_sample *samples, size_t count,

@@ -2,7 +2,7 @@
  * What a moving scene needs at its accuracy: which elements of the network cannot change its samples by more than that, and the
  * cheapest model that is good enough.
  *
- * Displacement and film voltage count, each relative to its largest value over the samples. Every omission has a bound; the sum
+ * Displacement, its means over the scene's windows, and film voltage count, each relative to its largest value over the samples. Every omission has a bound; the sum
  * of the bounds stays below a quarter of the accuracy, and the engine gets the rest of it.
  */
 #ifndef DEASPICE_NEEDS_H

@@ -4,6 +4,7 @@
 #ifndef DEASPICE_RESULT_H
 #define DEASPICE_RESULT_H
 
+#include "deaspice/scene.h"
 #include "deaspice/status.h"
 
 #ifdef __cplusplus
@@ -65,6 +66,12 @@ typedef struct dea_sample {
     dea_state state;
 } dea_sample;
 
+/** Means over a window of time. */
+typedef struct dea_average {
+    double strain;       /**< [1] */
+    double displacement; /**< [m] */
+} dea_average;
+
 /** What a transient tells besides its samples. Energies are those between start and end of the run [J]. */
 typedef struct dea_summary {
     double error;    /**< estimated error of the displacement, relative to its peak, with what is left out [1] */
@@ -77,6 +84,9 @@ typedef struct dea_summary {
     double residual;   /**< of the balance of these, relative to the largest of them on the way [1] */
     double resonance;  /**< of the damped swing of the free film, at rest and 0 V [Hz]; NAN: it does not swing */
     double decay;      /**< of that swing [1/s], 0: undamped; NAN: none */
+    /** Means of the solution over the scene's windows, integrated by the engine whatever the samples, each within the accuracy of
+     * the displacement's peak; NAN for those that the scene does not have and where the film has no number in the window. */
+    dea_average averages[DEA_WINDOWS];
 } dea_summary;
 
 /** One frequency of an AC study. */
@@ -91,8 +101,6 @@ typedef struct dea_response {
 
 enum { DEA_LAYOUT_COLUMNS = 10 };
 
-struct dea_scene;
-
 /** How the result of one point of a study lies in memory: its rows, then its summary. */
 typedef struct dea_layout {
     dea_column columns[DEA_LAYOUT_COLUMNS]; /**< numeric columns, in order; the state column follows them */
@@ -104,13 +112,13 @@ typedef struct dea_layout {
 } dea_layout;
 
 /** Layout of the scene's study: which columns depends on what the scene has (electrical port, optics). */
-DEA_API dea_layout dea_layout_of(const struct dea_scene *scene);
+DEA_API dea_layout dea_layout_of(const dea_scene *scene);
 /** Time of sample @p index of a transient, frequency of row @p index of an AC study. */
-DEA_API double dea_layout_place(const struct dea_scene *scene, size_t index);
+DEA_API double dea_layout_place(const dea_scene *scene, size_t index);
 /** State of a row. */
 DEA_API dea_state dea_layout_state(const dea_layout *layout, const void *row);
 /** Makes every row of a point `failed`. */
-DEA_API void dea_layout_fail(const struct dea_scene *scene, const dea_layout *layout, void *point);
+DEA_API void dea_layout_fail(const dea_scene *scene, const dea_layout *layout, void *point);
 /** A summary without numbers. */
 DEA_API dea_summary dea_summary_failed(void);
 /** Summary of a transient's point. */

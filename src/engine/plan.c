@@ -170,6 +170,21 @@ static void doubt_balance(const dea_scene *scene, const dea_summary *summary, de
             summary->residual);
 }
 
+/* Of a window that reaches past the last row with numbers there is no mean. */
+static void drop_means(const dea_scene *scene, const dea_sample *samples, size_t rows, dea_summary *summary)
+{
+    size_t good = 0;
+    while (good < rows && isfinite(samples[good].displacement)) {
+        good++;
+    }
+    const double last = good == rows ? scene->transient.until : good > 0 ? samples[good - 1].time : -1.0;
+    for (size_t i = 0; i < DEA_WINDOWS; i++) {
+        if (i >= scene->transient.average_count || scene->transient.averages[i].to > last) {
+            summary->averages[i] = (dea_average){(double)NAN, (double)NAN};
+        }
+    }
+}
+
 /* The swing of the film with all that a run may leave out, unless the engine has found it in its own way. */
 static void tell_swing(dea_swing swing, dea_summary *summary)
 {
@@ -246,8 +261,11 @@ static dea_status run_point(const dea_plan *plan, void *session, const dea_model
         dea_layout_fail(plan->scene, &plan->layout, result);
         return DEA_OK;
     }
-    if (status == DEA_OK && here.study == DEA_STUDY_TRANSIENT)
-        doubt_balance(&here, dea_layout_summary(&plan->layout, result), error);
+    if (status == DEA_OK && here.study == DEA_STUDY_TRANSIENT) {
+        dea_summary *summary = dea_layout_summary(&plan->layout, result);
+        drop_means(&here, result, plan->layout.rows, summary);
+        doubt_balance(&here, summary, error);
+    }
     return status;
 }
 

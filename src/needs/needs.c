@@ -207,7 +207,7 @@ static void try_series(planner *p)
     double late = leak;
     size_t segment = 0;
     /* the first sample of a film at rest has no charge in any case */
-    for (size_t i = s->scene->transient.from_bias ? 0 : 1; i < s->count; i++) {
+    for (size_t i = s->scene->transient.from_bias ? 0 : 1; i < s->sampled; i++) {
         segment = dea_signal_find(&s->source, segment, dea_layout_place(s->scene, s->probes[i]));
         late = fmax(late, leak + lag_at(p, lag, segment, i));
     }

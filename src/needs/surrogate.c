@@ -56,7 +56,12 @@ static bool place_probes(dea_surrogate *s)
         }
         first = last + 1;
     }
-    return true;
+    s->sampled = s->count;
+    bool fits = true;
+    for (size_t i = 0; i < s->scene->transient.average_count && fits; i++) {
+        fits = add_probe(s, rows, 0.0);
+    }
+    return fits;
 }
 
 static void add_point(dea_surrogate *s, double u, double voltage)
@@ -246,10 +251,26 @@ static void set_walk(dea_surrogate *s, const dea_reduction *reduction, const dea
     s->walk->linear.force = point->push;
 }
 
+/* Adds what a segment does to the means. */
+static void walk_windows(const dea_surrogate *s, const dea_piece *piece, const dea_course *start, double *means)
+{
+    const dea_segment *segment = piece->segment;
+    for (size_t i = 0; i < s->scene->transient.average_count; i++) {
+        const dea_window *window = &s->scene->transient.averages[i];
+        const double from = fmax(window->from - segment->from, 0.0), to = fmin(window->to - segment->from, piece->length);
+        if (from < to) {
+            means[i] += dea_piece_integral(piece, &s->walk->now->modes, start, from, to) / (window->to - window->from);
+        }
+    }
+}
+
 static bool walk_probes(dea_surrogate *s, double *u, double *v)
 {
     dea_walk *walk = s->walk;
     size_t probe = 0;
+    for (size_t i = s->sampled; i < s->count; i++) {
+        u[i] = v[i] = 0.0;
+    }
     for (size_t i = 0; i < walk->signal->count; i++) {
         const dea_segment *segment = &walk->signal->segments[i];
         if (dea_walk_enter(walk, segment, NULL) != DEA_OK || walk->lost) {
@@ -257,7 +278,7 @@ static bool walk_probes(dea_surrogate *s, double *u, double *v)
         }
         dea_course start;
         const dea_piece piece = dea_walk_piece(walk, segment, &start);
-        for (; probe < s->count; probe++) {
+        for (; probe < s->sampled; probe++) {
             const double time = dea_layout_place(s->scene, s->probes[probe]);
             if (time > segment->to) {
                 break;
@@ -266,9 +287,10 @@ static bool walk_probes(dea_surrogate *s, double *u, double *v)
             u[probe] = motion.u;
             v[probe] = motion.v;
         }
+        walk_windows(s, &piece, &start, u + s->sampled);
         dea_walk_pass(walk, &piece, &start);
     }
-    return probe == s->count;
+    return probe == s->sampled;
 }
 
 bool dea_surrogate_solve(dea_surrogate *s, const dea_reduction *reduction, dea_surrogate_answer answer)

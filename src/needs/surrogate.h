@@ -23,8 +23,9 @@ typedef struct dea_surrogate {
     dea_dynamics dynamics;   /* owned, as all here: nothing left out */
     dea_signal source, film; /* voltage of the source; behind the series resistance, without one no segments */
     dea_walk *walk;
-    size_t *probes; /* samples that are looked at */
-    double *ages;   /* their times since the last corner of the voltage [s] */
+    size_t *probes; /* samples that are looked at; behind them stand the means over the scene's windows */
+    double *ages;   /* their times since the last corner of the voltage [s], 0 of a mean */
+    size_t sampled; /* probes that are samples */
     size_t count, room;
     dea_surrogate_point points[DEA_SURROGATE_POINTS];
     int point_count;
@@ -32,7 +33,7 @@ typedef struct dea_surrogate {
     double capacitance; /* larger one of rest and of the loaded film [F] */
 } dea_surrogate;
 
-/* Answers at the probes, operating point after operating point: room for point_count * count. */
+/* Answers at the probes, operating point after operating point: room for point_count * count. A mean has no velocity: 0. */
 typedef struct dea_surrogate_answer {
     double *u, *v; /* [m], [m/s] */
 } dea_surrogate_answer;

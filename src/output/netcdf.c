@@ -588,14 +588,14 @@ static void put_summaries(grid *file, size_t number, const char *point)
 {
     const dea_layout *layout = &file->layout;
     const dea_transient *transient = &file->scene->transient;
+    dea_summary summary;
+    memcpy(&summary, point + layout->rows * layout->row_size, sizeof summary);
     slab_begin(file, file->point_rank, number);
-    put_figures(file, file->summaries, summaries, SUMMARIES, point + layout->rows * layout->row_size);
+    put_figures(file, file->summaries, summaries, SUMMARIES, &summary);
     file->edge[file->point_rank] = 1;
     for (size_t i = 0; i < transient->average_count; i++) {
-        const dea_average average =
-            dea_measure_average((const dea_sample *)(const void *)point, layout->rows, transient->averages[i]);
         file->start[file->point_rank] = i;
-        put_figures(file, file->averages, averages, AVERAGES, &average);
+        put_figures(file, file->averages, averages, AVERAGES, &summary.averages[i]);
     }
 }
 

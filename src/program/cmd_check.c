@@ -40,6 +40,12 @@ static void print_heading(const char *path, const dea_comparison *comparison, do
     for (size_t c = 0; c < comparison->column_count; c++) {
         printf(" %12s", comparison->columns[c].head);
     }
+    if (scene->transient.average_count > 0) {
+        printf(" %12s", "mean");
+    }
+    if (scene->study == DEA_STUDY_TRANSIENT) {
+        printf(" %9s", "resonance");
+    }
     printf(" %8s", "states");
     if (scene->study == DEA_STUDY_TRANSIENT) {
         printf(" %9s %9s", "estimate", "balance");
@@ -62,6 +68,12 @@ static void print_line(const dea_engine *engine, const dea_comparison *compariso
     printf("  %-10s %9.3g %9.3g", engine->name, seconds, 1e6 * seconds / (double)comparison->points);
     for (size_t c = 0; c < comparison->column_count; c++) {
         print_cell(12, !comparison->filling, comparison->worst[c]);
+    }
+    if (comparison->scene->transient.average_count > 0) {
+        print_cell(12, !comparison->filling, comparison->mean);
+    }
+    if (comparison->scene->study == DEA_STUDY_TRANSIENT) {
+        print_cell(9, !comparison->filling, comparison->swing);
     }
     if (comparison->filling) {
         printf(" %8s", "-");
@@ -237,7 +249,7 @@ const dea_command dea_command_check = {
             "and compares the rows with those of the first engine. The columns show the\n"
             "largest relative difference of each quantity and the number of rows whose\n"
             "states differ. In a transient the difference is relative to the largest value\n"
-            "of the run, and the columns estimate and balance show what the engine itself\n"
+            "of the run, that of its means too; the columns estimate and balance show what the engine itself\n"
             "says of its error and of its energy balance. Phases differ in radian.\n"
             "\n"
             "Of a transient that leaves out parts of the network, each omission is measured\n"

@@ -61,12 +61,11 @@ static void print_place(FILE *stream, const dea_scene *scene, size_t number)
     }
 }
 
-static void print_averages(const dea_findings *findings, size_t number, const dea_sample *samples)
+static void print_averages(const dea_findings *findings, size_t number, const dea_transient *transient)
 {
-    const dea_transient *transient = &findings->scene->transient;
     for (size_t i = 0; findings->averages && i < transient->average_count; i++) {
         const dea_window window = transient->averages[i];
-        const dea_average mean = dea_measure_average(samples, findings->layout.rows, window);
+        const dea_average mean = findings->summary.averages[i];
         const double numbers[] = {window.from, window.to, mean.strain, mean.displacement};
         print_place(findings->averages, findings->scene, number);
         for (size_t k = 0; k < 4; k++) {
@@ -94,7 +93,7 @@ static void take_transient(dea_findings *findings, size_t number, const void *po
             break;
         }
     }
-    print_averages(findings, number, samples);
+    print_averages(findings, number, &placed.transient);
 }
 
 static void take_response(dea_findings *findings, const void *point)

@@ -158,6 +158,39 @@ static void compare_rows(dea_comparison *comparison, const char *point, const ch
     }
 }
 
+/* Rounding of a swing, over its size: that of films with many branches. */
+static const double same_swing = 1e-9;
+
+/* Frequency and decay over the magnitude of the complex root that they are. */
+static double swing_gap(const dea_summary *a, const dea_summary *b)
+{
+    if (isnan(a->resonance) && isnan(b->resonance)) {
+        return 0.0;
+    }
+    const double size = hypot(2.0 * DEA_PI * b->resonance, b->decay);
+    const double gap = hypot(2.0 * DEA_PI * (a->resonance - b->resonance), a->decay - b->decay) / size;
+    return gap <= same_swing ? 0.0 : isfinite(gap) ? gap : (double)INFINITY;
+}
+
+/* What stands behind the rows; a point that one of the two did not solve to its end has no figures. */
+static void compare_summaries(dea_comparison *comparison, const char *point, const char *reference, double peak)
+{
+    const dea_layout *layout = &comparison->layout;
+    dea_summary a, b;
+    memcpy(&a, point + layout->rows * layout->row_size, sizeof a);
+    memcpy(&b, reference + layout->rows * layout->row_size, sizeof b);
+    if (is_failed(comparison, point + (layout->rows - 1) * layout->row_size) ||
+        is_failed(comparison, reference + (layout->rows - 1) * layout->row_size)) {
+        return;
+    }
+    for (size_t i = 0; i < comparison->scene->transient.average_count; i++) {
+        const double found = a.averages[i].displacement, wanted = b.averages[i].displacement;
+        comparison->mean =
+            fmax(comparison->mean, difference(DEA_OVER_PEAK, found, wanted, 0.0, fmax(peak, fabs(wanted))));
+    }
+    comparison->swing = fmax(comparison->swing, swing_gap(&a, &b));
+}
+
 static void take_point(dea_comparison *comparison, size_t number, const char *point)
 {
     const dea_layout *layout = &comparison->layout;
@@ -181,6 +214,9 @@ static void take_point(dea_comparison *comparison, size_t number, const char *po
     }
     if (!comparison->filling) {
         compare_rows(comparison, point, reference, peaks);
+        if (comparison->scene->study == DEA_STUDY_TRANSIENT) {
+            compare_summaries(comparison, point, reference, peaks[0]); /* of the displacement */
+        }
     }
 }
 
@@ -208,6 +244,7 @@ void dea_comparison_close(dea_comparison *comparison)
 void dea_comparison_forget(dea_comparison *comparison)
 {
     memset(comparison->worst, 0, sizeof comparison->worst);
+    comparison->mean = comparison->swing = 0.0;
     comparison->states = 0;
     comparison->failed = 0;
     comparison->error = (double)NAN;
@@ -227,7 +264,7 @@ dea_status dea_comparison_take(dea_comparison *comparison, size_t first, const v
 
 double dea_comparison_worst(const dea_comparison *comparison)
 {
-    double worst = 0.0;
+    double worst = fmax(comparison->mean, comparison->swing);
     for (size_t c = 0; c < comparison->column_count; c++) {
         worst = fmax(worst, comparison->worst[c]);
     }

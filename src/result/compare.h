@@ -35,6 +35,8 @@ typedef struct dea_comparison {
     double scale[DEA_COMPARED_COLUMNS]; /* largest magnitude in the reference */
     /* since dea_comparison_forget(): */
     double worst[DEA_COMPARED_COLUMNS]; /* largest difference */
+    double mean;                        /* largest difference of the means over windows, over the displacement's peak */
+    double swing;                       /* largest difference of the film's swing, over its size; infinite: only one has it */
     size_t states;                      /* rows whose states differ */
     size_t failed;                      /* rows not solved */
     double error;                       /* largest error that the engine estimates, NAN: it does not tell */
@@ -51,7 +53,7 @@ void dea_comparison_forget(dea_comparison *comparison);
 /* Takes points in any order: into the reference, or against it. Rows that one of the two did not solve are not compared.
  * @return DEA_OK, DEA_ERROR_ENGINE (more points than the study has) */
 dea_status dea_comparison_take(dea_comparison *comparison, size_t first, const void *points, size_t count, dea_error *error);
-/* Largest difference over the compared columns; rows whose states differ do not count here. */
+/* Largest difference over the compared columns and figures; rows whose states differ do not count here. */
 double dea_comparison_worst(const dea_comparison *comparison);
 
 #endif

@@ -21,40 +21,12 @@ static size_t sample_before(const dea_sample *samples, size_t count, double time
     return low;
 }
 
-static dea_average sample_at(const dea_sample *samples, size_t count, double time)
+static double displacement_at(const dea_sample *samples, size_t count, double time)
 {
     const size_t i = sample_before(samples, count, time);
     const dea_sample *a = &samples[i], *b = &samples[i + 1 < count ? i + 1 : i];
     const double share = b->time > a->time ? (time - a->time) / (b->time - a->time) : 0.0;
-    return (dea_average){mix(a->strain, b->strain, share), mix(a->displacement, b->displacement, share)};
-}
-
-/* Adds the trapezoid between two samples. */
-static void add(dea_average *sum, dea_average a, dea_average b, double width)
-{
-    if (width > 0.0) {
-        sum->strain += 0.5 * width * (a.strain + b.strain);
-        sum->displacement += 0.5 * width * (a.displacement + b.displacement);
-    }
-}
-
-dea_average dea_measure_average(const dea_sample *samples, size_t count, dea_window window)
-{
-    const double width = window.to - window.from;
-    dea_average sum = {0.0, 0.0};
-    if (count == 0 || !(width > 0.0)) {
-        return (dea_average){(double)NAN, (double)NAN};
-    }
-    dea_average last = sample_at(samples, count, window.from);
-    double time = window.from;
-    for (size_t i = sample_before(samples, count, window.from) + 1; i < count && samples[i].time < window.to; i++) {
-        const dea_average next = {samples[i].strain, samples[i].displacement};
-        add(&sum, last, next, samples[i].time - time);
-        last = next;
-        time = samples[i].time;
-    }
-    add(&sum, last, sample_at(samples, count, window.to), window.to - time);
-    return (dea_average){sum.strain / width, sum.displacement / width};
+    return mix(a->displacement, b->displacement, share);
 }
 
 /* The samples first ... last of the plateau behind an edge, relative: 0 before the edge, 1 at the end. */
@@ -130,7 +102,7 @@ static bool edge_measure(const dea_sample *samples, size_t count, double from, d
     if (p.last <= p.first || samples[p.first].time > from) {
         return false;
     }
-    p.begin = sample_at(samples, count, from).displacement;
+    p.begin = displacement_at(samples, count, from);
     p.change = samples[p.last].displacement - p.begin;
     const double none = (double)NAN;
     *edge = (dea_edge_answer){.time = from, .change = p.change, .rise_time = none, .settling_time = none, .overshoot = none};

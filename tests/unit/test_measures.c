@@ -1,4 +1,4 @@
-/* Figures of merit against closed forms: averages, rise, settling, overshoot, resonance, bandwidth. */
+/* Figures of merit against closed forms: rise, settling, overshoot, resonance, bandwidth. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -43,45 +43,6 @@ static dea_scene step_make(answer *answers, double size)
         samples[i] = (dea_sample){.time = t, .displacement = size * u, .strain = 3.0 * size * u};
     }
     return scene;
-}
-
-static void mean_of_straight_lines_is_exact_between_samples(void **state)
-{
-    (void)state;
-    for (size_t i = 0; i < 11; i++) {
-        samples[i] = (dea_sample){.time = 0.1 * (double)i, .strain = 2.0 + 0.3 * (double)i, .displacement = -1.0 * (double)i};
-    }
-    static const dea_window windows[] = {{0.0, 1.0}, {0.0, 0.05}, {0.23, 0.77}, {0.41, 0.42}, {0.2, 0.3}, {0.95, 1.0}};
-    for (size_t i = 0; i < sizeof windows / sizeof *windows; i++) {
-        const double middle = 0.5 * (windows[i].from + windows[i].to);
-        const dea_average mean = dea_measure_average(samples, 11, windows[i]);
-        assert_relative(mean.strain, 2.0 + 3.0 * middle, 1e-12);
-        assert_relative(mean.displacement, -10.0 * middle, 1e-12);
-    }
-}
-
-static void mean_of_whole_periods_of_a_sine_is_its_offset(void **state)
-{
-    (void)state;
-    for (size_t i = 0; i < 1001; i++) {
-        const double t = 0.001 * (double)i;
-        samples[i] = (dea_sample){.time = t, .strain = 0.5 + sin(2.0 * DEA_PI * 5.0 * t), .displacement = 1.0};
-    }
-    assert_relative(dea_measure_average(samples, 1001, (dea_window){0.2, 0.8}).strain, 0.5, 1e-9);
-}
-
-static void mean_without_a_number_is_none(void **state)
-{
-    (void)state;
-    for (size_t i = 0; i < 11; i++) {
-        samples[i] = (dea_sample){.time = (double)i, .strain = 1.0, .displacement = i > 5 ? (double)NAN : 1.0};
-    }
-    const dea_average before = dea_measure_average(samples, 11, (dea_window){1.0, 5.0});
-    assert_relative(before.displacement, 1.0, 1e-15);
-    const dea_average across = dea_measure_average(samples, 11, (dea_window){1.0, 5.5});
-    assert_true(isnan(across.displacement));
-    assert_relative(across.strain, 1.0, 1e-15);
-    assert_true(isnan(dea_measure_average(samples, 0, (dea_window){1.0, 5.0}).strain));
 }
 
 static void first_order_rises_in_tau_ln_9_and_settles_in_tau_ln_50(void **state)
@@ -228,9 +189,6 @@ static void flat_or_broken_responses_have_no_figures(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mean_of_straight_lines_is_exact_between_samples),
-        cmocka_unit_test(mean_of_whole_periods_of_a_sine_is_its_offset),
-        cmocka_unit_test(mean_without_a_number_is_none),
         cmocka_unit_test(first_order_rises_in_tau_ln_9_and_settles_in_tau_ln_50),
         cmocka_unit_test(second_order_overshoots_by_its_damping),
         cmocka_unit_test(rise_begins_where_the_answer_begins_not_where_it_returns),

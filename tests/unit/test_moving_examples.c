@@ -126,9 +126,10 @@ static const dea_sample *samples_of(const outcome *out, size_t point)
 static double found(const outcome *out, const fact *f)
 {
     const dea_sample *samples = samples_of(out, f->point);
-    if (f->column == MEAN_STRAIN) {
-        const dea_window window = {f->at, f->to};
-        return dea_measure_average(samples, out->layout.rows, window).strain;
+    if (f->column == MEAN_STRAIN) { /* the example's first window */
+        const dea_transient *transient = &out->scene.transient;
+        assert_true(transient->averages[0].from == f->at && transient->averages[0].to == f->to);
+        return dea_layout_summary(&out->layout, out->points + f->point * out->layout.point_size)->averages[0].strain;
     }
     const size_t row = (size_t)lround(f->at / out->scene.transient.every);
     double value;

@@ -53,13 +53,13 @@ static inline dea_dual dea_dual_exp(dea_dual x, double square)
     return (dea_dual){0.5 * (slow + fast), 0.5 * x.odd * (slow - fast) / angle};
 }
 
-enum { DEA_PHI_COUNT = 3, DEA_PHI_TERMS = 18 };
+enum { DEA_PHI_COUNT = 4, DEA_PHI_TERMS = 18 };
 
 /* exp(z), and phi[k - 1] = phi_k(z) = int_0^1 e^{z (1 - x)} x^{k-1}/(k-1)! dx: phi_{k+1} = (phi_k - 1/k!)/z, phi_0 = e^z; a small
  * z would cancel there, so that it starts from the series of the last. */
 static inline dea_dual dea_dual_phi(dea_dual z, double square, dea_dual phi[DEA_PHI_COUNT])
 {
-    static const double inverse_factorial[DEA_PHI_COUNT] = {1.0, 1.0, 0.5};
+    static const double inverse_factorial[DEA_PHI_COUNT] = {1.0, 1.0, 0.5, 1.0 / 6.0};
     const dea_dual whole = dea_dual_exp(z, square);
     if (fmax(fabs(z.even), fabs(z.odd) * sqrt(fabs(square))) > 1.0) {
         dea_dual last = whole;
@@ -70,11 +70,11 @@ static inline dea_dual dea_dual_phi(dea_dual z, double square, dea_dual phi[DEA_
         return whole;
     }
     dea_dual sum = {0.0, 0.0};
-    for (int k = DEA_PHI_TERMS; k > DEA_PHI_COUNT; k--) { /* Horner: 1/3! (1 + z/4 (1 + z/5 (...))) */
+    for (int k = DEA_PHI_TERMS; k > DEA_PHI_COUNT; k--) { /* Horner: 1/4! (1 + z/5 (1 + z/6 (...))) */
         sum = dea_dual_scale(1.0 / k, dea_dual_mul(z, (dea_dual){1.0 + sum.even, sum.odd}, square));
     }
-    phi[2] = dea_dual_scale(1.0 / 6.0, (dea_dual){1.0 + sum.even, sum.odd});
-    for (int k = 1; k >= 0; k--) {
+    phi[DEA_PHI_COUNT - 1] = dea_dual_scale(1.0 / 24.0, (dea_dual){1.0 + sum.even, sum.odd});
+    for (int k = DEA_PHI_COUNT - 2; k >= 0; k--) {
         phi[k] = dea_dual_mul(z, phi[k + 1], square);
         phi[k].even += inverse_factorial[k + 1];
     }

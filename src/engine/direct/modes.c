@@ -385,17 +385,20 @@ void dea_modes_branches(const dea_modes *modes, const dea_amplitudes *a, double 
 
 void dea_advance_make(const dea_modes *modes, double time, dea_advance *advance)
 {
-    const double powers[DEA_PHI_COUNT] = {time, time * time, time * time * time};
+    const double powers[DEA_PHI_COUNT] = {time, time * time, time * time * time, time * time * time * time};
     dea_dual phi[DEA_PHI_COUNT];
+    advance->time = time;
     for (size_t j = 0; j < modes->count; j++) {
         const dea_root *root = &modes->roots[j];
         advance->decay[j] = dea_dual_phi((dea_dual){root->value * time, 0.0}, 0.0, phi).even;
+        advance->span[j] = time * phi[0].even;
         for (int k = 0; k < DEA_PHI_COUNT; k++) {
             advance->gain[j][k] = root->residue * powers[k] * phi[k].even;
         }
     }
     if (modes->pair) {
         advance->pair_decay = dea_dual_phi(dea_dual_scale(time, above(modes, 0.0)), modes->square, phi);
+        advance->pair_span = dea_dual_scale(time, phi[0]);
         for (int k = 0; k < DEA_PHI_COUNT; k++) {
             advance->pair_gain[k] = dea_dual_scale(powers[k], dea_dual_mul(modes->residue, phi[k], modes->square));
         }
@@ -422,4 +425,21 @@ void dea_advance_take(const dea_modes *modes, const dea_advance *advance, const 
         course->speed.pair = (dea_dual){fast.even + gain[0].even * force->slope + gain[1].even * force->bend,
                                         fast.odd + gain[0].odd * force->slope + gain[1].odd * force->bend};
     }
+}
+
+double dea_advance_integral(const dea_modes *modes, const dea_advance *advance, const dea_forcing *force,
+                            const dea_course *course)
+{
+    const double t = advance->time;
+    double sum = modes->prompt * t * (force->value + t * (force->slope / 2.0 + t * force->bend / 6.0));
+    for (size_t j = 0; j < modes->count; j++) {
+        const double *gain = advance->gain[j];
+        sum += advance->span[j] * course->place.roots[j] + gain[1] * force->value + gain[2] * force->slope + gain[3] * force->bend;
+    }
+    if (modes->pair) {
+        const dea_dual *gain = advance->pair_gain;
+        sum += dea_dual_mul(advance->pair_span, course->place.pair, modes->square).odd + gain[1].odd * force->value +
+               gain[2].odd * force->slope + gain[3].odd * force->bend;
+    }
+    return sum;
 }

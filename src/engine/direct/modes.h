@@ -92,14 +92,19 @@ double dea_modes_velocity(const dea_modes *modes, const dea_course *course, cons
 /* States of the branches z_i from the places [m], or z_i' from the speeds [m/s]. */
 void dea_modes_branches(const dea_modes *modes, const dea_amplitudes *a, double *z);
 
-/* What a time does to the amplitudes: their decay, and what force, slope and bend add. */
+/* What a time t does to the amplitudes: their decay, and what force, slope and bend add, t^k phi_k(s t)/p'(s); to their integrals:
+ * t phi_1 times what they were, and the next gain instead of each. */
 typedef struct dea_advance {
-    double decay[DEA_MODES_MAX], gain[DEA_MODES_MAX][DEA_PHI_COUNT];
-    dea_dual pair_decay, pair_gain[DEA_PHI_COUNT];
+    double time;
+    double decay[DEA_MODES_MAX], span[DEA_MODES_MAX], gain[DEA_MODES_MAX][DEA_PHI_COUNT];
+    dea_dual pair_decay, pair_span, pair_gain[DEA_PHI_COUNT];
 } dea_advance;
 
 void dea_advance_make(const dea_modes *modes, double time, dea_advance *advance);
 /* Moves the course by that time; @p force is that at its begin. */
 void dea_advance_take(const dea_modes *modes, const dea_advance *advance, const dea_forcing *force, dea_course *course);
+/* Integral of the displacement over that time from the course on, in closed form [m s]. */
+double dea_advance_integral(const dea_modes *modes, const dea_advance *advance, const dea_forcing *force,
+                            const dea_course *course);
 
 #endif

@@ -410,3 +410,20 @@ dea_spent dea_piece_spend(const dea_piece *piece, const dea_modes *modes, const 
     }
     return spent;
 }
+
+double dea_piece_integral(const dea_piece *piece, const dea_modes *modes, const dea_course *start, double from, double to)
+{
+    dea_advance advance;
+    dea_course course = *start;
+    dea_advance_make(modes, from, &advance);
+    dea_advance_take(modes, &advance, &piece->force, &course);
+    dea_advance_make(modes, to - from, &advance);
+    const dea_forcing force = dea_piece_force(piece, from);
+    double complex sum = dea_advance_integral(modes, &advance, &force, &course);
+    double complex turn = 1.0;
+    for (int k = 0; k < DEA_HARMONICS && piece->omega > 0.0; k++) {
+        turn *= advance_turn(piece, from);
+        sum += piece->displacement[k] * turn * integral(harmonic(piece, k), to - from);
+    }
+    return creal(sum);
+}

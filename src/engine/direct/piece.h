@@ -37,6 +37,9 @@ typedef struct dea_motion {
 } dea_motion;
 dea_motion dea_piece_motion(const dea_piece *piece, const dea_modes *modes, const dea_course *course, double t);
 
+/* Integral of the displacement from time @p from to @p to of the piece [m s]; @p start: the course without harmonics at its begin. */
+double dea_piece_integral(const dea_piece *piece, const dea_modes *modes, const dea_course *start, double from, double to);
+
 /* Energies that change during a piece, each an integral of its own. */
 typedef struct dea_spent {
     double push;     /* int F v dt [J] */

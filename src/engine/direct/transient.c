@@ -18,6 +18,7 @@ typedef struct run {
     dea_sample *samples;
     size_t rows, row; /* the next one */
     dea_audit audit;
+    double integrals[DEA_WINDOWS]; /* of u over the windows of the scene [m s] */
     double peak;  /* of |u| at the samples [m] */
     double parts; /* of what a sine does [m] */
     double turns; /* of the pair and of the sine, which round [rad] */
@@ -207,6 +208,20 @@ static void audit_piece(run *r, const dea_piece *piece, const dea_course *start,
     see_energies(r);
 }
 
+/* Adds what a segment does inside the windows. */
+static void integrate(run *r, const dea_piece *piece, const dea_course *start)
+{
+    const dea_segment *segment = piece->segment;
+    for (size_t i = 0; i < r->scene->transient.average_count; i++) {
+        const dea_window *window = &r->scene->transient.averages[i];
+        const double from = fmax(window->from - segment->from, 0.0);
+        const double to = fmin(window->to - segment->from, piece->length);
+        if (from < to) {
+            r->integrals[i] += dea_piece_integral(piece, &r->walk.now->modes, start, from, to);
+        }
+    }
+}
+
 static void count_turns(run *r, const dea_piece *piece)
 {
     const dea_modes *modes = &r->walk.now->modes;
@@ -243,6 +258,7 @@ static dea_status run_segment(run *r, const dea_segment *segment, bool last, dea
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the sine drives the film at an undamped resonance");
     }
     write_rows(r, &piece, &start, last);
+    integrate(r, &piece, &start);
     dea_walk_pass(&r->walk, &piece, &start);
     audit_piece(r, &piece, &start, first, branches);
     count_turns(r, &piece);
@@ -290,6 +306,15 @@ static void close_audit(run *r, const dea_moment *first, dea_summary *summary)
     dea_audit_close(&r->audit, &r->dynamics, first, first_z, &last, last_z, summary);
 }
 
+static void tell_averages(const run *r, dea_summary *summary)
+{
+    for (size_t i = 0; i < r->scene->transient.average_count; i++) {
+        const dea_window *window = &r->scene->transient.averages[i];
+        const double mean = r->integrals[i] / (window->to - window->from);
+        summary->averages[i] = (dea_average){mean / r->dynamics.radius, mean};
+    }
+}
+
 static dea_status run_segments(run *r, dea_summary *summary, dea_error *error)
 {
     dea_status status = DEA_OK;
@@ -308,6 +333,7 @@ static dea_status run_segments(run *r, dea_summary *summary, dea_error *error)
     if (status == DEA_OK && !r->walk.lost) {
         close_audit(r, &first, summary);
     }
+    tell_averages(r, summary);
     summary->error = error_of(r);
     tell_swing(r, summary);
     return status;

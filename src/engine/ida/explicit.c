@@ -1,6 +1,6 @@
 /* A ring by ARKODE: Verner's explicit Runge-Kutta method of order 6, from sample to sample. (Fehlberg's of order 8 cannot see the
  * error of a pure integral, and the module ERKStep of SUNDIALS 6 takes the last stage of either for the first of the next step.)
- * In an audited run the energies are unknowns too. */
+ * In an audited run the energies are unknowns too, and where means are wanted the integral of the displacement. */
 #include <arkode/arkode_arkstep.h>
 #include <math.h>
 
@@ -23,6 +23,9 @@ enum { WORK, DISSIPATED, BRANCH, ENERGIES };
 typedef struct explicit_run {
     dea_flight *flight; /* borrowed */
     double energy;      /* size of energies [J] */
+    int audited;        /* unknowns behind those of the motion: energies */
+    int integrated;     /* and the integral of u omega, in units of u */
+    double integral;    /* of that up to the last stop */
     long before;        /* steps of the run before this one */
     N_Vector w;         /* owned, as all below: unknowns, then energies */
     N_Vector tolerance;
@@ -56,8 +59,11 @@ static int rates(sunrealtype time, N_Vector w, N_Vector wp, void *user)
         return 1;
     }
     dea_ring_rates(flight->ring, turn, unknowns, f, out);
-    if (flight->audit) {
+    if (run->audited > 0) {
         powers(run, time, y, out + flight->motion.count);
+    }
+    if (run->integrated > 0) {
+        out[flight->motion.count + run->audited] = y[0] * flight->ring->omega;
     }
     return 0;
 }
@@ -77,7 +83,7 @@ static bool begin(explicit_run *run)
     dea_flight *flight = run->flight;
     const int n = flight->motion.count;
     const SUNContext context = flight->integrator.context;
-    run->w = N_VNew_Serial(n + (flight->audit ? ENERGIES : 0), context);
+    run->w = N_VNew_Serial(n + run->audited + run->integrated, context);
     run->tolerance = run->w ? N_VClone(run->w) : NULL;
     if (!run->tolerance) {
         return false;
@@ -85,7 +91,7 @@ static bool begin(explicit_run *run)
     N_VConst(0.0, run->w);
     N_VConst(flight->tolerance, run->tolerance);
     dea_ring_unknowns(flight->ring, dea_ring_turn(flight->ring, 0.0, 0.0), flight->y, N_VGetArrayPointer(run->w));
-    for (int i = 0; flight->audit && i < ENERGIES; i++) {
+    for (int i = 0; i < run->audited; i++) {
         N_VGetArrayPointer(run->tolerance)[n + i] = 1e-4 * flight->scene->accuracy;
     }
     run->ark = ARKStepCreate(rates, NULL, 0.0, run->w, context);
@@ -115,14 +121,44 @@ static bool endless(const explicit_run *run, double to, double time)
     return !dea_flight_affords(flight, 0.7 * steps * rest / time);
 }
 
-/* Steps to the next sample, or to the end if that is nearer. */
+/* The first end of a window behind a time of the segment, at the most @p to. */
+static double next_end(const dea_flight *flight, double time, double to)
+{
+    const dea_transient *transient = &flight->scene->transient;
+    for (size_t i = 0; i < transient->average_count; i++) {
+        const double ends[] = {transient->averages[i].from, transient->averages[i].to};
+        for (int k = 0; k < 2; k++) {
+            const double at = ends[k] - flight->motion.segment->from;
+            to = at > time && at < to ? at : to;
+        }
+    }
+    return to;
+}
+
+/* Adds what a stretch between two stops does to the windows: but for rounding it lies inside of each, or outside. */
+static void integrate(explicit_run *run, double before, double time)
+{
+    dea_flight *flight = run->flight;
+    const dea_motion *motion = &flight->motion;
+    const double middle = motion->segment->from + 0.5 * (before + time);
+    const double whole = run->integrated > 0 ? N_VGetArrayPointer(run->w)[motion->count + run->audited] : 0.0;
+    for (size_t i = 0; i < flight->scene->transient.average_count; i++) {
+        const dea_window *window = &flight->scene->transient.averages[i];
+        if (window->from < middle && middle < window->to) {
+            flight->trace->integrals[i] += (whole - run->integral) * motion->size[0] / flight->ring->omega;
+        }
+    }
+    run->integral = whole;
+}
+
+/* Steps to the next sample or end of a window, or to the end if that is nearer. */
 static dea_state advance(explicit_run *run, double to, double *time)
 {
     dea_flight *flight = run->flight;
     const dea_segment *segment = flight->motion.segment;
-    const double next = dea_flight_next_sample(flight);
-    const bool sampled = next <= segment->to && next - segment->from <= to;
-    const double stop = sampled ? fmax(*time, next - segment->from) : to;
+    const double next = dea_flight_next_sample(flight), before = *time, end = next_end(flight, before, to);
+    const bool sampled = next <= segment->to && next - segment->from <= end;
+    const double stop = sampled ? fmax(before, next - segment->from) : end;
     for (int code = ARK_SUCCESS; *time < stop && code != ARK_TSTOP_RETURN;) {
         code = DEA_ARK(SetStopTime)(run->ark, stop);
         code = code == ARK_SUCCESS ? DEA_ARK(Evolve)(run->ark, stop, run->w, time, ARK_ONE_STEP) : code;
@@ -134,6 +170,7 @@ static dea_state advance(explicit_run *run, double to, double *time)
             return DEA_STATE_FAILED;
         }
     }
+    integrate(run, before, stop);
     return !sampled || dea_flight_record(flight, stop, flight->y) ? DEA_STATE_OK : DEA_STATE_PULL_IN;
 }
 
@@ -155,6 +192,8 @@ dea_state dea_flight_explicit(dea_flight *flight, double to)
     const dea_motion *motion = &flight->motion;
     explicit_run run = {
         .flight = flight, .before = flight->steps, .energy = motion->stiffness * motion->size[0] * motion->size[0]};
+    run.audited = flight->audit ? ENERGIES : 0;
+    run.integrated = flight->scene->transient.average_count > 0 ? 1 : 0;
     dea_state state = begin(&run) ? DEA_STATE_OK : DEA_STATE_FAILED;
     double time = 0.0;
     while (state == DEA_STATE_OK && time < to) {

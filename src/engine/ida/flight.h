@@ -15,6 +15,7 @@ typedef struct dea_trace {
     size_t count;                /* samples in use */
     dea_state end;               /* ok, or what all samples from count on are */
     double largest_u, largest_v; /* on the way [m], [m/s] */
+    double integrals[DEA_WINDOWS]; /* of u over the windows of the scene [m s] */
 } dea_trace;
 
 typedef struct dea_flight {

@@ -147,8 +147,12 @@ static double gauss_at(int g)
     return g < NODES / 2 ? gauss[NODES / 2 - 1 - g] : gauss[g - NODES / 2];
 }
 
-static void audit_at(const dea_flight *flight, double time, double angle, const double *w, double weight)
+/* What a quadrature over a step adds up: at a time, its ring turned on by an angle, with that weight [s]. */
+typedef void visit(const dea_flight *flight, double time, double angle, const double *w, double weight, double *sum);
+
+static void audit_at(const dea_flight *flight, double time, double angle, const double *w, double weight, double *sum)
 {
+    (void)sum;
     double y[DEA_MOTION_MOST], z[DEA_PRONY_MAX];
     const dea_turn turn = dea_ring_turn(flight->ring, time, angle);
     dea_ring_state(flight->ring, turn, w, y);
@@ -156,6 +160,13 @@ static void audit_at(const dea_flight *flight, double time, double angle, const 
     take_current(flight, time, turn, w, &moment);
     dea_motion_branches(&flight->motion, y, z);
     dea_audit_add(flight->audit, flight->motion.dynamics, &moment, z, weight);
+}
+
+static void displacement_at(const dea_flight *flight, double time, double angle, const double *w, double weight, double *sum)
+{
+    double y[DEA_MOTION_MOST];
+    dea_ring_state(flight->ring, dea_ring_turn(flight->ring, time, angle), w, y);
+    *sum += weight * y[0] * flight->motion.size[0];
 }
 
 /* Powers that turn with the ring, P = sum p_k e^{ik omega t}, |k| <= 2, with p_k smooth over the step of half width a: at each
@@ -181,7 +192,7 @@ static void project(double x, double q, double *real, double *imaginary)
     }
 }
 
-static void audit_turns(const dea_flight *flight, double from, double to)
+static void visit_turns(const dea_flight *flight, double from, double to, visit *at, double *sum)
 {
     const double half = 0.5 * (to - from);
     const double kappa = flight->ring->omega * half;
@@ -203,17 +214,17 @@ static void audit_turns(const dea_flight *flight, double from, double to)
                 const double angle = k * (phase + kappa * x);
                 weight += 2.0 * (cos(angle) * real[k - 1] + sin(angle) * imaginary[k - 1]);
             }
-            audit_at(flight, time, phase, w, half * gauss_at(g) / PHASES * weight);
+            at(flight, time, phase, w, half * gauss_at(g) / PHASES * weight, sum);
         }
     }
 }
 
-/* Energies of a step: by Gauss's rule where it resolves the ring. */
-static void audit_step(const dea_flight *flight, double from, double to)
+/* Part of a step: by Gauss's rule where it resolves the ring. */
+static void visit_step(const dea_flight *flight, double from, double to, visit *at, double *sum)
 {
     const double angle = flight->ring->turns ? 0.5 * flight->ring->omega * (to - from) : 0.0;
     if (angle > NODES) {
-        audit_turns(flight, from, to);
+        visit_turns(flight, from, to, at, sum);
         return;
     }
     const int panels = 1 + (int)angle;
@@ -222,7 +233,20 @@ static void audit_step(const dea_flight *flight, double from, double to)
         const double time = from + half * (2 * (i / NODES) + 1.0 + node_at(i % NODES));
         const double *w = unknowns_at(flight, time, 0);
         if (w) {
-            audit_at(flight, time, 0.0, w, half * gauss_at(i % NODES));
+            at(flight, time, 0.0, w, half * gauss_at(i % NODES), sum);
+        }
+    }
+}
+
+/* Adds what a step does inside the windows. */
+static void integrate_step(const dea_flight *flight, double before, double time)
+{
+    const double begin = flight->motion.segment->from;
+    for (size_t i = 0; i < flight->scene->transient.average_count; i++) {
+        const dea_window *window = &flight->scene->transient.averages[i];
+        const double from = fmax(before, window->from - begin), to = fmin(time, window->to - begin);
+        if (from < to) {
+            visit_step(flight, from, to, displacement_at, &flight->trace->integrals[i]);
         }
     }
 }
@@ -282,8 +306,9 @@ dea_state dea_flight_implicit(dea_flight *flight, double from)
         if (dea_motion_firmness(&flight->motion, time, flight->y) < folded) {
             return DEA_STATE_PULL_IN;
         }
+        integrate_step(flight, before, time);
         if (flight->audit) {
-            audit_step(flight, before, time);
+            visit_step(flight, before, time, audit_at, NULL);
         }
     }
     return DEA_STATE_OK;

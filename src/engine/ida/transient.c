@@ -24,7 +24,21 @@ static double peak(const dea_trace *trace)
     return largest;
 }
 
-/* Largest difference of two runs: displacement and film voltage relative to their peaks. A velocity that is a state is held to
+/* Mean displacement over a window [m]. */
+static double mean(const dea_flight *flight, const dea_trace *trace, size_t window)
+{
+    const dea_window *w = &flight->scene->transient.averages[window];
+    return trace->integrals[window] / (w->to - w->from);
+}
+
+/* True where the film has numbers all over a window. */
+static bool covers(const dea_flight *flight, const dea_trace *trace, size_t window)
+{
+    const double last = trace->count > 0 ? trace->moments[trace->count - 1].time : -1.0;
+    return trace->end == DEA_STATE_OK || flight->scene->transient.averages[window].to <= last;
+}
+
+/* Largest difference of two runs: displacement, its means and film voltage relative to their peaks. A velocity that is a state is held to
  * ten times that, relative to its peak and no less than what moves the film by its displacement within the run. */
 static double difference(const dea_flight *flight, const dea_trace *a, const dea_trace *b)
 {
@@ -34,6 +48,10 @@ static double difference(const dea_flight *flight, const dea_trace *a, const dea
     const double share = flight->motion.v >= 0 ? 0.1 : 0.0;
     const size_t count = a->count < b->count ? a->count : b->count;
     double largest = 0.0;
+    for (size_t i = 0; i < flight->scene->transient.average_count; i++) {
+        const bool both = covers(flight, a, i) && covers(flight, b, i);
+        largest = fmax(largest, both ? fabs(mean(flight, a, i) - mean(flight, b, i)) / u : 0.0);
+    }
     for (size_t i = 0; i < count; i++) {
         const dea_moment *p = &a->moments[i];
         const dea_moment *q = &b->moments[i];
@@ -110,6 +128,14 @@ static void fill(const dea_flight *flight, const dea_trace *trace, dea_sample *s
     }
 }
 
+static void tell_averages(const dea_flight *flight, const dea_trace *trace, dea_summary *summary)
+{
+    for (size_t i = 0; i < flight->scene->transient.average_count; i++) {
+        const double u = mean(flight, trace, i);
+        summary->averages[i] = (dea_average){u / flight->motion.dynamics->radius, u};
+    }
+}
+
 static void explain(const dea_flight *flight, const dea_summary *summary, dea_error *error)
 {
     if (flight->why.message[0] != '\0') {
@@ -137,6 +163,7 @@ static dea_status fly(dea_flight *flight, dea_sample *samples, dea_summary *summ
             traces[1].end = DEA_STATE_FAILED;
         }
         fill(flight, &traces[1], samples);
+        tell_averages(flight, &traces[1], summary);
     }
     free(traces[0].moments);
     free(traces[1].moments);

@@ -21,7 +21,7 @@ static const double enough = 1e-3;
 
 typedef struct levels {
     dea_track coarse, fine; /* the last two runs */
-    dea_track before;       /* extrapolated from the two before: points only */
+    dea_track before;       /* extrapolated from the two before: points and integrals only */
     size_t runs;
     double error;    /* of the answer */
     double residual; /* of its energies */
@@ -64,10 +64,42 @@ static double largest(const gap *g)
     return fmax(u, charge);
 }
 
+/* True where the film has numbers all over a window in both of the last runs. */
+static bool covers(const dea_route *route, const levels *l, size_t window)
+{
+    const double to = route->scene->transient.averages[window].to;
+    const bool whole = l->coarse.end == DEA_STATE_OK && l->fine.end == DEA_STATE_OK;
+    return whole || to <= fmin(l->coarse.last.time, l->fine.last.time);
+}
+
+/* The same for the means of the displacement. */
+static void widen_means(const dea_route *route, levels *l, gap *second, gap *fourth)
+{
+    for (size_t i = 0; i < route->scene->transient.average_count; i++) {
+        const dea_window *window = &route->scene->transient.averages[i];
+        const double width = window->to - window->from;
+        const double coarse = l->coarse.integrals[i], fine = l->fine.integrals[i], answer = better(coarse, fine);
+        if (covers(route, l, i)) {
+            second->u = fmax(second->u, fabs(fine - coarse) / width);
+            fourth->u = fmax(fourth->u, l->runs > 2 ? fabs(answer - l->before.integrals[i]) / width : 0.0);
+        }
+        l->before.integrals[i] = answer;
+    }
+}
+
+static void tell_averages(const dea_route *route, const levels *l, dea_summary *summary)
+{
+    for (size_t i = 0; i < route->scene->transient.average_count; i++) {
+        const dea_window *window = &route->scene->transient.averages[i];
+        const double u = better(l->coarse.integrals[i], l->fine.integrals[i]) / (window->to - window->from);
+        summary->averages[i] = (dea_average){u / route->dynamics->radius, u};
+    }
+}
+
 /* Two runs: twice their difference; the error of the finer one is 1/3 of it in theory. Three: 2.5 times the difference of what
  * they extrapolate to; the error of the later one is 1/15 of it in theory, and more where steps follow the age of an edge. The
  * factors bound the errors of random scenes. */
-static void judge(levels *l)
+static void judge(const dea_route *route, levels *l)
 {
     gap second = {0};
     gap fourth = {0};
@@ -82,6 +114,7 @@ static void judge(levels *l)
             l->before.points[i] = answer;
         }
     }
+    widen_means(route, l, &second, &fourth);
     l->error = 2.0 * largest(&second);
     if (l->runs > 2) {
         l->error = fmin(l->error, 2.5 * largest(&fourth));
@@ -117,6 +150,7 @@ static void fill_summary(const dea_route *route, const levels *l, dea_summary *s
     last.v = stop.v;
     last.voltage = dea_route_voltage(route, last.source, stop.u, stop.charge);
     dea_audit_close(&audit, d, &l->fine.first, l->fine.start.z, &last, stop.z, summary);
+    tell_averages(route, l, summary);
     summary->error = l->error;
 }
 
@@ -183,7 +217,7 @@ static dea_status refine_once(const dea_route *route, levels *l, double fineness
     l->fine = (dea_track){0};
     const dea_status status = dea_track_run(route, fineness, &l->fine, error);
     if (status == DEA_OK && l->runs > 1) {
-        judge(l);
+        judge(route, l);
         fill_summary(route, l, summary);
         l->residual = summary->residual;
         const bool settled = l->fine.end != DEA_STATE_FAILED || l->runs >= STUBBORN;

@@ -105,6 +105,10 @@ dea_status dea_units_enter(const dea_units *units, const dea_scene *scene, dea_s
     enter_wave(units, &inside->drive.waveform);
     inside->transient.until *= units->time;
     inside->transient.every *= units->time;
+    for (size_t i = 0; i < inside->transient.average_count; i++) {
+        inside->transient.averages[i].from *= units->time;
+        inside->transient.averages[i].to *= units->time;
+    }
     inside->reduction.ring *= units->time;
     inside->ac.from /= units->time;
     inside->ac.to /= units->time;
@@ -146,4 +150,7 @@ void dea_units_return_summary(const dea_units *units, dea_summary *summary)
     summary->elastic /= energy;
     summary->kinetic /= energy;
     summary->dissipated /= energy;
+    for (size_t i = 0; i < DEA_WINDOWS; i++) {
+        summary->averages[i].displacement /= units->length;
+    }
 }

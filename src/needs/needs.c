@@ -150,13 +150,23 @@ static double remembered(const planner *p, double tau, trace t)
     return most;
 }
 
+/* Largest displacement of a stand-in over that of the film. */
+static double excess_of(const dea_surrogate *s)
+{
+    double excess = 1.0;
+    for (int i = 0; i < s->point_count; i++) {
+        excess = fmax(excess, s->points[i].excess);
+    }
+    return excess;
+}
+
 /* Bound of that mark [1]. */
 static double mark_of(const planner *p, const dea_omission *omission)
 {
     const dea_surrogate *s = &p->surrogate;
     const trace t = trace_of(p, omission);
     const double lag = dea_surrogate_lag(s);
-    double rate = 0.0, excess = 1.0;
+    double rate = 0.0;
     if (!(s->variation > 0.0) || !(t.lasting > 0.0)) {
         return 0.0;
     }
@@ -165,10 +175,16 @@ static double mark_of(const planner *p, const dea_omission *omission)
         rate += branch->tau > t.fading ? branch->share / branch->tau * remembered(p, branch->tau, t) : 0.0;
     }
     rate += lag > t.fading ? s->coupling / lag * remembered(p, lag, t) : 0.0;
-    for (int i = 0; i < s->point_count; i++) {
-        excess = fmax(excess, s->points[i].excess);
-    }
-    return excess * fmin(s->variation, most_variation) * t.lasting * rate;
+    return excess_of(s) * fmin(s->variation, most_variation) * t.lasting * rate;
+}
+
+/* A mass acts by u'', and a damper differs from its branch by c tau^2 S'': where the film follows a slow voltage, u'' = u_P P'' +
+ * u_PP P'^2 with P = U^2, and u_PP grows with one more power of the softening than u_P does, which the stand-ins have. */
+static double curvature_of(const planner *p, const dea_omission *omission)
+{
+    const bool second =
+        omission->part == DEA_PART_MASS || (omission->part == DEA_PART_BRANCH && omission->form == DEA_BRANCH_DAMPER);
+    return second ? (1.0 + p->surrogate.variation) * excess_of(&p->surrogate) : 1.0;
 }
 
 /* Leaves something out if it fits into the budget; a bound that it has already is for what the stand-in does not see. */
@@ -177,7 +193,7 @@ static bool try(planner *p, dea_omission omission)
     if (!pays(p, omission.part) || !solve_with(p, &omission)) {
         return false;
     }
-    omission.bound += change_of(p) + rounding;
+    omission.bound += curvature_of(p, &omission) * change_of(p) + rounding;
     if (omission.bound <= one_share * p->left) {
         omission.bound += mark_of(p, &omission);
     }

@@ -8,6 +8,7 @@
 #include "deaspice/needs.h"
 #include "model/models.h"
 #include "needs/trial.h"
+#include "network/dynamics.h"
 
 static const double fine = 0.02;         /* of the smallest bound: accuracy that the judge is asked for */
 static const double tightest = 1e-11;    /* at the most [1] */
@@ -25,7 +26,7 @@ typedef struct judge {
     dea_trial trial;
     dea_trial_run with[RUNS], without[RUNS]; /* owned */
     double accuracy;
-    double omega; /* of the film's swing [rad/s], NAN without mass */
+    double omega; /* of the film at rest, its branches held [rad/s]; infinite without mass */
     double least; /* a peak of the displacement counts as this at least [m] */
 } judge;
 
@@ -160,6 +161,20 @@ static void as_judged(const dea_omission *omissions, size_t count, dea_omission 
     }
 }
 
+/* Of a film that is too damped to swing, too: what its mass does there goes faster still. */
+static double omega_at_rest(const dea_scene *scene, const dea_model *model)
+{
+    dea_dynamics dynamics;
+    dea_scene full = *scene;
+    double omega = (double)INFINITY;
+    full.reduction = (dea_reduction){0};
+    if (dea_dynamics_open(&full, model, &dynamics, NULL) == DEA_OK && dynamics.mass > 0.0) {
+        omega = sqrt(dea_dynamics_stiffness(&dynamics, 0.0, 0.0, false) / dynamics.mass);
+    }
+    dea_dynamics_close(&dynamics);
+    return omega;
+}
+
 static bool make_room(judge *j)
 {
     const size_t size = j->trial.layout.point_size;
@@ -194,7 +209,7 @@ dea_status dea_needs_measure(const dea_scene *scene, const dea_model *model, con
         return DEA_OK;
     }
     const double loosest = loosest_share * scene->accuracy;
-    judge j = {.accuracy = fmin(fmax(tightest, fine * least), loosest), .omega = 2.0 * DEA_PI * needs->resonance};
+    judge j = {.accuracy = fmin(fmax(tightest, fine * least), loosest), .omega = omega_at_rest(scene, model)};
     as_judged(needs->omissions, needs->count, judged);
     const dea_reduction all = dea_needs_reduction(judged, needs->count);
     dea_status status = dea_trial_open(scene, model, &all, loosest, &j.trial, error);

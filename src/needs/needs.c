@@ -14,6 +14,7 @@ static const double one_share = 0.5;   /* most that one omission takes of what i
 static const double ring_share = 0.02; /* of the accuracy: what is left of a ring hides how fast the steps converge */
 static const double safe_linear = 1.5; /* bound over what the stand-in says, where it is the film itself */
 static const double safe_nonlinear = 4.0;
+static const double doubt = 5.0;   /* what a relative variation of the stiffness adds to it */
 static const double missed = 0.01; /* share of the static displacement that counts as peak where the samples see less */
 
 static const double rounding = 1e-12; /* of a stand-in's answer, relative to its peak */
@@ -28,7 +29,7 @@ typedef struct planner {
     dea_needs *needs;
     double left; /* of the budget [1] */
     double safety;
-    double peaks[DEA_SURROGATE_POINTS];
+    double peaks[DEA_SURROGATE_POINTS]; /* of the displacement, as the film itself would have them [m] */
 } planner;
 
 static bool pays(const planner *p, dea_part part)
@@ -75,13 +76,127 @@ static bool solve_with(planner *p, const dea_omission *omission)
     return dea_surrogate_solve(&p->surrogate, &reduction, p->next);
 }
 
+/* ---- what a linear stand-in does not see
+ *
+ * A part that has died away at every sample has left its mark in what is slow: z_i' = (S - z_i)/tau_i takes up the time integral
+ * of what S was off by. In a linear film that integral is the same for a branch and for the damper that stands for it, and none
+ * for a mass; in a film whose stiffness varies they differ by about that variation times
+ *
+ *     sum_i c_i/tau_i T D_i,   D_i = the changes of U^2 up to then over the largest U^2, each forgotten with tau_i,
+ *
+ * T being the time for which the part counts at a change. Parts that are simply left out differ by that integral in a linear film
+ * as well. */
+
+static const double most_variation = 2.0; /* a film that stiffens much moves the less there */
+
+typedef struct trace {
+    double lasting; /* T, 0: no mark */
+    double fading;  /* in which the part dies away: what is faster follows it */
+    double quick;   /* within which a voltage must change for the part to see more than a slope */
+} trace;
+
+static trace trace_of(const planner *p, const dea_omission *omission)
+{
+    const dea_surrogate *s = &p->surrogate;
+    const dea_material *material = &s->scene->material;
+    if (omission->part == DEA_PART_MASS) { /* the offset of a swing goes with its square */
+        const bool swings = s->swing > 0.0;
+        return (trace){s->fading * (swings ? s->swing * s->swing : 1.0), s->fading, swings ? (double)INFINITY : s->fading};
+    }
+    if (omission->part == DEA_PART_BRANCH && omission->form == DEA_BRANCH_DAMPER) {
+        const dea_prony *prony = &material->prony[omission->branch];
+        double rest = 1.0;
+        for (size_t i = 0; i < material->prony_count; i++) {
+            rest -= material->prony[i].g;
+        }
+        return (trace){prony->g / rest * prony->tau, prony->tau, prony->tau};
+    }
+    return (trace){0.0, 0.0, 0.0};
+}
+
+/* How much U^2 changes over a segment, over the largest U^2, where a change that takes long counts less. */
+static double change_over(const dea_surrogate *s, const dea_segment *segment, double quick, double forgotten)
+{
+    const double length = segment->to - segment->from, largest = s->largest * s->largest;
+    if (segment->sine) {
+        const double frequency = dea_surrogate_signal(s)->sine.frequency;
+        return 4.0 * (1.0 + frequency * fmin(length, forgotten)) * fmin(1.0, 2.0 * DEA_PI * frequency * quick);
+    }
+    const double start = segment->start * segment->start, end = segment->end * segment->end;
+    const double change = segment->start * segment->end < 0.0 ? start + end : fabs(end - start);
+    return change / largest * fmin(1.0, quick / length);
+}
+
+/* Largest D of one memory over the probes. The mark of the last jump takes its time. */
+static double remembered(const planner *p, double tau, trace t)
+{
+    const dea_surrogate *s = &p->surrogate;
+    const dea_signal *signal = dea_surrogate_signal(s);
+    const double first = signal->segments[0].start;
+    double mark = 0.0, most = 0.0;
+    double before = s->scene->transient.from_bias ? first * first : 0.0;
+    size_t probe = 0;
+    for (size_t i = 0; i < signal->count; i++) {
+        const dea_segment *segment = &signal->segments[i];
+        const double on_the_way = change_over(s, segment, t.quick, tau);
+        const double jump = fabs(segment->start * segment->start - before) / (s->largest * s->largest);
+        for (; probe < s->count && dea_layout_place(s->scene, s->probes[probe]) <= segment->to; probe++) {
+            const double age = fmax(0.0, dea_layout_place(s->scene, s->probes[probe]) - segment->from);
+            most = fmax(most, (mark + jump * fmin(1.0, age / t.fading)) * exp(-age / tau) + on_the_way);
+        }
+        mark = (mark + jump) * exp((segment->from - segment->to) / tau) + on_the_way;
+        before = segment->end * segment->end;
+    }
+    return most;
+}
+
+/* Largest displacement of a stand-in over that of the film. */
+static double excess_of(const dea_surrogate *s)
+{
+    double excess = 1.0;
+    for (int i = 0; i < s->point_count; i++) {
+        excess = fmax(excess, s->points[i].excess);
+    }
+    return excess;
+}
+
+/* Bound of that mark [1]. */
+static double mark_of(const planner *p, const dea_omission *omission)
+{
+    const dea_surrogate *s = &p->surrogate;
+    const trace t = trace_of(p, omission);
+    const double lag = dea_surrogate_lag(s);
+    double rate = 0.0;
+    if (!(s->variation > 0.0) || !(t.lasting > 0.0)) {
+        return 0.0;
+    }
+    for (size_t i = 0; i < s->dynamics.branch_count; i++) {
+        const dea_branch *branch = &s->dynamics.branches[i];
+        rate += branch->tau > t.fading ? branch->share / branch->tau * remembered(p, branch->tau, t) : 0.0;
+    }
+    rate += lag > t.fading ? s->coupling / lag * remembered(p, lag, t) : 0.0;
+    return excess_of(s) * fmin(s->variation, most_variation) * t.lasting * rate;
+}
+
+/* A mass acts by u'', and a damper differs from its branch by c tau^2 S'': where the film follows a slow voltage, u'' = u_P P'' +
+ * u_PP P'^2 with P = U^2, and u_PP grows with one more power of the softening than u_P does, which the stand-ins have. */
+static double curvature_of(const planner *p, const dea_omission *omission)
+{
+    const bool second =
+        omission->part == DEA_PART_MASS || (omission->part == DEA_PART_BRANCH && omission->form == DEA_BRANCH_DAMPER);
+    return second ? (1.0 + p->surrogate.variation) * excess_of(&p->surrogate) : 1.0;
+}
+
 /* Leaves something out if it fits into the budget; a bound that it has already is for what the stand-in does not see. */
 static bool try(planner *p, dea_omission omission)
 {
     if (!pays(p, omission.part) || !solve_with(p, &omission)) {
         return false;
     }
-    omission.bound += change_of(p) + rounding;
+    omission.bound += curvature_of(p, &omission) * change_of(p) + rounding;
+    if (omission.bound <= one_share * p->left) {
+        omission.bound += mark_of(p, &omission);
+    }
     if (!(omission.bound <= one_share * p->left)) {
         return false;
     }
@@ -226,6 +341,7 @@ static void set_peaks(planner *p)
         for (size_t k = 0; k < s->count; k++) {
             p->peaks[i] = fmax(p->peaks[i], fabs(p->now.u[(size_t)i * s->count + k]));
         }
+        p->peaks[i] /= point->excess;
     }
 }
 
@@ -277,6 +393,12 @@ static dea_status plan(planner *p, dea_error *error)
     return DEA_OK;
 }
 
+/* The less the film's stiffness varies, the more the stand-in is the film. */
+static double safety_of(const dea_surrogate *s)
+{
+    return s->dynamics.series > 0.0 ? safe_nonlinear : fmin(safe_nonlinear, safe_linear + doubt * s->variation);
+}
+
 dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const dea_engine *engine, dea_needs *needs,
                           dea_error *error)
 {
@@ -293,8 +415,7 @@ dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const 
         needs->decay = swing.decay;
     }
     if (status == DEA_OK && usable) {
-        const bool itself = p.surrogate.dynamics.linear && !(p.surrogate.dynamics.series > 0.0);
-        p.safety = itself ? safe_linear : safe_nonlinear;
+        p.safety = safety_of(&p.surrogate);
         status = plan(&p, error);
     }
     dea_surrogate_close(&p.surrogate);

@@ -64,31 +64,137 @@ static bool place_probes(dea_surrogate *s)
     return fits;
 }
 
-static void add_point(dea_surrogate *s, double u, double voltage)
+/* Stiffness of the relaxed film at u under that U^2 [N/m]. */
+static double stiffness_at(dea_surrogate *s, double u, double square)
+{
+    return dea_dynamics_stiffness(&s->dynamics, u, sqrt(square), true);
+}
+
+/* U^2 that holds the relaxed film at u: A S/phi [V^2]. */
+static double holding_square(dea_surrogate *s, double u)
 {
     const dea_edge e = dea_dynamics_edge(&s->dynamics, u);
-    s->points[s->point_count++] = (dea_surrogate_point){.passive = e.area * e.stress_slope + e.area_slope * e.stress,
-                                                        .viscous = e.area * e.stress_slope,
-                                                        .push = e.push,
-                                                        .push_slope = e.push_slope,
-                                                        .square = s->dynamics.linear ? 0.0 : voltage * voltage};
+    return fmax(0.0, e.area * e.stress / e.push);
+}
+
+static void add_point(dea_surrogate *s, double u, double square)
+{
+    const dea_edge e = dea_dynamics_edge(&s->dynamics, u);
+    const double largest = s->source.largest * s->source.largest;
+    dea_surrogate_point *point = &s->points[s->point_count++];
+    *point = (dea_surrogate_point){.passive = e.area * e.stress_slope + e.area_slope * e.stress,
+                                   .viscous = e.area * e.stress_slope,
+                                   .push = e.push,
+                                   .push_slope = e.push_slope,
+                                   .square = s->dynamics.linear ? 0.0 : square,
+                                   .excess = 1.0};
+    if (!s->dynamics.linear && s->loaded != 0.0) {
+        point->excess = fmax(1.0, fabs(e.push * largest / (stiffness_at(s, u, square) * s->loaded)));
+    }
 }
 
 /* False where the film would pull in, or already is unstable at rest. */
 static bool place_points(dea_surrogate *s)
 {
-    double u;
     const double largest = s->source.largest;
-    if (!dea_dynamics_equilibrium(&s->dynamics, largest, &u)) {
+    if (!dea_dynamics_equilibrium(&s->dynamics, largest, &s->loaded)) {
         return false;
     }
-    s->capacitance = fmax(dea_dynamics_edge(&s->dynamics, 0.0).capacitance, dea_dynamics_edge(&s->dynamics, u).capacitance);
+    const double rest = dea_dynamics_edge(&s->dynamics, 0.0).capacitance;
+    const double there = dea_dynamics_edge(&s->dynamics, s->loaded).capacitance;
+    s->capacitance = fmax(rest, there);
+    s->least_capacitance = fmin(rest, there);
+    if (!(stiffness_at(s, 0.0, 0.0) > 0.0 && stiffness_at(s, s->loaded, largest * largest) > 0.0)) {
+        return false;
+    }
     add_point(s, 0.0, 0.0);
     if (!s->dynamics.linear && largest > 0.0) {
-        add_point(s, u, largest);
+        add_point(s, s->loaded, largest * largest);
     }
-    return dea_dynamics_stiffness(&s->dynamics, 0.0, 0.0, true) > 0.0 &&
-           dea_dynamics_stiffness(&s->dynamics, u, largest, true) > 0.0;
+    return true;
+}
+
+/* ---- how soft and how stiff the film becomes on its way */
+
+enum { STEPS = 16, FARTHEST = 4 }; /* steps from rest to the equilibrium; displacements of that to which a swing is followed */
+
+typedef struct way {
+    double softest, stiffest; /* [N/m] */
+    double u, square;         /* where it is softest */
+} way;
+
+static void pass(dea_surrogate *s, double u, double square, way *w)
+{
+    const double stiffness = stiffness_at(s, u, square);
+    if (!(stiffness >= w->softest)) {
+        w->softest = stiffness;
+        w->u = u;
+        w->square = square;
+    }
+    w->stiffest = fmax(w->stiffest, stiffness);
+}
+
+/* Goes on from u under a constant voltage until the springs have taken up that energy: as far as a swing gets that starts there
+ * with it. False where it does not come back, or leaves its frame. */
+static bool swing_out(dea_surrogate *s, double from, double step, double square, double energy, way *w)
+{
+    const double least = -s->dynamics.radius, most = s->dynamics.point.frame_radius - s->dynamics.radius;
+    double taken = 0.0, before = 0.0;
+    for (int i = 1; taken < energy; i++) {
+        const double u = from + i * step;
+        if (i > FARTHEST * STEPS || !(u > least && u < most)) {
+            return false;
+        }
+        const dea_edge e = dea_dynamics_edge(&s->dynamics, u);
+        const double force = e.area * e.stress - e.push * square;
+        taken += 0.5 * (force + before) * step;
+        before = force;
+        pass(s, u, square, w);
+        if (!(w->softest > 0.0)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* From rest to the equilibrium under the voltage that holds the film at each place, past it by a swing under the largest one, and
+ * past rest by one under none. A swing of the amplitude a has the energy of (a/u)^2 jumps. */
+static bool find_way(dea_surrogate *s, way *w)
+{
+    const double square = s->source.largest * s->source.largest;
+    const double step = s->loaded / STEPS;
+    double pushed = 0.0, strained = 0.0; /* energy of the jump up, and down [J] */
+    *w = (way){.softest = (double)INFINITY};
+    for (int i = 0; i <= STEPS; i++) {
+        const double u = i < STEPS ? i * step : s->loaded;
+        const dea_edge e = dea_dynamics_edge(&s->dynamics, u);
+        const double share = i == 0 || i == STEPS ? 0.5 : 1.0;
+        pushed += share * (e.push * square - e.area * e.stress) * step;
+        strained += share * e.area * e.stress * step;
+        pass(s, u, i < STEPS ? holding_square(s, u) : square, w);
+    }
+    const double jumps = s->swing * s->swing;
+    return w->softest > 0.0 && swing_out(s, s->loaded, step, square, jumps * pushed, w) &&
+           swing_out(s, 0.0, -step, 0.0, jumps * strained, w);
+}
+
+/* A film that softens on its way is looked at where it is softest, too. */
+static bool place_softest(dea_surrogate *s)
+{
+    way w;
+    if (s->dynamics.linear || s->loaded == 0.0) {
+        const double softened = s->points[0].push_slope * s->source.largest * s->source.largest / s->points[0].passive;
+        s->variation = fabs(softened) / (1.0 - fmax(0.0, softened));
+        return true;
+    }
+    if (!find_way(s, &w)) {
+        return false;
+    }
+    s->variation = w.stiffest / w.softest - 1.0;
+    if (w.u != 0.0 && w.u != s->loaded) {
+        add_point(s, w.u, w.square);
+    }
+    return true;
 }
 
 /* The current dC/du U v through R takes R of itself off the voltage, and so a drag (dC/du U)^2 R/(1 + (w R C)^2) off a film that
@@ -194,33 +300,6 @@ static bool charge_film(dea_surrogate *s, double lag, double share)
     return film->segments != NULL && s->largest > 0.0;
 }
 
-dea_status dea_surrogate_open(const dea_scene *scene, const dea_model *model, dea_surrogate *s, bool *usable, dea_error *error)
-{
-    dea_scene full = *scene; /* borrows what the scene owns */
-    full.reduction = (dea_reduction){0};
-    *s = (dea_surrogate){.scene = scene};
-    *usable = false;
-    dea_status status = dea_dynamics_open(&full, model, &s->dynamics, error);
-    if (status == DEA_OK) {
-        status = dea_signal_open(scene, &s->source, error);
-    }
-    if (status != DEA_OK) {
-        return status;
-    }
-    s->walk = malloc(sizeof *s->walk);
-    if (!s->walk || !place_probes(s)) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a run is planned");
-    }
-    s->largest = s->source.largest;
-    *usable = s->count > 0 && s->largest > 0.0 && place_points(s);
-    if (*usable && s->dynamics.series > 0.0) {
-        const double share = 1.0 / (1.0 + s->dynamics.series * s->dynamics.conductance);
-        *usable = charge_film(s, s->dynamics.series * s->capacitance * share, share);
-        drag_points(s, s->dynamics.series * share);
-    }
-    return DEA_OK;
-}
-
 void dea_surrogate_close(dea_surrogate *s)
 {
     dea_dynamics_close(&s->dynamics);
@@ -302,4 +381,110 @@ bool dea_surrogate_solve(dea_surrogate *s, const dea_reduction *reduction, dea_s
         }
     }
     return true;
+}
+
+/* ---- the swing */
+
+/* Amplitude of the pair of modes about the equilibrium at the begin of a piece: its speed over s; of a sine what the film moves
+ * more than it would at rest [m]. */
+static double amplitude_of(const dea_walk *w, const dea_piece *piece, const dea_course *start)
+{
+    const dea_modes *modes = &w->now->modes;
+    if (!modes->pair || modes->square >= 0.0) {
+        return 0.0;
+    }
+    const double turn = -modes->square; /* omega^2 */
+    const dea_dual speed = start->speed.pair;
+    double amplitude =
+        sqrt((speed.even * speed.even + speed.odd * speed.odd * turn) / (turn * (modes->sigma * modes->sigma + turn)));
+    for (int k = 0; k < DEA_HARMONICS; k++) {
+        amplitude += fmax(0.0, cabs(piece->displacement[k]) - cabs(piece->harmonics[k]) / modes->chain.stiffness);
+    }
+    return amplitude;
+}
+
+/* Time in which the mass counts: that in which the swing decays, or the fastest root of a film that does not swing [s]. */
+static double fading_of(const dea_modes *modes, double until)
+{
+    double rate = 0.0;
+    if (modes->pair) {
+        rate = fabs(modes->sigma) + (modes->square > 0.0 ? sqrt(modes->square) : 0.0);
+    } else {
+        for (size_t i = 0; i < modes->count; i++) {
+            rate = fmax(rate, fabs(modes->roots[i].value));
+        }
+    }
+    return rate * until > 1.0 ? 1.0 / rate : until;
+}
+
+/* Largest swing over the run, seen by samples or not; false where the stand-ins have no answer. */
+static bool look_at_swing(dea_surrogate *s)
+{
+    const dea_reduction nothing = {0};
+    dea_walk *walk = s->walk;
+    for (int k = 0; k < s->point_count && s->dynamics.mass > 0.0; k++) {
+        const dea_surrogate_point *point = &s->points[k];
+        const double still = fabs(point->push) * s->largest * s->largest / (point->passive - point->push_slope * point->square);
+        set_walk(s, &nothing, point);
+        for (size_t i = 0; i < walk->signal->count; i++) {
+            dea_course start;
+            const dea_segment *segment = &walk->signal->segments[i];
+            if (dea_walk_enter(walk, segment, NULL) != DEA_OK || walk->lost) {
+                return false;
+            }
+            const dea_piece piece = dea_walk_piece(walk, segment, &start);
+            s->swing = fmax(s->swing, amplitude_of(walk, &piece, &start) / still);
+            s->fading = fmax(s->fading, fading_of(&walk->now->modes, s->scene->transient.until));
+            dea_walk_pass(walk, &piece, &start);
+        }
+    }
+    return true;
+}
+
+/* Share of the source's voltage that a leakage leaves. */
+static double share_of(const dea_surrogate *s)
+{
+    return 1.0 / (1.0 + s->dynamics.series * s->dynamics.conductance);
+}
+
+double dea_surrogate_lag(const dea_surrogate *s)
+{
+    return s->dynamics.series * s->capacitance * share_of(s);
+}
+
+const dea_signal *dea_surrogate_signal(const dea_surrogate *s)
+{
+    return s->film.count > 0 ? &s->film : &s->source;
+}
+
+dea_status dea_surrogate_open(const dea_scene *scene, const dea_model *model, dea_surrogate *s, bool *usable, dea_error *error)
+{
+    dea_scene full = *scene; /* borrows what the scene owns */
+    full.reduction = (dea_reduction){0};
+    *s = (dea_surrogate){.scene = scene};
+    *usable = false;
+    dea_status status = dea_dynamics_open(&full, model, &s->dynamics, error);
+    if (status == DEA_OK) {
+        status = dea_signal_open(scene, &s->source, error);
+    }
+    if (status != DEA_OK) {
+        return status;
+    }
+    s->walk = malloc(sizeof *s->walk);
+    if (!s->walk || !place_probes(s)) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a run is planned");
+    }
+    s->largest = s->source.largest;
+    const bool charging = s->dynamics.series > 0.0;
+    *usable = s->count > 0 && s->largest > 0.0 && place_points(s);
+    if (*usable && charging) {
+        *usable = charge_film(s, dea_surrogate_lag(s), share_of(s));
+    }
+    *usable = *usable && look_at_swing(s) && place_softest(s);
+    if (*usable && charging) {
+        s->coupling = 2.0 * (s->capacitance / s->least_capacitance - 1.0);
+        s->variation += s->coupling;
+        drag_points(s, s->dynamics.series * share_of(s));
+    }
+    return DEA_OK;
 }

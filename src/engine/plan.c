@@ -309,7 +309,7 @@ void dea_attempt_failed(dea_attempt *attempt, const dea_plan *plan, const dea_sp
     if (++attempt->tries < faults[fault].tries)
         return;
     if (!alone && isolates(damage)) {
-        attempt->cut = attempt->cut || faults[fault].tries > 1;
+        attempt->cut = attempt->cut || !faults[fault].final;
         attempt->suspect = attempt->end;
         try_next_range(attempt);
         return;

@@ -42,7 +42,7 @@ typedef struct dea_attempt {
     size_t suspect; /**< end of a range from next on that failed as a whole, 0: none */
     size_t tries;   /**< of the range that is tried now, which failed */
     size_t lost;    /**< points that were given up without the engine's last word */
-    bool cut;       /**< a range was halved because its workers were lost */
+    bool cut;       /**< a range was halved that the engine had not refused */
     bool again;     /**< the whole is tried once more after it was cut without need */
 } dea_attempt;
 

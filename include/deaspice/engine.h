@@ -71,6 +71,9 @@ typedef struct dea_run_options {
      * scene and engine alone (src/engine/cut.h). NULL: all are wanted. The answer must stay the same until the block is handed
      * over. */
     bool (*wanted)(void *user, size_t block);
+    /** Tells, before points() takes their block, that so many points of it are `failed` because their worker was lost or memory
+     * ran out, which may go well in another run, and not by the engine's last word. */
+    void (*lost)(void *user, size_t count);
     bool any_order; /**< points() takes blocks as they are finished, not in order */
     /** Points handed over so far, of those that are wanted. */
     void (*progress)(void *user, size_t done, size_t total);

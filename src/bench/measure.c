@@ -212,7 +212,7 @@ static double start_once(const dea_plan *plan)
         status = status == DEA_OK && !dea_worker_receive(&worker, &report) ? DEA_ERROR_ENGINE : status;
         status = status == DEA_OK ? report : status;
         until = dea_bench_now();
-        dea_worker_end(&worker, NULL, 0);
+        dea_worker_end(&worker);
     }
     return status == DEA_OK ? until - from : (double)NAN;
 }

@@ -17,6 +17,21 @@ enum {
     LINE_LENGTH = DEA_ERROR_LENGTH + 512
 };
 
+/* How often a range is tried before it is halved or given up, and whether a point given up for that reason is settled for good. A
+ * journal keeps what is settled, and goes on with the rest. */
+static const struct {
+    size_t tries;
+    bool final;
+} faults[] = {[DEA_FAULT_REFUSED] = {1, true},
+              [DEA_FAULT_OVERDUE] = {1, false},
+              [DEA_FAULT_CRASHED] = {2, false},
+              [DEA_FAULT_KILLED] = {4, false}};
+
+dea_fault dea_fault_of(dea_status status)
+{
+    return status == DEA_ERROR_MEMORY || status == DEA_ERROR_IO ? DEA_FAULT_CRASHED : DEA_FAULT_REFUSED;
+}
+
 dea_status dea_plan_make(const dea_scene *scene, const dea_engine *engine, const dea_run_options *options, dea_plan *plan,
                          dea_error *error)
 {
@@ -62,6 +77,7 @@ bool dea_attempt_over(const dea_attempt *attempt)
 
 static void try_next_range(dea_attempt *attempt)
 {
+    attempt->tries = 0;
     if (attempt->suspect > attempt->next) {
         size_t half = (attempt->suspect - attempt->next) / 2;
         attempt->end = attempt->next + (half > 0 ? half : 1);
@@ -75,6 +91,10 @@ void dea_attempt_solved(dea_attempt *attempt, dea_damage *damage)
 {
     damage->streak = 0;
     attempt->next = attempt->end;
+    if (dea_attempt_over(attempt) && attempt->cut && attempt->lost == 0 && !attempt->again) {
+        attempt->again = true; /* no point was to blame: an answer may depend on where its range begins */
+        attempt->next = attempt->suspect = 0;
+    }
     try_next_range(attempt);
 }
 
@@ -154,10 +174,20 @@ static char *point_at(const dea_plan *plan, void *points, size_t index)
     return (char *)points + index * plan->layout.point_size;
 }
 
-void dea_plan_fail(const dea_plan *plan, void *points, size_t count)
+/* Makes the rows of the range that is tried now failed, and goes on behind it. */
+static void give_up(dea_attempt *attempt, const dea_plan *plan, void *points, bool final)
 {
-    for (size_t i = 0; i < count; i++)
-        dea_layout_fail(plan->scene, &plan->layout, point_at(plan, points, i));
+    attempt->lost += final ? 0 : attempt->end - attempt->next;
+    for (; attempt->next < attempt->end; attempt->next++)
+        dea_layout_fail(plan->scene, &plan->layout, point_at(plan, points, attempt->next));
+    attempt->suspect = 0;
+    try_next_range(attempt);
+}
+
+void dea_attempt_abandon(dea_attempt *attempt, const dea_plan *plan, void *points)
+{
+    attempt->end = attempt->count;
+    give_up(attempt, plan, points, false);
 }
 
 /* A transient whose energies do not add up says so, where the engine itself has said nothing. */
@@ -290,11 +320,14 @@ double dea_plan_patience(const dea_plan *plan, size_t count)
     return (sweep ? plan->engine->patience : plan->engine->run_patience) * (double)count;
 }
 
-void dea_attempt_failed(dea_attempt *attempt, const dea_plan *plan, const dea_span *span, void *points, const char *why,
-                        dea_damage *damage)
+void dea_attempt_failed(dea_attempt *attempt, const dea_plan *plan, const dea_span *span, void *points, dea_fault fault,
+                        const char *why, dea_damage *damage)
 {
-    bool alone = attempt->end - attempt->next == 1;
+    const bool alone = attempt->end - attempt->next == 1;
+    if (++attempt->tries < faults[fault].tries)
+        return;
     if (!alone && isolates(damage)) {
+        attempt->cut = attempt->cut || !faults[fault].final;
         attempt->suspect = attempt->end;
         try_next_range(attempt);
         return;
@@ -304,15 +337,15 @@ void dea_attempt_failed(dea_attempt *attempt, const dea_plan *plan, const dea_sp
     if (alone)
         damage->alone++;
     log_failure(plan, span, attempt, why, damage);
-    dea_plan_fail(plan, point_at(plan, points, attempt->next), attempt->end - attempt->next);
-    attempt->next = attempt->end;
-    attempt->suspect = 0;
-    try_next_range(attempt);
+    give_up(attempt, plan, points, alone && faults[fault].final);
 }
 
-dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const void *points, size_t *done, dea_error *error)
+dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const void *points, size_t lost, size_t *done,
+                            dea_error *error)
 {
     const dea_run_options *options = plan->options;
+    if (lost > 0 && options->lost)
+        options->lost(options->user, lost);
     dea_status status = options->points(options->user, span->place, points, span->count, error);
     *done += span->count;
     if (status == DEA_OK && options->progress)

@@ -25,18 +25,31 @@ typedef struct dea_span {
     size_t count; /**< points, >= 1 */
 } dea_span;
 
-/** Progress inside one block: points before `next` are settled, and `suspect` > next ends a range known to fail. */
+/** Why a range was not solved. How often it is tried and whether that is the last word stands in one table, in plan.c. */
+typedef enum dea_fault {
+    DEA_FAULT_REFUSED, /**< the engine said so: it would again, in every run */
+    DEA_FAULT_OVERDUE, /**< the worker used up the engine's patience and was killed */
+    DEA_FAULT_CRASHED, /**< the worker ended by a fault of its own, or memory or disk ran out */
+    DEA_FAULT_KILLED   /**< the worker was killed or stopped from outside, which says nothing about its points */
+} dea_fault;
+
+/** Progress inside one block: points before `next` are settled, and `suspect` > next ends a range known to fail. A block of which
+ * no point is lost comes from the same calls of the engine as in a run without a loss, so that it has the same bits. */
 typedef struct dea_attempt {
     size_t count;   /**< points of the block */
     size_t next;    /**< first point that is not settled */
     size_t end;     /**< end of the range that is tried now */
     size_t suspect; /**< end of a range from next on that failed as a whole, 0: none */
+    size_t tries;   /**< of the range that is tried now, which failed */
+    size_t lost;    /**< points that were given up without the engine's last word */
+    bool cut;       /**< a range was halved that the engine had not refused */
+    bool again;     /**< the whole is tried once more after it was cut without need */
 } dea_attempt;
 
 /** What went wrong so far in a run; bounds the time that a broken engine can take. */
 typedef struct dea_damage {
     size_t alone;  /**< points that failed alone */
-    size_t losses; /**< workers that hung, or went while they had nothing to do */
+    size_t losses; /**< workers that hung or were stopped, or went while they had nothing to do */
     size_t streak; /**< ranges given up since the last one that was solved, after isolating ended */
     size_t lines;  /**< lines written to the log */
 } dea_damage;
@@ -55,23 +68,26 @@ dea_attempt dea_attempt_start(size_t count);
 bool dea_attempt_over(const dea_attempt *attempt);
 /** The range next ... end - 1 was solved. */
 void dea_attempt_solved(dea_attempt *attempt, dea_damage *damage);
-/** The range next ... end - 1 failed for the reason @p why: halves it, or marks its rows (in the @p points of the block) as
- * failed and tells the log. */
-void dea_attempt_failed(dea_attempt *attempt, const dea_plan *plan, const dea_span *span, void *points, const char *why,
-                        dea_damage *damage);
+/** What a status that an engine returned says. */
+dea_fault dea_fault_of(dea_status status);
+/** The range next ... end - 1 failed for the reason @p why: tries it again, halves it, or marks its rows (in the @p points of the
+ * block) as failed and tells the log. */
+void dea_attempt_failed(dea_attempt *attempt, const dea_plan *plan, const dea_span *span, void *points, dea_fault fault,
+                        const char *why, dea_damage *damage);
+/** Gives up what is left of the block, in whose @p points it makes those rows failed. */
+void dea_attempt_abandon(dea_attempt *attempt, const dea_plan *plan, void *points);
 /** Tells the log why rows of the range next ... end - 1, which was solved, are `failed`; nothing where @p why is empty. */
 void dea_attempt_remark(const dea_attempt *attempt, const dea_plan *plan, const dea_span *span, const char *why,
                         dea_damage *damage);
 /** True when the engine is past hope: nothing more is tried, the remaining rows are failed. */
 bool dea_damage_hopeless(const dea_damage *damage);
-/** Makes all rows of @p count points failed. */
-void dea_plan_fail(const dea_plan *plan, void *points, size_t count);
 /** Solves points first ... first + count - 1 of a model into memory laid out as the plan says. A point whose numbers are out of
  * range, as a grid can hold, costs only its own rows where it is one of many. */
 dea_status dea_plan_solve(const dea_plan *plan, void *session, const dea_model *model, size_t first, size_t count, void *points,
                           dea_error *error);
-/** Hands a block to the points callback, adds its points to *@p done and tells progress. */
-dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const void *points, size_t *done, dea_error *error);
+/** Hands a block, @p lost points of which are lost, to the caller, adds its points to *@p done and tells progress. */
+dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const void *points, size_t lost, size_t *done,
+                            dea_error *error);
 /** Time that a worker may take for so many points before it hangs, beyond what every worker gets [s]. */
 double dea_plan_patience(const dea_plan *plan, size_t count);
 /** True when the caller wants the run to end. */

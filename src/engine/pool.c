@@ -10,10 +10,17 @@
 
 #include "engine/worker.h"
 
-enum { SLOTS_PER_WORKER = 4, MOST_WORKERS = 1024, WAIT_MS = 50, MOST_MEMORY = 256 << 20 };
+enum {
+    SLOTS_PER_WORKER = 4,
+    MOST_WORKERS = 1024,
+    WAIT_MS = 50,
+    MOST_MEMORY = 256 << 20,
+    MOST_FALSE_STARTS = 8 /* workers lost one after the other before they could begin */
+};
 
 static const double longest_tick = 1; /* [s] the pool's clock stands still while this process is stopped */
 static const double start_time = 30;  /* [s] an engine may take to begin a session */
+static const double longest_stop = 2; /* [s] a worker may be stopped: who stops the whole run stops this clock too */
 
 /* The n-th wanted block lives in slot n % slot_count from its first attempt until it and all before it are handed over. */
 typedef struct dea_slot {
@@ -37,6 +44,7 @@ typedef struct dea_pool {
     size_t opened;    /* blocks that have a slot or had one */
     size_t delivered; /* blocks whose slot is free again */
     size_t done;      /* points handed over */
+    size_t false_starts; /* workers lost since the last one that could begin */
     dea_damage damage;
     double clock, last; /* [s] */
     double passed;      /* in the last tick of the clock [s] */
@@ -105,7 +113,7 @@ static dea_status pool_init(dea_pool *pool, const dea_plan *plan, double beyond,
 static void pool_finish(dea_pool *pool)
 {
     for (size_t i = 0; pool->workers && i < pool->worker_count; i++)
-        dea_worker_end(&pool->workers[i], NULL, 0);
+        dea_worker_end(&pool->workers[i]);
     if (pool->memory != MAP_FAILED)
         munmap(pool->memory, pool->memory_size);
     free(pool->slots);
@@ -142,10 +150,10 @@ static dea_slot *pool_waiting(dea_pool *pool)
     return NULL;
 }
 
-static void slot_failed(dea_pool *pool, dea_slot *slot, const char *why)
+static void slot_failed(dea_pool *pool, dea_slot *slot, dea_fault fault, const char *why)
 {
     slot->busy = false;
-    dea_attempt_failed(&slot->attempt, pool->plan, &slot->span, slot->points, why, &pool->damage);
+    dea_attempt_failed(&slot->attempt, pool->plan, &slot->span, slot->points, fault, why, &pool->damage);
 }
 
 /* Fails what is left once the engine is past hope. */
@@ -153,11 +161,8 @@ static void pool_abandon(dea_pool *pool)
 {
     for (size_t block = pool->delivered; block < pool->opened; block++) {
         dea_slot *slot = slot_of(pool, block);
-        if (slot->busy)
-            continue;
-        dea_plan_fail(pool->plan, slot->points + slot->attempt.next * pool->plan->layout.point_size,
-                      slot->attempt.count - slot->attempt.next);
-        slot->attempt.next = slot->attempt.count;
+        if (!slot->busy)
+            dea_attempt_abandon(&slot->attempt, pool->plan, slot->points);
     }
 }
 
@@ -198,14 +203,11 @@ static dea_status pool_staff(dea_pool *pool, dea_error *error)
             continue;
         dea_error reason = {0};
         dea_status status = dea_worker_start(worker, pool->plan, pool->workers, pool->worker_count, &reason);
-        if (status != DEA_OK && alive == 0)
-            return dea_fail(error, status, "%s", reason.message);
-        if (status != DEA_OK) {
-            pool->limit = alive;
-            return DEA_OK;
-        }
+        if (status != DEA_OK)
+            return pool_shrink(pool, status, &reason, error);
         worker->deadline = pool->clock + start_time;
         worker->used = worker->waited = 0.0;
+        worker->moved = pool->clock;
         alive++;
     }
     return DEA_OK;
@@ -227,48 +229,56 @@ static void pool_dispatch(dea_pool *pool)
                            .points = slot->points + attempt->next * pool->plan->layout.point_size};
         if (!dea_worker_send(worker, &order)) {
             pool->damage.losses++;
-            dea_worker_end(worker, NULL, 0);
+            dea_worker_end(worker);
             continue;
         }
         slot->busy = true;
         worker->slot = (size_t)(slot - pool->slots);
         worker->state = DEA_WORKER_BUSY;
         worker->waited = 0.0;
+        worker->moved = pool->clock;
         worker->deadline = pool->clock + pool->beyond + dea_plan_patience(pool->plan, order.count);
     }
 }
 
-/* A worker that has gone: its range failed, or it could not even begin. */
-static dea_status worker_lost(dea_pool *pool, dea_worker *worker, dea_status status, const char *why, dea_error *error)
+/* A worker is to go: its range failed, or it could not even begin. One that is lost before it begins has a successor, one whose
+ * engine refuses to begin has none. */
+static dea_status worker_failed(dea_pool *pool, dea_worker *worker, dea_fault fault, dea_status status, const char *why,
+                                dea_error *error)
 {
     dea_worker_state before = worker->state;
-    char how[128] = "";
-    dea_worker_end(worker, why ? NULL : how, sizeof how);
-    if (!why)
-        why = how;
+    dea_worker_end(worker);
     if (before == DEA_WORKER_IDLE)
         pool->damage.losses++;
     if (before == DEA_WORKER_BUSY)
-        slot_failed(pool, &pool->slots[worker->slot], why);
-    if (before != DEA_WORKER_STARTS)
+        slot_failed(pool, &pool->slots[worker->slot], fault, why);
+    if (before != DEA_WORKER_STARTS || (fault != DEA_FAULT_REFUSED && ++pool->false_starts < MOST_FALSE_STARTS))
         return DEA_OK;
     dea_error reason = {0};
     dea_fail(&reason, status, "engine %s could not begin: %s", pool->plan->engine->name, why);
     return pool_shrink(pool, status, &reason, error);
 }
 
+/* A worker that has gone by itself. */
+static dea_status worker_gone(dea_pool *pool, dea_worker *worker, dea_error *error)
+{
+    char how[128];
+    const dea_fault fault = dea_worker_reap(worker, how, sizeof how);
+    return worker_failed(pool, worker, fault, DEA_ERROR_ENGINE, how, error);
+}
+
 static dea_status worker_reported(dea_pool *pool, dea_worker *worker, dea_error *error)
 {
     dea_status status;
     if (!dea_worker_receive(worker, &status))
-        return worker_lost(pool, worker, DEA_ERROR_ENGINE, NULL, error);
+        return worker_gone(pool, worker, error);
     char why[DEA_ERROR_LENGTH]; /* a copy: the worker's memory may change at any time */
     size_t length = strnlen(worker->error->message, sizeof why - 1);
     memcpy(why, worker->error->message, length);
     why[length] = '\0';
-    if (status != DEA_OK) {
-        return worker_lost(pool, worker, status, length > 0 ? why : dea_status_text(status), error);
-    }
+    if (status != DEA_OK)
+        return worker_failed(pool, worker, dea_fault_of(status), status, length > 0 ? why : dea_status_text(status), error);
+    pool->false_starts = 0;
     if (worker->state == DEA_WORKER_BUSY) {
         dea_slot *slot = &pool->slots[worker->slot];
         slot->busy = false;
@@ -295,32 +305,42 @@ static void worker_waits(const dea_pool *pool, dea_worker *worker)
 
 static dea_status worker_overdue(dea_pool *pool, dea_worker *worker, dea_error *error)
 {
-    bool waits = worker->state == DEA_WORKER_IDLE || worker->state == DEA_WORKER_NONE;
-    if (waits || pool->clock < worker->deadline)
+    if (worker->state == DEA_WORKER_IDLE)
+        return DEA_OK;
+    if (!dea_worker_stopped(worker))
+        worker->moved = pool->clock;
+    const bool stopped = pool->clock - worker->moved > longest_stop;
+    if (!stopped && pool->clock < worker->deadline)
         return DEA_OK;
     pool->damage.losses++;
-    return worker_lost(pool, worker, DEA_ERROR_ENGINE, "no answer for too long, the worker was killed", error);
+    return stopped ? worker_failed(pool, worker, DEA_FAULT_KILLED, DEA_ERROR_ENGINE, "the worker was stopped by a signal", error)
+                   : worker_failed(pool, worker, DEA_FAULT_OVERDUE, DEA_ERROR_ENGINE,
+                                   "no answer for too long, the worker was killed", error);
 }
 
 /* Waits a moment for workers that have something to tell and takes it. */
 static dea_status pool_listen(dea_pool *pool, dea_error *error)
 {
+    nfds_t living = 0; /* no place for others: there may be more than descriptors */
     for (size_t i = 0; i < pool->worker_count; i++) {
-        bool lives = pool->workers[i].state != DEA_WORKER_NONE;
-        pool->polls[i] = (struct pollfd){.fd = lives ? pool->workers[i].socket : -1, .events = POLLIN};
+        if (pool->workers[i].state != DEA_WORKER_NONE)
+            pool->polls[living++] = (struct pollfd){.fd = pool->workers[i].socket, .events = POLLIN};
     }
-    int ready = poll(pool->polls, pool->worker_count, WAIT_MS);
+    int ready = poll(pool->polls, living, WAIT_MS);
     if (ready < 0 && errno != EINTR)
         return dea_fail(error, DEA_ERROR_ENGINE, "cannot wait for the workers: %s", strerror(errno));
     pool_tick(pool);
     dea_status status = DEA_OK;
+    const struct pollfd *next = pool->polls;
     for (size_t i = 0; i < pool->worker_count && status == DEA_OK; i++) {
-        if (pool->workers[i].state != DEA_WORKER_NONE)
-            worker_waits(pool, &pool->workers[i]);
-        if (ready > 0 && pool->polls[i].revents != 0)
+        if (pool->workers[i].state == DEA_WORKER_NONE)
+            continue;
+        worker_waits(pool, &pool->workers[i]);
+        if (ready > 0 && next->revents != 0)
             status = worker_reported(pool, &pool->workers[i], error);
         else
             status = worker_overdue(pool, &pool->workers[i], error);
+        next++;
     }
     return status;
 }
@@ -336,7 +356,7 @@ static dea_status pool_deliver(dea_pool *pool, dea_error *error)
             break;
         if (!settled || slot->given)
             continue;
-        const dea_status status = dea_plan_deliver(pool->plan, &slot->span, slot->points, &pool->done, error);
+        const dea_status status = dea_plan_deliver(pool->plan, &slot->span, slot->points, slot->attempt.lost, &pool->done, error);
         if (status != DEA_OK)
             return status;
         slot->given = true;

@@ -27,26 +27,26 @@ static dea_status session_renew(const dea_engine *engine, void **session, dea_er
 }
 
 /* Solves one block in this process; a session that failed is replaced. */
-static dea_status solve_block(const dea_plan *plan, const dea_span *span, void **session, char *points, dea_damage *damage,
-                              dea_error *error)
+static dea_status solve_block(const dea_plan *plan, const dea_span *span, void **session, dea_attempt *attempt, char *points,
+                              dea_damage *damage, dea_error *error)
 {
-    dea_attempt attempt = dea_attempt_start(span->count);
-    while (!dea_attempt_over(&attempt)) {
+    while (!dea_attempt_over(attempt)) {
         if (dea_plan_stopped(plan))
             return dea_fail(error, DEA_ERROR_INTERRUPTED, "interrupted");
         if (dea_damage_hopeless(damage)) {
-            dea_plan_fail(plan, points + attempt.next * plan->layout.point_size, attempt.count - attempt.next);
+            dea_attempt_abandon(attempt, plan, points);
             return DEA_OK;
         }
         dea_error reason = {0};
-        dea_status status = dea_plan_solve(plan, *session, span->model, span->first + attempt.next, attempt.end - attempt.next,
-                                           points + attempt.next * plan->layout.point_size, &reason);
+        dea_status status = dea_plan_solve(plan, *session, span->model, span->first + attempt->next, attempt->end - attempt->next,
+                                           points + attempt->next * plan->layout.point_size, &reason);
         if (status == DEA_OK) {
-            dea_attempt_remark(&attempt, plan, span, reason.message, damage);
-            dea_attempt_solved(&attempt, damage);
+            dea_attempt_remark(attempt, plan, span, reason.message, damage);
+            dea_attempt_solved(attempt, damage);
             continue;
         }
-        dea_attempt_failed(&attempt, plan, span, points, reason.message[0] ? reason.message : dea_status_text(status), damage);
+        const char *why = reason.message[0] ? reason.message : dea_status_text(status);
+        dea_attempt_failed(attempt, plan, span, points, dea_fault_of(status), why, damage);
         status = session_renew(plan->engine, session, error);
         if (status != DEA_OK)
             return status;
@@ -65,9 +65,10 @@ static dea_status run_here(const dea_plan *plan, dea_error *error)
     size_t next = 0, done = 0;
     while (status == DEA_OK && done < plan->points) {
         dea_span span = dea_plan_next(plan, &next);
-        status = solve_block(plan, &span, &session, points, &damage, error);
+        dea_attempt attempt = dea_attempt_start(span.count);
+        status = solve_block(plan, &span, &session, &attempt, points, &damage, error);
         if (status == DEA_OK)
-            status = dea_plan_deliver(plan, &span, points, &done, error);
+            status = dea_plan_deliver(plan, &span, points, attempt.lost, &done, error);
     }
     plan->engine->end(session);
     free(points);

@@ -30,14 +30,14 @@ static void reset_signals(void)
 /* Nothing that a foreign library does in a worker can reach the caller's files. */
 static void leave_files(int socket)
 {
-    int null = open("/dev/null", O_RDWR);
-    if (null >= 0) {
-        dup2(null, STDIN_FILENO);
-        dup2(null, STDOUT_FILENO);
-    }
     if (socket > STDERR_FILENO + 1)
         close_range(STDERR_FILENO + 1, (unsigned)socket - 1, 0);
-    close_range((unsigned)socket + 1, ~0U, 0);
+    close_range((unsigned)socket + 1, ~0U, 0); /* first: the caller may have no descriptor left */
+    int null = open("/dev/null", O_RDWR);
+    if (null < 0 || dup2(null, STDIN_FILENO) < 0 || dup2(null, STDOUT_FILENO) < 0)
+        _exit(1);
+    if (null > STDERR_FILENO)
+        close(null);
 }
 
 static bool report(int socket, dea_status status)
@@ -139,42 +139,69 @@ double dea_worker_used(const dea_worker *worker)
     return (double)used.tv_sec + 1e-9 * (double)used.tv_nsec;
 }
 
-static void describe_end(int ended, char *how, size_t size)
+bool dea_worker_stopped(const dea_worker *worker)
 {
-    if (WIFSIGNALED(ended))
-        snprintf(how, size, "the worker was killed by signal %d (%s)", WTERMSIG(ended), strsignal(WTERMSIG(ended)));
-    else
-        snprintf(how, size, "the worker ended by itself with exit status %d", WEXITSTATUS(ended));
+    siginfo_t about = {0};
+    return waitid(P_PID, (id_t)worker->pid, &about, WSTOPPED | WNOHANG | WNOWAIT) == 0 && about.si_pid == worker->pid;
 }
 
-/* A worker whose socket is closed is exiting, perhaps with a signal that tells why: it gets a moment before it is killed. */
-static pid_t reap(pid_t pid, bool closed, int *ended)
+/* Signals that a process brings upon itself by what it does; all others come from outside. */
+static bool is_own_fault(int number)
 {
-    pid_t got = 0;
-    for (int tries = 0; closed && tries < 200 && got == 0; tries++) {
-        got = waitpid(pid, ended, WNOHANG);
-        if (got == 0)
-            usleep(1000);
+    static const int own[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS, SIGXCPU, SIGXFSZ, SIGPIPE};
+    for (size_t i = 0; i < sizeof own / sizeof own[0]; i++) {
+        if (own[i] == number)
+            return true;
     }
-    if (got != 0)
-        return got;
+    return false;
+}
+
+static dea_fault describe_end(int ended, char *how, size_t size)
+{
+    if (WIFSIGNALED(ended)) {
+        snprintf(how, size, "the worker was killed by signal %d (%s)", WTERMSIG(ended), strsignal(WTERMSIG(ended)));
+        return is_own_fault(WTERMSIG(ended)) ? DEA_FAULT_CRASHED : DEA_FAULT_KILLED;
+    }
+    snprintf(how, size, "the worker ended by itself with exit status %d", WEXITSTATUS(ended));
+    return DEA_FAULT_CRASHED;
+}
+
+/* Kills it, if need be; how it ended stands in *@p ended. */
+static bool kill_and_reap(pid_t pid, int *ended)
+{
+    pid_t got;
     kill(pid, SIGKILL);
     do {
         got = waitpid(pid, ended, 0);
     } while (got < 0 && errno == EINTR);
-    return got;
+    return got == pid;
 }
 
-void dea_worker_end(dea_worker *worker, char *how, size_t size)
+/* A worker whose socket is closed is exiting, perhaps with a signal that tells why: it gets a moment before it is killed. */
+dea_fault dea_worker_reap(dea_worker *worker, char *how, size_t size)
 {
+    int ended = 0;
+    pid_t got = 0;
+    for (int tries = 0; tries < 200 && got == 0; tries++) {
+        got = waitpid(worker->pid, &ended, WNOHANG);
+        if (got == 0)
+            usleep(1000);
+    }
+    const bool reaped = got == worker->pid || (got == 0 && kill_and_reap(worker->pid, &ended));
+    worker->pid = 0;
+    if (reaped)
+        return describe_end(ended, how, size);
+    snprintf(how, size, "the worker ended");
+    return DEA_FAULT_KILLED;
+}
+
+void dea_worker_end(dea_worker *worker)
+{
+    int ended;
     if (worker->state == DEA_WORKER_NONE)
         return;
-    int ended = 0;
-    pid_t got = reap(worker->pid, how != NULL, &ended);
-    if (how && got == worker->pid)
-        describe_end(ended, how, size);
-    else if (how)
-        snprintf(how, size, "the worker ended");
+    if (worker->pid > 0)
+        kill_and_reap(worker->pid, &ended);
     close(worker->socket);
     worker->state = DEA_WORKER_NONE;
 }

@@ -14,13 +14,14 @@ typedef enum dea_worker_state { DEA_WORKER_NONE, DEA_WORKER_STARTS, DEA_WORKER_I
 /** A worker as its parent sees it. */
 typedef struct dea_worker {
     dea_worker_state state;
-    pid_t pid;
+    pid_t pid;        /**< 0: reaped */
     int socket;       /**< the parent's end */
     dea_error *error; /**< shared memory: what a failure was about */
     size_t slot;      /**< while busy: where its rows go */
     double deadline;  /**< on the pool's clock [s] */
     double used;      /**< processor time that it was last seen to have taken [s] */
     double waited;    /**< on the pool's clock, since then [s] */
+    double moved;     /**< when it was last seen not to be stopped, on the pool's clock [s] */
 } dea_worker;
 
 /** What a worker is to solve. */
@@ -39,7 +40,12 @@ bool dea_worker_send(const dea_worker *worker, const dea_order *order);
 bool dea_worker_receive(const dea_worker *worker, dea_status *report);
 /** Processor time that the worker has taken since it was started, 0 where the system does not tell [s]. */
 double dea_worker_used(const dea_worker *worker);
-/** Kills and reaps the worker; writes how it ended into @p how when that is not NULL. */
-void dea_worker_end(dea_worker *worker, char *how, size_t size);
+/** True while a signal has stopped it. */
+bool dea_worker_stopped(const dea_worker *worker);
+/** Reaps a worker that is gone by itself and writes how it ended into @p how; dea_worker_end() is still due.
+ * @return what that end says about the work that it had */
+dea_fault dea_worker_reap(dea_worker *worker, char *how, size_t size);
+/** Kills and reaps the worker, if that is not done yet; its place is free then. */
+void dea_worker_end(dea_worker *worker);
 
 #endif

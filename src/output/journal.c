@@ -21,6 +21,7 @@ static const char journal_magic[16] = "deaspice part 1\n";
 static const uint64_t byte_order = UINT64_C(0x0102030405060708);
 static const uint64_t other_byte_order = UINT64_C(0x0807060504030201);
 static const uint64_t record_mark = UINT64_C(0x6b636f6c62616564); /* "deablock" */
+static const uint64_t lost_mark = UINT64_C(0x2174736f6c616564);   /* "dealost!" */
 static const double sync_interval = 10.0;                         /* [s] */
 
 /* Begin of the file; the identity follows. */
@@ -35,11 +36,17 @@ typedef struct journal_head {
 
 /* Begin of a record; its points follow, then a digest of head and points. */
 typedef struct record_head {
-    uint64_t mark;
+    uint64_t mark; /* of a record; lost_mark: points of it were lost, and another run shall compute the block again */
     uint64_t block;
     uint64_t count;  /* points */
     uint64_t digest; /* of all before */
 } record_head;
+
+/* What the journal has of a block. */
+typedef struct kept_block {
+    uint64_t place; /* of its last record, 0: none */
+    bool lost;      /* that has the lost_mark */
+} kept_block;
 
 struct dea_journal {
     const dea_journal_study *study;
@@ -51,9 +58,12 @@ struct dea_journal {
     bool open;           /* named, locked, and of this study */
     dea_atomic file;     /* that becomes its target */
     uint64_t end;        /* of the last whole record */
-    uint64_t lost;       /* bytes behind it that were cut off */
-    size_t points;       /* in it */
-    uint64_t *places;    /* of the records of the shard's blocks, 0: not in it; owned */
+    uint64_t cut;        /* bytes behind it that were cut off */
+    uint64_t damaged;    /* bytes before it that are no record */
+    uint64_t damage;     /* place of the first of those */
+    size_t points;       /* in it, for good */
+    size_t lost;         /* in blocks that another run shall compute again */
+    kept_block *kept;    /* of the shard's blocks; owned */
     unsigned char *room; /* buffer of streams; owned */
     double waiting;      /* since when a record has waited for the disk [s], 0: none does */
     int broken;          /* errno of the disk that did not take one, 0: fine */
@@ -152,17 +162,19 @@ static dea_status head_write(dea_journal *journal, dea_error *error)
 static bool head_is_torn(const dea_journal *journal, uint64_t size)
 {
     const journal_head head = head_of(journal);
-    const size_t whole = sizeof head + head.identity;
-    char *wanted = malloc(2 * whole);
-    bool torn = false;
-    if (wanted && size < whole) {
-        dea_stream in = dea_stream_begin(journal->fd, 0, journal->room);
-        memcpy(wanted, &head, sizeof head);
-        memcpy(wanted + sizeof head, journal->study->identity, head.identity);
-        torn = dea_stream_get(&in, wanted + whole, (size_t)size) && memcmp(wanted, wanted + whole, (size_t)size) == 0;
+    const char *identity = journal->study->identity;
+    dea_stream in = dea_stream_begin(journal->fd, 0, journal->room);
+    if (size >= sizeof head + head.identity) {
+        return false;
     }
-    free(wanted);
-    return torn;
+    for (uint64_t at = 0; at < size; at++) {
+        char byte;
+        const char wanted = at < sizeof head ? ((const char *)&head)[at] : identity[at - sizeof head];
+        if (!dea_stream_get(&in, &byte, 1) || byte != wanted) {
+            return false;
+        }
+    }
+    return true;
 }
 
 /* What @p head says of itself, apart from the study. */
@@ -220,6 +232,8 @@ static dea_status head_read(dea_journal *journal, dea_error *error)
     }
     if (dea_stream_get(&in, identity, head.identity)) {
         status = head_match(journal, &head, identity, error);
+    } else if (errno) {
+        status = fail_io(error, "read", journal->path);
     } else {
         status = dea_fail(error, DEA_ERROR_USAGE, "%s is cut short in its header", journal->path);
     }
@@ -282,61 +296,130 @@ static bool point_get(const dea_layout *layout, dea_stream *in, char *point)
     return dea_stream_get(in, point + rows, layout->point_size - rows);
 }
 
-/* The digest at the end of a record. */
+/* The digest at the end of a record; false with errno where it cannot be read, 0 where it is another one. */
 static bool digest_get(dea_stream *in)
 {
     uint64_t there;
     const uint64_t wanted = dea_digest_end(&in->digest);
-    return dea_stream_get(in, &there, sizeof there) && there == wanted;
+    if (!dea_stream_get(in, &there, sizeof there)) {
+        return false;
+    }
+    errno = 0;
+    return there == wanted;
 }
 
-/* Verifies the record at @p place. */
-static bool record_verify(const dea_journal *journal, uint64_t place, size_t count)
+/* What is found at a place of the file. */
+typedef enum record_kind {
+    RECORD_WHOLE,
+    RECORD_TORN,
+    RECORD_DAMAGED,
+    RECORD_FOREIGN,
+    RECORD_TWICE,
+    RECORD_UNREADABLE
+} record_kind;
+
+/* Verifies the points of the record at @p place. */
+static record_kind record_verify(const dea_journal *journal, uint64_t place, const record_head *head)
 {
     dea_stream in = dea_stream_begin(journal->fd, place, journal->room);
-    return dea_stream_get(&in, NULL, (size_t)record_size(journal, count) - sizeof(uint64_t)) && digest_get(&in);
+    if (dea_stream_get(&in, NULL, (size_t)(record_size(journal, (size_t)head->count) - sizeof(uint64_t))) && digest_get(&in)) {
+        return RECORD_WHOLE;
+    }
+    return errno ? RECORD_UNREADABLE : RECORD_DAMAGED;
 }
 
-/* What is found at the end of the records that are known. */
-typedef enum record_kind { RECORD_WHOLE, RECORD_TORN, RECORD_DAMAGED, RECORD_FOREIGN, RECORD_TWICE } record_kind;
-
-static record_kind record_find(const dea_journal *journal, uint64_t size, record_head *head)
+/* Reads so many bytes at a place; false with errno where the file ends before (errno 0) or fails. */
+static bool bytes_at(const dea_journal *journal, uint64_t place, void *bytes, size_t size)
 {
-    if (pread(journal->fd, head, sizeof *head, (off_t)journal->end) != (ssize_t)sizeof *head) {
+    size_t have = 0;
+    while (have < size) {
+        const ssize_t got = pread(journal->fd, (char *)bytes + have, size - have, (off_t)(place + have));
+        if (got < 0 && errno == EINTR) {
+            continue;
+        }
+        if (got <= 0) {
+            errno = got < 0 ? errno : 0;
+            return false;
+        }
+        have += (size_t)got;
+    }
+    return true;
+}
+
+static kept_block *kept_of(const dea_journal *journal, uint64_t block)
+{
+    return &journal->kept[block - journal->blocks.first];
+}
+
+/* The head of a record at @p place in a file of @p size bytes. */
+static record_kind record_find(const dea_journal *journal, uint64_t place, uint64_t size, record_head *head)
+{
+    if (size - place < sizeof *head) {
         return RECORD_TORN;
     }
-    if (head->mark != record_mark || head->digest != record_digest(head) || head->block >= journal->study->cut.blocks ||
+    if (!bytes_at(journal, place, head, sizeof *head)) {
+        return errno ? RECORD_UNREADABLE : RECORD_TORN;
+    }
+    if ((head->mark != record_mark && head->mark != lost_mark) || head->digest != record_digest(head) ||
+        head->block >= journal->study->cut.blocks ||
         head->count != dea_cut_range(&journal->study->cut, (size_t)head->block).count) {
         return RECORD_DAMAGED;
     }
-    if (record_size(journal, (size_t)head->count) > size - journal->end) {
+    if (record_size(journal, (size_t)head->count) > size - place) {
         return RECORD_TORN;
     }
     if (head->block < journal->blocks.first || head->block - journal->blocks.first >= journal->blocks.count) {
         return RECORD_FOREIGN;
     }
-    return journal->places[head->block - journal->blocks.first] != 0 ? RECORD_TWICE : RECORD_WHOLE;
+    const kept_block *kept = kept_of(journal, head->block);
+    return kept->place != 0 && !kept->lost ? RECORD_TWICE : RECORD_WHOLE;
 }
 
-static void record_keep(dea_journal *journal, size_t block, size_t count)
+/* Looks for the next head of a record behind place *@p place, to which it moves; to the end of the file where there is none. */
+static dea_status record_next(const dea_journal *journal, uint64_t size, uint64_t *place, dea_error *error)
 {
-    journal->places[block - journal->blocks.first] = journal->end;
-    journal->end += record_size(journal, count);
-    journal->points += count;
+    const size_t overlap = sizeof(record_head) - 1;
+    for (uint64_t from = *place + 1; size - from > overlap;) {
+        const size_t here = size - from < DEA_STREAM_BUFFER ? (size_t)(size - from) : DEA_STREAM_BUFFER;
+        if (!bytes_at(journal, from, journal->room, here)) {
+            return fail_io(error, "read", journal->path);
+        }
+        for (size_t i = 0; i + overlap < here; i++) {
+            record_head head;
+            memcpy(&head, journal->room + i, sizeof head);
+            if ((head.mark == record_mark || head.mark == lost_mark) && head.digest == record_digest(&head)) {
+                *place = from + i;
+                return DEA_OK;
+            }
+        }
+        from += here - overlap;
+    }
+    *place = size;
+    return DEA_OK;
+}
+
+static void record_keep(dea_journal *journal, const record_head *head, uint64_t place)
+{
+    const size_t count = (size_t)head->count;
+    kept_block *kept = kept_of(journal, head->block);
+    const bool lost = head->mark == lost_mark;
+    journal->lost -= kept->lost ? count : 0;
+    journal->lost += lost ? count : 0;
+    journal->points += lost ? 0 : count;
+    *kept = (kept_block){.place = place, .lost = lost};
 }
 
 static dea_status record_refuse(const dea_journal *journal, record_kind kind, const record_head *head, dea_error *error)
 {
     if (kind == RECORD_TORN) {
         return dea_fail(error, DEA_ERROR_USAGE,
-                        "%s is cut short: it ends within a block, behind %zu of its points; run that shard "
-                        "again",
+                        "%s is cut short: it ends within a block, behind %zu of its points; run that shard again with --resume",
                         journal->path, journal->points);
     }
     if (kind == RECORD_DAMAGED) {
         return dea_fail(error, DEA_ERROR_USAGE,
-                        "%s is damaged at byte %" PRIu64 ", behind %zu of its points; run that shard again", journal->path,
-                        journal->end, journal->points);
+                        "%s is damaged at byte %" PRIu64 ", behind %zu of its points; run that shard again with --resume",
+                        journal->path, journal->end, journal->points);
     }
     const dea_range range = dea_cut_range(&journal->study->cut, (size_t)head->block);
     return dea_fail(error, DEA_ERROR_USAGE,
@@ -344,30 +427,58 @@ static dea_status record_refuse(const dea_journal *journal, record_kind kind, co
                     journal->path, range.place, range.place + range.count - 1);
 }
 
-/* Finds all records. With @p strict false their points are verified, and a damaged or torn end is cut off. */
+/* Steps over what is no record at the end of those that are known, to the next head or, where there is none, ends them: at a torn
+ * end, which is cut off, or with @p strict true refused. Nothing is cut off unless the file could be read to its end. */
+static dea_status records_heal(dea_journal *journal, bool strict, record_kind kind, uint64_t *size, dea_error *error)
+{
+    uint64_t next = journal->end;
+    const dea_status status = record_next(journal, *size, &next, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    if (next < *size) {
+        journal->damage = journal->damaged > 0 ? journal->damage : journal->end;
+        journal->damaged += next - journal->end;
+        journal->end = next;
+        return DEA_OK;
+    }
+    if (strict) {
+        return record_refuse(journal, kind, NULL, error);
+    }
+    journal->cut = *size - journal->end;
+    *size = journal->end;
+    return ftruncate(journal->fd, (off_t)journal->end) == 0 ? DEA_OK : fail_io(error, "write", journal->path);
+}
+
+/* Finds and verifies all records, also those behind a damaged one. With @p strict false a torn end is cut off. */
 static dea_status records_find(dea_journal *journal, bool strict, dea_error *error)
 {
     struct stat about;
     if (fstat(journal->fd, &about) != 0) {
         return fail_io(error, "read", journal->path);
     }
-    const uint64_t size = (uint64_t)about.st_size;
-    while (journal->end < size) {
+    dea_status status = DEA_OK;
+    for (uint64_t size = (uint64_t)about.st_size; journal->end < size && status == DEA_OK;) {
         record_head head;
-        record_kind kind = record_find(journal, size, &head);
-        if (kind == RECORD_WHOLE && !strict && !record_verify(journal, journal->end, (size_t)head.count)) {
-            kind = RECORD_DAMAGED;
+        record_kind kind = record_find(journal, journal->end, size, &head);
+        if (kind == RECORD_WHOLE || kind == RECORD_TWICE) {
+            const record_kind verified = record_verify(journal, journal->end, &head);
+            kind = verified == RECORD_WHOLE ? kind : verified;
         }
-        if (kind != RECORD_WHOLE && (strict || kind == RECORD_FOREIGN || kind == RECORD_TWICE)) {
-            return record_refuse(journal, kind, &head, error);
+        if (kind == RECORD_UNREADABLE) {
+            status = fail_io(error, "read", journal->path);
+        } else if (kind == RECORD_FOREIGN || (kind == RECORD_TWICE && strict)) {
+            status = record_refuse(journal, kind, &head, error);
+        } else if (kind == RECORD_TORN || kind == RECORD_DAMAGED) {
+            status = records_heal(journal, strict, kind, &size, error);
+        } else {
+            if (kind == RECORD_WHOLE) {
+                record_keep(journal, &head, journal->end);
+            }
+            journal->end += record_size(journal, (size_t)head.count);
         }
-        if (kind != RECORD_WHOLE) {
-            journal->lost = size - journal->end;
-            return ftruncate(journal->fd, (off_t)journal->end) == 0 ? DEA_OK : fail_io(error, "write", journal->path);
-        }
-        record_keep(journal, (size_t)head.block, (size_t)head.count);
     }
-    return DEA_OK;
+    return status;
 }
 
 /* ---- a journal's life ---- */
@@ -375,7 +486,7 @@ static dea_status records_find(dea_journal *journal, bool strict, dea_error *err
 static void journal_free(dea_journal *journal)
 {
     free(journal->path);
-    free(journal->places);
+    free(journal->kept);
     free(journal->room);
     free(journal);
 }
@@ -401,8 +512,8 @@ static dea_journal *journal_new(const dea_journal_study *study, const char *path
 static dea_status journal_index(dea_journal *journal, dea_error *error)
 {
     journal->blocks = dea_shard_blocks(journal->study, journal->shard);
-    journal->places = calloc(journal->blocks.count + 1, sizeof *journal->places);
-    return journal->places ? DEA_OK : dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+    journal->kept = calloc(journal->blocks.count + 1, sizeof *journal->kept);
+    return journal->kept ? DEA_OK : dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
 }
 
 /* Locks the file; one that another process just removed or replaced is opened anew. A worker of a run that was killed may hold
@@ -553,33 +664,48 @@ size_t dea_journal_points(const dea_journal *journal)
     return journal->points;
 }
 
-uint64_t dea_journal_lost(const dea_journal *journal)
+size_t dea_journal_lost(const dea_journal *journal)
 {
     return journal->lost;
+}
+
+uint64_t dea_journal_cut(const dea_journal *journal)
+{
+    return journal->cut;
+}
+
+uint64_t dea_journal_damaged(const dea_journal *journal)
+{
+    return journal->damaged;
 }
 
 bool dea_journal_wants(const dea_journal *journal, size_t block)
 {
     return block >= journal->blocks.first && block - journal->blocks.first < journal->blocks.count &&
-           journal->places[block - journal->blocks.first] == 0;
+           (kept_of(journal, block)->place == 0 || kept_of(journal, block)->lost);
 }
 
 dea_status dea_journal_complete(const dea_journal *journal, dea_error *error)
 {
-    const uint64_t *places = journal->places;
+    const kept_block *kept = journal->kept;
     size_t from = 0, to;
-    while (from < journal->blocks.count && places[from] != 0) {
+    char where[64] = "is not complete";
+    while (from < journal->blocks.count && kept[from].place != 0) {
         from++;
     }
     if (from == journal->blocks.count) {
         return DEA_OK;
     }
-    for (to = from; to < journal->blocks.count && places[to] == 0; to++) {
+    for (to = from; to < journal->blocks.count && kept[to].place == 0; to++) {
+    }
+    if (journal->damaged > 0) {
+        snprintf(where, sizeof where, "is damaged at byte %" PRIu64, journal->damage);
     }
     const dea_stretch points = points_of(journal->study, (dea_stretch){journal->blocks.first + from, to - from});
-    return dea_fail(error, DEA_ERROR_USAGE, "%s is not complete: points %zu to %zu are missing%s", journal->path, points.first,
+    const size_t all = points_of(journal->study, journal->blocks).count;
+    return dea_fail(error, DEA_ERROR_USAGE, "%s %s: points %zu to %zu are missing%s", journal->path, where, points.first,
                     points.first + points.count - 1,
-                    journal->points + points.count < points_of(journal->study, journal->blocks).count ? ", and more" : "");
+                    journal->points + journal->lost + points.count < all ? ", and more" : "");
 }
 
 static void journal_sync(dea_journal *journal)
@@ -597,7 +723,7 @@ void dea_journal_settle(dea_journal *journal)
     }
 }
 
-dea_status dea_journal_append(dea_journal *journal, size_t first, const void *points, size_t count, dea_error *error)
+dea_status dea_journal_append(dea_journal *journal, size_t first, const void *points, size_t count, bool lost, dea_error *error)
 {
     const dea_journal_study *study = journal->study;
     const size_t block = dea_cut_block(&study->cut, first);
@@ -606,7 +732,7 @@ dea_status dea_journal_append(dea_journal *journal, size_t first, const void *po
         return dea_fail(error, DEA_ERROR_USAGE, "%s: %zu points from %zu on are no block that is missing", journal->path, count,
                         first);
     }
-    record_head head = {.mark = record_mark, .block = block, .count = count};
+    record_head head = {.mark = lost ? lost_mark : record_mark, .block = block, .count = count};
     head.digest = record_digest(&head);
     dea_stream out = dea_stream_begin(journal->fd, journal->end, journal->room);
     bool fine = dea_stream_put(&out, &head, sizeof head);
@@ -623,7 +749,8 @@ dea_status dea_journal_append(dea_journal *journal, size_t first, const void *po
         const dea_status status = fail_io(error, "write", journal->path);
         return ftruncate(journal->fd, (off_t)journal->end) == 0 ? status : status; /* what stays is cut off later */
     }
-    record_keep(journal, block, count);
+    record_keep(journal, &head, journal->end);
+    journal->end += record_size(journal, count);
     journal->waiting = journal->waiting > 0.0 ? journal->waiting : seconds_now();
     dea_journal_settle(journal);
     errno = journal->broken;
@@ -636,17 +763,18 @@ static dea_status block_read(dea_journal *journal, size_t block, char *points, d
     const dea_journal_study *study = journal->study;
     const dea_range range = dea_cut_range(&study->cut, block);
     record_head head;
-    dea_stream in = dea_stream_begin(journal->fd, journal->places[block - journal->blocks.first], journal->room);
+    dea_stream in = dea_stream_begin(journal->fd, kept_of(journal, block)->place, journal->room);
     bool fine = dea_stream_get(&in, &head, sizeof head);
     for (size_t i = 0; i < range.count && fine; i++) {
         fine = point_get(&study->layout, &in, points + i * study->layout.point_size);
     }
+    fine = fine && digest_get(&in);
     if (!fine && errno) {
         return fail_io(error, "read", journal->path);
     }
-    if (!fine || !digest_get(&in)) {
+    if (!fine) {
         return dea_fail(error, DEA_ERROR_USAGE,
-                        "%s is damaged: points %zu to %zu do not match their digest; run that shard again", journal->path,
+                        "%s is damaged: points %zu to %zu do not match their digest; run that shard again with --resume", journal->path,
                         range.place, range.place + range.count - 1);
     }
     return DEA_OK;

@@ -2,8 +2,9 @@
  * killed goes on from it, and a finished one is the part of a study that a merge takes.
  *
  * The file has a header (magic, byte order, shard, cut, the study's identity as text) and then a record for each block: its
- * number, its points, their columns and states packed without gaps, and digests of head and points. Nothing is ever written
- * twice; a record that is not whole is as if it were not there.
+ * number, its points, their columns and states packed without gaps, and digests of head and points. A record that is not whole
+ * is as if it were not there: what follows it is found by the next head. A block that has points which were lost, not refused by
+ * the engine (dea_run_options.lost), is marked so, and counts as not computed; the record that a later run appends replaces it.
  *
  * What lasts: a record stands once dea_journal_append() returned, whatever becomes of the process (SIGKILL too). It is on the
  * disk, safe from a loss of power, 10 s later (at the next call of dea_journal_settle() or dea_journal_append()) and once the
@@ -55,27 +56,32 @@ typedef enum dea_journal_end {
 
 /* Opens the journal of that name and locks it, or creates it. What is in it is verified; a torn end is cut off. The study
  * outlives the journal, which the caller ends with dea_journal_close().
- * DEA_ERROR_USAGE: of another study or shard, or in use by another process; the file is as it was. DEA_ERROR_IO. */
+ * DEA_ERROR_USAGE: of another study or shard, or in use by another process; DEA_ERROR_IO: it cannot be read to its end. The file is
+ * as it was. */
 dea_status dea_journal_open(const dea_journal_study *study, dea_shard shard, const char *path, dea_journal **journal,
                             dea_error *error);
 /* A new journal without a name, beside @p target. */
 dea_status dea_journal_create(const dea_journal_study *study, dea_shard shard, const char *target, dea_journal **journal,
                               dea_error *error);
-/* Opens a part to read it. Its records are found, their points not yet verified. Its shard is what the file says.
+/* Opens a part to read it. Its records are verified. Its shard is what the file says.
  * DEA_ERROR_USAGE: not a part, of another study, or damaged; the message names file and points. */
 dea_status dea_journal_read(const dea_journal_study *study, const char *path, dea_journal **journal, dea_error *error);
 /* The file's shard. */
 dea_shard dea_journal_shard(const dea_journal *journal);
-/* Points in it. */
+/* Points in it for good. */
 size_t dea_journal_points(const dea_journal *journal);
+/* Points in it whose block another run shall compute again. */
+size_t dea_journal_lost(const dea_journal *journal);
 /* Bytes of a torn end that were cut off when it was opened. */
-uint64_t dea_journal_lost(const dea_journal *journal);
-/* True where the block belongs to the shard and is not in the journal. */
+uint64_t dea_journal_cut(const dea_journal *journal);
+/* Bytes between its records that are none. */
+uint64_t dea_journal_damaged(const dea_journal *journal);
+/* True where the block belongs to the shard and is not in the journal for good. */
 bool dea_journal_wants(const dea_journal *journal, size_t block);
 /* DEA_OK where it has all points of its shard; else a message that names the first that are missing. */
 dea_status dea_journal_complete(const dea_journal *journal, dea_error *error);
-/* Appends the points of one whole block. */
-dea_status dea_journal_append(dea_journal *journal, size_t first, const void *points, size_t count, dea_error *error);
+/* Appends the points of one whole block; @p lost: points of it are, so that another run shall compute it again. */
+dea_status dea_journal_append(dea_journal *journal, size_t first, const void *points, size_t count, bool lost, dea_error *error);
 /* Brings to the disk what has waited for 10 s; to be called now and then. A disk that fails is told by the next call that can. */
 void dea_journal_settle(dea_journal *journal);
 /* Hands the points of a complete journal to options->points in order, verified. progress and stop are used as in a run. */

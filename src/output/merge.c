@@ -11,13 +11,19 @@ typedef struct part {
 } part;
 
 /* Opens a part and reads what it says of itself. */
-static dea_status part_check(const dea_journal_study *study, part *checked, dea_error *error)
+static dea_status part_check(const dea_journal_study *study, part *checked, const dea_run_options *options, dea_error *error)
 {
     dea_journal *journal;
     dea_status status = dea_journal_read(study, checked->path, &journal, error);
     if (status == DEA_OK) {
         checked->shard = dea_journal_shard(journal);
         status = dea_journal_complete(journal, error);
+        if (status == DEA_OK && dea_journal_lost(journal) > 0 && options->log) {
+            char line[DEA_ERROR_LENGTH];
+            snprintf(line, sizeof line, "%s: the blocks of %zu points lost their workers; run that shard again with --resume",
+                     checked->path, dea_journal_lost(journal));
+            options->log(options->user, line);
+        }
         dea_journal_close(journal, DEA_JOURNAL_STAYS, NULL, NULL);
     }
     return status;
@@ -101,7 +107,7 @@ dea_status dea_merge_parts(const dea_journal_study *study, const char *const *pa
     }
     for (size_t i = 0; i < count && status == DEA_OK; i++) {
         parts[i].path = paths[i];
-        status = part_check(study, &parts[i], error);
+        status = part_check(study, &parts[i], options, error);
     }
     if (status == DEA_OK) {
         qsort(parts, count, sizeof *parts, compare_parts);

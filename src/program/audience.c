@@ -18,6 +18,12 @@ dea_status dea_audience_points(void *user, size_t first, const void *points, siz
     return status;
 }
 
+void dea_audience_lost(void *user, size_t count)
+{
+    dea_audience *audience = user;
+    audience->lost += count;
+}
+
 void dea_audience_log(void *user, const char *line)
 {
     const dea_audience *audience = user;

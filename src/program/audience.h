@@ -15,6 +15,7 @@ typedef struct dea_audience {
     dea_plot *plot;     /**< NULL: none */
     dea_progress *progress;
     size_t before; /**< points that were there when the run began */
+    size_t lost;   /**< points that are failed because of lost workers */
     dea_findings findings;
 } dea_audience;
 
@@ -26,6 +27,7 @@ dea_status dea_audience_open(const dea_arguments *arguments, const dea_scene *sc
 dea_status dea_audience_try(const dea_arguments *arguments, const dea_scene *scene, const dea_engine *engine, dea_error *error);
 /** Callbacks of a run whose user is the audience. */
 dea_status dea_audience_points(void *user, size_t first, const void *points, size_t count, dea_error *error);
+void dea_audience_lost(void *user, size_t count);
 void dea_audience_log(void *user, const char *line);
 void dea_audience_progress(void *user, size_t done, size_t total);
 /** Ends outputs: kept when @p status is DEA_OK, else removed. The first failure counts. */

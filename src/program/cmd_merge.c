@@ -19,6 +19,12 @@ static dea_status take_points(void *user, size_t first, const void *points, size
     return status;
 }
 
+static void take_line(void *user, const char *line)
+{
+    merging *merge = user;
+    dea_audience_log(&merge->audience, line);
+}
+
 static const char **list_paths(const dea_arguments *arguments)
 {
     const char **paths = calloc(arguments->operand_count, sizeof *paths);
@@ -34,7 +40,7 @@ static dea_status merge_parts(const dea_arguments *arguments, const dea_journal_
     if (!paths) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
-    const dea_run_options options = {.points = take_points, .stop = dea_signals_stop, .user = merge};
+    const dea_run_options options = {.points = take_points, .log = take_line, .stop = dea_signals_stop, .user = merge};
     const dea_status status = dea_merge_parts(study, paths, arguments->operand_count - 1, &options, error);
     free(paths);
     return status;

@@ -12,6 +12,7 @@ static dea_exit run_scene(const dea_arguments *arguments, const dea_scene *scene
     audience.progress = arguments->quiet ? NULL : dea_progress_begin();
     const dea_run_options options = {.jobs = arguments->jobs ? arguments->jobs : dea_core_count(),
                                      .points = dea_audience_points,
+                                     .lost = dea_audience_lost,
                                      .progress = dea_audience_progress,
                                      .log = dea_audience_log,
                                      .stop = dea_signals_stop,
@@ -25,6 +26,10 @@ static dea_exit run_scene(const dea_arguments *arguments, const dea_scene *scene
         dea_audience_interrupted(&audience, arguments);
     }
     status = dea_audience_close(&audience, status, &error);
+    if (status == DEA_OK && audience.lost > 0) {
+        dea_complain("%zu %s lost their workers and may go well in another run", audience.lost,
+                     scene->study == DEA_STUDY_SWEEP ? "points" : "runs");
+    }
     if (status == DEA_OK) {
         return dea_audience_tell(arguments, engine, &audience.findings, seconds);
     }

@@ -17,6 +17,7 @@ typedef struct recorder {
     dea_journal *journal;
     size_t total, taken; /* points of the shard, and of those that were in the journal */
     size_t computed;     /* points that came since */
+    size_t lost;         /* points of the block that comes next which were lost */
     dea_audience audience;
 } recorder;
 
@@ -26,11 +27,19 @@ static bool recorder_wanted(void *user, size_t block)
     return dea_journal_wants(run->journal, block);
 }
 
+static void recorder_lost(void *user, size_t count)
+{
+    recorder *run = user;
+    run->lost = count;
+}
+
 static dea_status recorder_points(void *user, size_t first, const void *points, size_t count, dea_error *error)
 {
     recorder *run = user;
+    const bool lost = run->lost > 0;
+    run->lost = 0;
     run->computed += count;
-    return dea_journal_append(run->journal, first, points, count, error);
+    return dea_journal_append(run->journal, first, points, count, lost, error);
 }
 
 static dea_status recorder_replay(void *user, size_t first, const void *points, size_t count, dea_error *error)
@@ -136,9 +145,13 @@ static void tell_taken(const recorder *run)
         return;
     }
     dea_complain("%zu of %zu %s taken over from %s", run->taken, run->total, noun(run), run->path);
-    if (dea_journal_lost(run->journal) > 0) {
+    if (dea_journal_damaged(run->journal) > 0) {
+        dea_complain("%llu bytes in it are damaged; what they held is computed again, what follows them is kept",
+                     (unsigned long long)dea_journal_damaged(run->journal));
+    }
+    if (dea_journal_cut(run->journal) > 0) {
         dea_complain("its last %llu bytes are no whole block and were cut off",
-                     (unsigned long long)dea_journal_lost(run->journal));
+                     (unsigned long long)dea_journal_cut(run->journal));
     }
 }
 
@@ -154,6 +167,7 @@ static dea_status compute(recorder *run, const dea_engine *engine, dea_error *er
     const dea_run_options options = {.jobs = run->arguments->jobs ? run->arguments->jobs : dea_core_count(),
                                      .points = recorder_points,
                                      .wanted = recorder_wanted,
+                                     .lost = recorder_lost,
                                      .any_order = true,
                                      .progress = recorder_progress,
                                      .log = recorder_log,
@@ -189,9 +203,18 @@ static void tell_interrupted(const recorder *run)
                  run->total, noun(run), run->path);
 }
 
+/* Blocks that lost points are computed again by the next run: their rows are `failed` in the result, not in the journal. */
+static void tell_lost(const recorder *run, size_t points)
+{
+    if (points > 0) {
+        dea_complain("the blocks of %zu %s lost their workers; a run with --resume computes them again", points, noun(run));
+    }
+}
+
 static dea_status close_journal(recorder *run, dea_status status, dea_error *error)
 {
-    const dea_journal_end done = run->arguments->shard > 0 ? DEA_JOURNAL_IS_PART : DEA_JOURNAL_GOES;
+    const bool whole = !run->journal || dea_journal_lost(run->journal) == 0;
+    const dea_journal_end done = run->arguments->shard > 0 ? DEA_JOURNAL_IS_PART : whole ? DEA_JOURNAL_GOES : DEA_JOURNAL_STAYS;
     const dea_status closed = dea_journal_close(run->journal, status == DEA_OK ? done : DEA_JOURNAL_STAYS, run->arguments->output,
                                                 status == DEA_OK ? error : NULL);
     return status != DEA_OK ? status : closed;
@@ -238,9 +261,11 @@ dea_exit dea_run_journaled(const dea_arguments *arguments, const dea_scene *scen
     if (status != DEA_OK) {
         tell_interrupted(&run);
     }
+    const size_t lost = run.journal ? dea_journal_lost(run.journal) : 0;
     status = close_journal(&run, status, &error);
     if (status == DEA_OK) {
         tell_share(&run);
+        tell_lost(&run, lost);
     }
     const dea_exit outcome = status == DEA_OK
                                  ? dea_audience_tell(arguments, engine, &run.audience.findings, dea_seconds() - start)

@@ -216,6 +216,125 @@ static void damaged_block_is_computed_again(void **state)
     assert_true(same_bytes(target, "whole.csv"));
 }
 
+enum { RECORD = 32 + BLOCK * PACKED + 8 };
+
+/* Ways to damage the records from the third on, and how many of them that costs. */
+typedef struct wound {
+    long at, cut, put; /* place behind the begin of the third record; bytes that go, bytes that come */
+    size_t lost;
+} wound;
+
+static const wound wounds[] = {
+    {1000, 1, 1, 1},             /* a point */
+    {9, 1, 1, 1},                /* a head */
+    {RECORD - 4, 1, 1, 1},       /* a digest */
+    {RECORD - 100, 200, 200, 2}, /* over the end of a record */
+    {500, 700, 0, 1},            /* bytes are missing */
+    {0, 0, 4321, 0},             /* bytes come between records */
+    {20, 2 * RECORD, 77, 3},
+};
+
+static void inflict(const wound *w, const char *name, const char *bytes, size_t size, size_t header)
+{
+    static const char junk[8192] = "deablock";
+    const size_t at = header + 2 * RECORD + (size_t)w->at, rest = at + (size_t)w->cut;
+    FILE *file = fopen(name, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, at, file), at);
+    assert_int_equal(fwrite(junk, 1, (size_t)w->put, file), (size_t)w->put);
+    assert_int_equal(fwrite(bytes + rest, 1, size - rest, file), size - rest);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void damaged_middle_costs_its_blocks_alone(void **state)
+{
+    (void)state;
+    size_t size;
+    remove(target);
+    const pid_t pid = run_until(POINTS * PACKED * 9 / 10);
+    kill(pid, SIGTERM);
+    child_wait(pid);
+    const size_t kept = points_kept(), header = (size_t)header_size();
+    char *bytes = file_read(journal, &size);
+    for (size_t i = 0; i < sizeof wounds / sizeof *wounds; i++) {
+        inflict(&wounds[i], journal, bytes, size, header);
+        remove(target);
+        resume_completes(kept - wounds[i].lost * BLOCK);
+        assert_says("bytes in it are damaged; what they held is computed again, what follows them is kept");
+    }
+    free(bytes);
+}
+
+static void damaged_part_is_named_and_made_whole(void **state)
+{
+    (void)state;
+    static const char *const words[] = {"run", "scene.yaml", "--engine", "ngspice",    "-j",       "2", "--shard",
+                                        "2/2", "-q",         "-o",       "part-2.dea", "--resume", NULL};
+    size_t size;
+    RUN("run", "scene.yaml", "--engine", "ngspice", "--shard", "1/2", "-o", "part-1.dea");
+    child_wait(child_start(0, words));
+    assert_status(0);
+    char *bytes = file_read("part-2.dea", &size);
+    for (size_t i = 0; i < sizeof wounds / sizeof *wounds; i++) {
+        inflict(&wounds[i], "part-2.dea", bytes, size, size - 32 * (size_t)RECORD);
+        RUN("merge", "scene.yaml", "--engine", "ngspice", "part-1.dea", "part-2.dea", "-o", "merged.csv");
+        assert_status(wounds[i].lost > 0 ? 2 : 0);
+        assert_true(file_exists("merged.csv") == (wounds[i].lost == 0));
+        if (wounds[i].lost > 0) {
+            assert_says("part-2.dea is damaged");
+            child_wait(child_start(0, words));
+            assert_status(0);
+            RUN("merge", "scene.yaml", "--engine", "ngspice", "part-1.dea", "part-2.dea", "-o", "merged.csv");
+            assert_status(0);
+        }
+        assert_true(same_bytes("merged.csv", "whole.csv"));
+        remove("merged.csv");
+    }
+    free(bytes);
+    remove("part-1.dea");
+    remove("part-2.dea");
+}
+
+/* The first child of a process, 0 where it has none. */
+static pid_t worker_of(pid_t parent)
+{
+    char name[64];
+    int worker = 0;
+    snprintf(name, sizeof name, "/proc/%d/task/%d/children", (int)parent, (int)parent);
+    FILE *file = fopen(name, "r");
+    if (!file || fscanf(file, "%d", &worker) != 1) {
+        worker = 0;
+    }
+    if (file) {
+        fclose(file);
+    }
+    return worker;
+}
+
+/* Whoever takes workers away in the middle of a run takes nothing from the result. */
+static void run_whose_workers_are_taken_has_the_same_bytes(void **state)
+{
+    (void)state;
+    static const int signals[] = {SIGKILL, SIGSTOP, SIGKILL, SIGSEGV, SIGKILL, SIGSTOP};
+    remove(target);
+    size_t taken = 0;
+    pid_t last = 0;
+    const pid_t pid = child_start(0, WORDS(RESUME));
+    for (siginfo_t about = {0}; about.si_pid != pid && taken < 6; pause_for(200)) {
+        const pid_t worker = file_size(journal) > (long)taken * 2 * RECORD ? worker_of(pid) : 0;
+        assert_int_equal(waitid(P_PID, (id_t)pid, &about, WEXITED | WNOHANG | WNOWAIT), 0);
+        if (worker > 0 && worker != last && kill(worker, signals[taken]) == 0) {
+            last = worker;
+            taken++;
+        }
+    }
+    child_wait(pid);
+    assert_status(0);
+    assert_true(taken > 0);
+    assert_true(same_bytes(target, "whole.csv"));
+    assert_false(file_exists(journal));
+}
+
 static void torn_header_is_a_new_journal(void **state)
 {
     (void)state;
@@ -354,6 +473,9 @@ int main(void)
         cmocka_unit_test(second_run_on_a_journal_is_refused),
         cmocka_unit_test(torn_end_is_cut_off_and_computed_again),
         cmocka_unit_test(damaged_block_is_computed_again),
+        cmocka_unit_test(damaged_middle_costs_its_blocks_alone),
+        cmocka_unit_test(damaged_part_is_named_and_made_whole),
+        cmocka_unit_test(run_whose_workers_are_taken_has_the_same_bytes),
         cmocka_unit_test(torn_header_is_a_new_journal),
         cmocka_unit_test(foreign_journal_is_refused_and_stays),
         cmocka_unit_test(full_disk_is_told_and_what_is_there_goes_on),

@@ -217,8 +217,8 @@ static void prepare_part(void)
             const double number = (double)(range.first + k);
             rows[k] = (dea_row){number, -number, 2.0 * number, 0.5 * number, (dea_state)(k % DEA_STATE_COUNT)};
         }
-        assert_int_equal(dea_journal_append(journal, range.place, rows, range.count, &error), DEA_OK);
-        assert_int_equal(dea_journal_append(journal, range.place, rows, range.count, &error), DEA_ERROR_USAGE);
+        assert_int_equal(dea_journal_append(journal, range.place, rows, range.count, false, &error), DEA_OK);
+        assert_int_equal(dea_journal_append(journal, range.place, rows, range.count, false, &error), DEA_ERROR_USAGE);
     }
     assert_int_equal(dea_journal_close(journal, DEA_JOURNAL_IS_PART, "whole.dea", &error), DEA_OK);
     part = file_read("whole.dea", &part_size);
@@ -329,6 +329,47 @@ static void a_block_that_comes_twice_is_named(void **state)
     assert_int_equal(merge_file("short.dea", &points, &error), DEA_ERROR_USAGE);
     assert_string_equal(error.message, "short.dea is not complete: points 0 to 1023 are missing");
     free(doubled);
+    forget_part();
+}
+
+static void take_line(void *user, const char *line)
+{
+    assert_int_equal(*(size_t *)user, 0); /* before any point */
+    assert_string_equal(line, "lost.dea: the blocks of 1024 points lost their workers; run that shard again with --resume");
+}
+
+/* Lost points are not done: the block is wanted again, and its next record replaces them. */
+static void lost_block_is_computed_again(void **state)
+{
+    (void)state;
+    dea_error error = {0};
+    dea_journal *journal;
+    size_t points = 0;
+    prepare_part();
+    const dea_shard whole = {1, 1};
+    static dea_row rows[3][1024];
+    for (int round = 0; round < 2; round++) {
+        assert_int_equal(dea_journal_open(&study, whole, "lost.dea", &journal, &error), DEA_OK);
+        for (size_t i = 0; i < 3; i++) {
+            const dea_range range = dea_cut_range(&study.cut, i);
+            assert_true(dea_journal_wants(journal, i) == (round == 0 || i == 1));
+            for (size_t k = 0; k < range.count; k++) {
+                rows[i][k] = (dea_row){.strain = (double)(range.first + k), .field = 0.5 * (double)(range.first + k)};
+            }
+            if (round == 0 || i == 1) {
+                assert_int_equal(dea_journal_append(journal, range.place, rows[i], range.count, round == 0 && i == 1, &error),
+                                 DEA_OK);
+            }
+        }
+        assert_int_equal(dea_journal_lost(journal), round == 0 ? 1024 : 0);
+        assert_int_equal(dea_journal_points(journal), round == 0 ? 2500 - 1024 : 2500);
+        assert_int_equal(dea_journal_close(journal, DEA_JOURNAL_STAYS, NULL, &error), DEA_OK);
+        const dea_run_options options = {.points = count_points, .log = round == 0 ? take_line : NULL, .user = &points};
+        const char *name = "lost.dea";
+        points = 0;
+        assert_int_equal(dea_merge_parts(&study, &name, 1, &options, &error), DEA_OK);
+        assert_int_equal(points, 2500);
+    }
     forget_part();
 }
 
@@ -536,6 +577,7 @@ int main(void)
         cmocka_unit_test(every_cut_is_found),
         cmocka_unit_test(the_other_byte_order_is_named),
         cmocka_unit_test(a_block_that_comes_twice_is_named),
+        cmocka_unit_test(lost_block_is_computed_again),
         cmocka_unit_test(every_scalar_of_a_scene_counts),
         cmocka_unit_test(all_that_is_no_scalar_counts),
         cmocka_unit_test(shards_share_the_blocks_among_them),

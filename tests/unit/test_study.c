@@ -31,6 +31,7 @@ typedef struct fake {
     int begins;
     int sweeps;
     int bad_begins; /* so many of the first begin() fail */
+    int signals;    /* so many times a worker gets a signal, at its begin or at the bad point */
     pid_t worker;   /* the last that began */
 } fake;
 
@@ -43,6 +44,8 @@ typedef struct listener {
     size_t progress;
     size_t stop_after; /* rows, 0: never */
     size_t refuse_after;
+    size_t lost;
+    double calls; /* sum that tells in which calls of the engine the rows were made */
     size_t lines;
     char line[1024];
 } listener;
@@ -99,6 +102,51 @@ static dea_status sweep_crash(void *session, const dea_scene *scene, const dea_m
     if (covers_bad_point(model, first, count))
         raise(SIGSEGV);
     return DEA_OK;
+}
+
+static bool signal_is_due(void)
+{
+    return __atomic_fetch_sub(&shared->signals, 1, __ATOMIC_SEQ_CST) > 0;
+}
+
+/* Rows that tell from which call they are: an answer may depend on where its range begins. */
+static dea_status sweep_struck(const dea_model *model, size_t first, size_t count, dea_row *rows, int number)
+{
+    for (size_t i = 0; i < count; i++)
+        rows[i] = (dea_row){.strain = expected_strain(model, first + i), .displacement = (double)(first * count), .force = 2};
+    if (number != 0 && covers_bad_point(model, first, count) && signal_is_due())
+        raise(number);
+    return DEA_OK;
+}
+
+static dea_status sweep_killed(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count,
+                               dea_row *rows, dea_error *error)
+{
+    (void)session, (void)scene, (void)error;
+    return sweep_struck(model, first, count, rows, SIGKILL);
+}
+
+static dea_status sweep_stopped(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count,
+                                dea_row *rows, dea_error *error)
+{
+    (void)session, (void)scene, (void)error;
+    return sweep_struck(model, first, count, rows, SIGSTOP);
+}
+
+static dea_status sweep_crashed(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count,
+                                dea_row *rows, dea_error *error)
+{
+    (void)session, (void)scene, (void)error;
+    return sweep_struck(model, first, count, rows, SIGABRT);
+}
+
+static dea_status sweep_exhausted(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count,
+                                  dea_row *rows, dea_error *error)
+{
+    (void)session, (void)scene;
+    const bool due = covers_bad_point(model, first, count) && signal_is_due();
+    sweep_struck(model, first, count, rows, 0);
+    return due ? dea_fail(error, DEA_ERROR_MEMORY, "out of memory") : DEA_OK;
 }
 
 static dea_status sweep_hang(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count,
@@ -178,6 +226,8 @@ static dea_status take_rows(void *user, size_t first, const void *points, size_t
             heard->wrong += !(fabs(rows[i].strain - strain) <= 0 && rows[i].state == DEA_STATE_OK);
         }
     }
+    for (size_t i = 0; i < count; i++)
+        heard->calls += (double)(first + i + 1) * rows[i].displacement;
     heard->next = first + count;
     if (heard->refuse_after > 0 && heard->next >= heard->refuse_after)
         return dea_fail(error, DEA_ERROR_IO, "disk full");
@@ -189,6 +239,12 @@ static void take_line(void *user, const char *line)
     listener *heard = user;
     heard->lines++;
     snprintf(heard->line, sizeof heard->line, "%s", line);
+}
+
+static void take_lost(void *user, size_t count)
+{
+    listener *heard = user;
+    heard->lost += count;
 }
 
 static void take_progress(void *user, size_t done, size_t total)
@@ -214,7 +270,8 @@ static void check_no_child_left(void)
 static dea_status run(const dea_scene *scene, const dea_engine *engine, size_t jobs, listener *heard, dea_error *error)
 {
     dea_run_options options = {
-        .jobs = jobs, .points = take_rows, .progress = take_progress, .log = take_line, .stop = wants_stop, .user = heard};
+        .jobs = jobs, .points = take_rows, .lost = take_lost, .progress = take_progress, .log = take_line, .stop = wants_stop,
+        .user = heard};
     dea_status status = dea_study_run(scene, engine, &options, error);
     free(scene->axes[0].values);
     check_no_child_left();
@@ -225,7 +282,8 @@ static dea_status run(const dea_scene *scene, const dea_engine *engine, size_t j
 static dea_status run_impatiently(const dea_scene *scene, const dea_engine *engine, size_t jobs, listener *heard,
                                   dea_error *error)
 {
-    dea_run_options options = {.jobs = jobs, .points = take_rows, .log = take_line, .stop = wants_stop, .user = heard};
+    dea_run_options options = {
+        .jobs = jobs, .points = take_rows, .lost = take_lost, .log = take_line, .stop = wants_stop, .user = heard};
     dea_plan plan;
     assert_int_equal(dea_plan_make(scene, engine, &options, &plan, error), DEA_OK);
     dea_status status = dea_pool_run(&plan, 0.2, error);
@@ -338,6 +396,7 @@ static void crash_costs_only_its_point(void **state)
         listener heard = {0};
         assert_int_equal(run(&scene, &engine, all_jobs[i], &heard, NULL), DEA_OK);
         check_one_failed(&heard, "signal 11");
+        assert_int_equal(heard.lost, 1);
     }
 }
 
@@ -350,6 +409,7 @@ static void hang_costs_only_its_point(void **state)
         listener heard = {0};
         assert_int_equal(run_impatiently(&scene, &engine, all_jobs[i], &heard, NULL), DEA_OK);
         check_one_failed(&heard, "no answer");
+        assert_int_equal(heard.lost, 1);
     }
 }
 
@@ -362,6 +422,7 @@ static void error_costs_only_its_point_and_is_told(void **state)
         listener heard = {0};
         assert_int_equal(run(&scene, &engine, all_jobs[i % 3], &heard, NULL), DEA_OK);
         check_one_failed(&heard, "singular matrix");
+        assert_int_equal(heard.lost, 0); /* the engine's last word */
     }
 }
 
@@ -375,6 +436,104 @@ static void exit_of_a_library_costs_only_its_point(void **state)
         assert_int_equal(run(&scene, &engine, all_jobs[i], &heard, NULL), DEA_OK);
         check_one_failed(&heard, "exit status 3");
     }
+}
+
+typedef dea_status sweep_function(void *, const dea_scene *, const dea_model *, size_t, size_t, dea_row *, dea_error *);
+
+/* A run whose workers get so many signals. */
+static listener run_struck(sweep_function *sweep, int signals, size_t jobs)
+{
+    dea_scene scene = scene_of(POINTS, 2);
+    dea_engine engine = engine_of(sweep, true);
+    listener heard = {0};
+    *shared = (fake){.signals = signals};
+    assert_int_equal(run(&scene, &engine, jobs, &heard, NULL), DEA_OK);
+    assert_int_equal(heard.next, 2 * POINTS);
+    assert_int_equal(heard.wrong, 0);
+    return heard;
+}
+
+/* More losses than a block bears as a whole halve it; but no point is to blame. */
+static void lost_workers_change_no_bit(void **state)
+{
+    (void)state;
+    static sweep_function *const sweeps[] = {sweep_killed, sweep_crashed, sweep_exhausted};
+    static const int signals[] = {1, 2, 3, 4, 5};
+    const double calls = run_struck(sweep_killed, 0, 1).calls;
+    for (size_t i = 0; i < 3 * 5; i++) {
+        const listener heard = run_struck(sweeps[i % 3], signals[i / 3], all_jobs[i % 3]);
+        assert_int_equal(heard.failed, 0);
+        assert_int_equal(heard.lost, 0);
+        assert_int_equal(heard.lines, 0);
+        assert_true(heard.calls == calls);
+    }
+}
+
+static void stopped_worker_is_replaced(void **state)
+{
+    (void)state;
+    const double calls = run_struck(sweep_stopped, 0, 1).calls;
+    for (size_t i = 0; i < 2; i++) {
+        const listener heard = run_struck(sweep_stopped, 1, all_jobs[i]);
+        assert_int_equal(heard.failed, 0);
+        assert_true(heard.calls == calls);
+    }
+}
+
+/* A point whose workers are always killed is lost; its neighbours are not. */
+static void point_that_is_always_lost_is_told(void **state)
+{
+    (void)state;
+    const listener heard = run_struck(sweep_killed, 1000000, 2);
+    check_one_failed(&heard, "signal 9");
+    assert_int_equal(heard.lost, 1);
+}
+
+static dea_status begin_killed(void **session, dea_error *error)
+{
+    if (signal_is_due())
+        raise(SIGKILL);
+    return begin_fine(session, error);
+}
+
+static void workers_killed_while_they_begin_have_successors(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < 3; i++) {
+        dea_scene scene = scene_of(POINTS, 1);
+        dea_engine engine = engine_of(solve, true);
+        listener heard = {0};
+        engine.begin = begin_killed;
+        *shared = (fake){.signals = 3};
+        assert_int_equal(run(&scene, &engine, all_jobs[i], &heard, NULL), DEA_OK);
+        assert_int_equal(heard.next, POINTS);
+        assert_int_equal(heard.failed + heard.lines, 0);
+    }
+    dea_scene scene = scene_of(POINTS, 1);
+    dea_engine engine = engine_of(solve, true);
+    listener heard = {0};
+    dea_error error = {0};
+    engine.begin = begin_killed;
+    *shared = (fake){.signals = 1000000};
+    assert_int_equal(run(&scene, &engine, 2, &heard, &error), DEA_ERROR_ENGINE);
+    assert_non_null(strstr(error.message, "could not begin: the worker was killed by signal 9"));
+    *shared = (fake){0};
+}
+
+/* With few descriptors there are fewer workers, not an error. */
+static void few_descriptors_mean_few_workers(void **state)
+{
+    (void)state;
+    struct rlimit before, few;
+    assert_int_equal(getrlimit(RLIMIT_NOFILE, &before), 0);
+    few = before;
+    few.rlim_cur = 12;
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &few), 0);
+    const listener heard = run_struck(sweep_killed, 1, 64);
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &before), 0);
+    assert_int_equal(heard.failed, 0);
+    assert_int_equal(heard.lines, 1);
+    assert_non_null(strstr(heard.line, "going on with "));
 }
 
 static void broken_engine_ends_in_bounded_time(void **state)
@@ -572,7 +731,7 @@ static void halving_finds_every_bad_point(void **state)
             assert_true(attempt.end > attempt.next && attempt.end <= 64);
             bool bad = (attempt.next <= a && a < attempt.end) || (attempt.next <= b && b < attempt.end);
             if (bad)
-                dea_attempt_failed(&attempt, &plan, &span, rows, "bad", &damage);
+                dea_attempt_failed(&attempt, &plan, &span, rows, DEA_FAULT_REFUSED, "bad", &damage);
             else
                 dea_attempt_solved(&attempt, &damage);
         }
@@ -592,6 +751,11 @@ int main(void)
         cmocka_unit_test(hang_costs_only_its_point),
         cmocka_unit_test(error_costs_only_its_point_and_is_told),
         cmocka_unit_test(exit_of_a_library_costs_only_its_point),
+        cmocka_unit_test(lost_workers_change_no_bit),
+        cmocka_unit_test(stopped_worker_is_replaced),
+        cmocka_unit_test(point_that_is_always_lost_is_told),
+        cmocka_unit_test(workers_killed_while_they_begin_have_successors),
+        cmocka_unit_test(few_descriptors_mean_few_workers),
         cmocka_unit_test(broken_engine_ends_in_bounded_time),
         cmocka_unit_test(hanging_engine_ends_in_bounded_time),
         cmocka_unit_test(failed_begin_is_told_with_its_status),

@@ -11,7 +11,7 @@
 
 enum { DEA_LAPACK_MISSING = -9999 };
 
-/* Loads the library, so that no later call finds it missing: DEA_OK or DEA_ERROR_MISSING. */
+/* Loads the library, so that no later call finds it missing: DEA_OK, DEA_ERROR_MISSING or DEA_ERROR_MEMORY. */
 dea_status dea_lapack_load(dea_error *error);
 
 lapack_int dea_lapacke_dgeev(int layout, char left, char right, lapack_int n, double *a, lapack_int lda, double *wr, double *wi,

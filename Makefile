@@ -9,14 +9,33 @@ VERSION  := 0.1.0
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion
 PKG_CONFIG ?= pkg-config
 ALL_CFLAGS  = -std=c11 -D_POSIX_C_SOURCE=200809L -D_DEFAULT_SOURCE $(WARNINGS) -ffp-contract=off -fvisibility=hidden -fPIC -Iinclude -Isrc \
-              -DDEA_VERSION='"$(VERSION)"' -MMD -MP $(shell $(PKG_CONFIG) --cflags-only-I libfyaml ngspice lapacke $(MPI) 2>/dev/null) $(CFLAGS)
-# SUNDIALS 7 has a library of its own for its core, and its headers need those of the MPI that it was built with.
-SUNDIALS_7 := $(filter /%,$(shell $(CC) -print-file-name=libsundials_core.so 2>/dev/null))
-SUNDIALS_CORE := $(if $(SUNDIALS_7),-lsundials_core,-lsundials_generic)
-MPI := $(if $(SUNDIALS_7),$(firstword $(foreach name,ompi-c ompi mpich mpi-c mpi,$(if $(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo yes),$(name)))))
-LIBS = -lngspice -lfyaml -ludunits2 -llapacke -lsundials_ida -lsundials_arkode -lsundials_kinsol -lsundials_nvecserial -lsundials_sunmatrixdense \
-       -lsundials_sunlinsoldense $(SUNDIALS_CORE) \
-       $(if $(MPI),$(shell $(PKG_CONFIG) --libs $(MPI))) -ldl -lm
+              -DDEA_VERSION='"$(VERSION)"' -MMD -MP $(shell $(PKG_CONFIG) --cflags-only-I libfyaml ngspice lapacke $(MPI) 2>/dev/null) \
+              $(LOADED) $(CPPFLAGS) $(CFLAGS)
+
+# $(call once,NAME,COMMAND): the output of a shell command that runs when it is first needed, and not again.
+once = $(eval $(1) := $$(shell $(2)))$($(1))
+# Version of SUNDIALS, and whether its headers need those of the MPI that it was built with, by those that are compiled against.
+SUNDIALS_VERSION = $(call once,SUNDIALS_VERSION,printf '\043include <sundials/sundials_config.h>\nSUNDIALS_VERSION_MAJOR SUNDIALS_MPI_ENABLED\n' | \
+                   $(CC) $(CPPFLAGS) $(CFLAGS) -E -P - 2>/dev/null | tail -n 1)
+SUNDIALS_OLD = $(filter 4 5 6,$(firstword $(SUNDIALS_VERSION)))
+SUNDIALS_CORE = $(if $(SUNDIALS_OLD),-lsundials_generic,-lsundials_core)
+SUNDIALS_LIBS = -lsundials_ida -lsundials_arkode -lsundials_kinsol -lsundials_nvecserial -lsundials_sunmatrixdense -lsundials_sunlinsoldense \
+                $(SUNDIALS_CORE)
+MPI = $(if $(SUNDIALS_OLD)$(filter 0,$(lastword $(SUNDIALS_VERSION))),,$(call once,MPI,for name in ompi-c ompi mpich mpi-c mpi; do \
+      $(PKG_CONFIG) --exists $$$$name 2>/dev/null && echo $$$$name && break; done))
+# SUNDIALS and LAPACKE are loaded when an engine needs them, by the names that the linker would have noted: of their ABI, not
+# of their development files. Where only static ones are there, they are linked in.
+SONAMES = $(call once,SONAMES,probe=$$$$(mktemp) && printf 'int main(void) { return 0; }' | \
+          $(CC) $(CFLAGS) -x c - -o $$$$probe $(LDFLAGS) -Wl$$(comma)--no-as-needed -llapacke $(SUNDIALS_LIBS) 2>/dev/null && \
+          readelf -d $$$$probe | sed -n 's/.*(NEEDED).*\[\(lib\(lapacke\|sundials\)[^]]*\)\].*/\1/p'; rm -f $$$$probe)
+comma := ,
+empty :=
+SUNDIALS_NAMES = $(filter libsundials%,$(SONAMES))
+LAPACKE_NAME   = $(filter liblapacke%,$(SONAMES))
+LOADED = $(if $(LAPACKE_NAME),-DDEA_LAPACKE='"$(LAPACKE_NAME)"') \
+         $(if $(SUNDIALS_NAMES),-DDEA_SUNDIALS='$(subst $(empty) ,$(comma),$(SUNDIALS_NAMES:%="%"))')
+LIBS = -lngspice -lfyaml -ludunits2 $(if $(LAPACKE_NAME),,-llapacke) \
+       $(if $(SUNDIALS_NAMES),,$(SUNDIALS_LIBS) $(if $(MPI),$(shell $(PKG_CONFIG) --libs $(MPI)))) -ldl -lm
 
 LIBRARY_SOURCES := $(filter-out src/program/%,$(sort $(wildcard src/*/*.c src/*/*/*.c)))
 PROGRAM_SOURCES := $(sort $(wildcard src/program/*.c))

@@ -4,13 +4,13 @@
 #include "deaspice/fit.h"
 
 #include <float.h>
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "material/fit_errors.h"
 #include "material/fit_plausible.h"
+#include "support/lapack.h"
 
 /* Condition number of the scaled columns beyond which the data does not tell the constants apart. */
 static const double condition_max = 1e7;
@@ -145,8 +145,8 @@ static dea_status problem_decompose(problem *p, dea_fit *fit, dea_error *error)
 {
     double work[DEA_YEOH_TERMS];
     const lapack_int rows = (lapack_int)p->rows, terms = (lapack_int)p->terms;
-    const lapack_int info =
-        LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'S', 'S', rows, terms, p->matrix, rows, p->singular, p->left, rows, p->vt, terms, work);
+    const lapack_int info = dea_lapacke_dgesvd(LAPACK_COL_MAJOR, 'S', 'S', rows, terms, p->matrix, rows, p->singular, p->left,
+                                               rows, p->vt, terms, work);
     if (info != 0) {
         return dea_fail(error, DEA_ERROR_USAGE, "the least-squares problem could not be solved (LAPACK dgesvd: %d)", (int)info);
     }
@@ -259,6 +259,7 @@ static dea_status fit_examine(const dea_fit_data *data, int terms, dea_fit *fit,
 static dea_status fit_terms(const dea_fit_data *data, int terms, bool relative, dea_fit *fit, double *squares, dea_error *error)
 {
     dea_status status = fit_examine(data, terms, fit, error);
+    status = status == DEA_OK ? dea_lapack_load(error) : status;
     if (status != DEA_OK) {
         return status;
     }

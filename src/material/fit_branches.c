@@ -3,12 +3,12 @@
  * step of all unknowns; starts come from a logarithmic grid of times. */
 #include "material/fit_branches.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "material/fit_nnls.h"
+#include "support/lapack.h"
 
 enum { PER_DECADE = 5, STARTS = 4, STEPS_MOST = 300 };
 
@@ -169,8 +169,8 @@ static bool step_solve(dea_held *held, const dea_branches *c, double damping)
         const double size = dea_squares(held->matrix + j * rows, held->rows);
         held->matrix[j * rows + held->rows + j] = size > 0.0 ? sqrt(damping * size) : 1.0;
     }
-    return LAPACKE_dgels(LAPACK_COL_MAJOR, 'N', (lapack_int)rows, (lapack_int)columns, 1, held->matrix, (lapack_int)rows,
-                         held->step, (lapack_int)rows) == 0;
+    return dea_lapacke_dgels(LAPACK_COL_MAJOR, 'N', (lapack_int)rows, (lapack_int)columns, 1, held->matrix, (lapack_int)rows,
+                             held->step, (lapack_int)rows) == 0;
 }
 
 /* Moves the times until no step helps any more. */

@@ -1,9 +1,10 @@
 #include "material/fit_nnls.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "support/lapack.h"
 
 /* Gain along a unit column, as a share of |b|, below which the column stays out. */
 static const double gain_least = 1e-14;
@@ -90,7 +91,7 @@ static bool block_solve(search *s)
     }
     memcpy(s->solved, s->right, s->rows * sizeof *s->solved);
     const lapack_int rows = (lapack_int)s->rows;
-    return LAPACKE_dgels(LAPACK_COL_MAJOR, 'N', rows, (lapack_int)s->count, 1, s->block, rows, s->solved, rows) == 0;
+    return dea_lapacke_dgels(LAPACK_COL_MAJOR, 'N', rows, (lapack_int)s->count, 1, s->block, rows, s->solved, rows) == 0;
 }
 
 /* Goes from x towards the solution as far as no unknown turns negative, and drops those that reach 0; true where it arrived. */

@@ -7,13 +7,13 @@
  * freedom the chance is p = (R_m/R_(m-1))^((n - 2m - 1)/2) in closed form, R being squared residuals. */
 #include "deaspice/fit.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 
 #include "material/fit_branches.h"
 #include "material/fit_errors.h"
 #include "material/fit_plausible.h"
+#include "support/lapack.h"
 
 /* Chance of a gain by noise up to which a branch counts as significant. */
 static const double significance = 0.05;
@@ -144,7 +144,7 @@ static bool covariances_find(dea_held *held, const dea_branches *c, covariances 
         }
     }
     const lapack_int rows = (lapack_int)held->rows, order = (lapack_int)columns;
-    if (LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'O', 'S', rows, order, held->matrix, rows, singular, &right, 1, vt, order, rest) != 0 ||
+    if (dea_lapacke_dgesvd(LAPACK_COL_MAJOR, 'O', 'S', rows, order, held->matrix, rows, singular, &right, 1, vt, order, rest) != 0 ||
         !(singular[columns - 1] > 1e-12 * singular[0])) {
         return false;
     }
@@ -381,6 +381,7 @@ dea_status dea_fit_relaxation(const dea_relaxation_data *data, size_t branches, 
                               dea_error *error)
 {
     dea_status status = data_examine(data, branches, error);
+    status = status == DEA_OK ? dea_lapack_load(error) : status;
     if (status != DEA_OK) {
         return status;
     }

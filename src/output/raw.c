@@ -1,6 +1,6 @@
 /* SPICE raw file as ngspice writes it: per run an ASCII header, then doubles of this machine, point after point. A plot holds one
- * run: a transient, a frequency response in complex numbers, or the last axis of a sweep; the title names the model and the other
- * axes' values.
+ * run: a transient, a frequency response in complex numbers, or the longest axis of a sweep, so that headers stay few; the title
+ * names the model and the other axes' values.
  *
  * Readers take a header for a program: ngspice and WRspice execute what stands behind "Command:", before version 44 even the
  * name of the writer, which makes ngspice source a file of that name. So the one such line is a comment, enough for readers that
@@ -31,6 +31,7 @@ enum {
     RAW_PIECE = 512, /* most bytes that go to the buffer at once: a line, or a row */
     RAW_TITLE = 240, /* room for the scene's title, and for what tells the run */
     RAW_TRACES = DEA_LAYOUT_COLUMNS + 2,
+    RAW_HELD = 1 << 28, /* most bytes of a sweep that are collected for an axis that is not the last */
     DATE_ROOM = 64
 };
 
@@ -50,11 +51,13 @@ typedef struct raw {
     dea_atomic *file;
     trace traces[RAW_TRACES];
     size_t trace_count;
-    bool is_sweep;   /* along the last axis */
+    bool is_sweep;   /* along an axis */
+    size_t axis;     /* of a sweep: that of the runs */
+    size_t inner;    /* of a sweep: points for one value of that axis, which come between two of a run; else 1 */
     size_t length;   /* rows of a run */
-    size_t run;      /* number of the run that comes next: models slowest, last axis fastest */
+    size_t run;      /* number of the run that comes next: models slowest, last of the other axes fastest */
     size_t plots;    /* written */
-    char *rows;      /* of the run of a sweep that is being collected, length of them; NULL else */
+    char *rows;      /* of the runs of a sweep that are being collected, length times inner of them; NULL else */
     size_t row_next; /* of those */
     char date[DATE_ROOM];
     char *buffer; /* RAW_BUFFER and room for one piece more */
@@ -111,8 +114,8 @@ static void traces_choose(raw *out)
     const dea_scene *scene = out->scene;
     const dea_layout *layout = &out->layout;
     if (out->is_sweep) {
-        const dea_axis *last = &scene->axes[scene->axis_count - 1];
-        trace_add(out, TRACE_AXIS, last->column, type_of(last->unit));
+        const dea_axis *along = &scene->axes[out->axis];
+        trace_add(out, TRACE_AXIS, along->column, type_of(along->unit));
     }
     for (size_t i = 0; i < layout->column_count; i++) {
         const dea_column *column = &layout->columns[i];
@@ -157,10 +160,10 @@ static void date_write(char date[DATE_ROOM])
 static void run_describe(const raw *out, char text[RAW_TITLE])
 {
     const dea_scene *scene = out->scene;
-    const size_t axes = out->is_sweep ? scene->axis_count - 1 : scene->axis_count;
+    const size_t along = out->is_sweep ? out->axis : scene->axis_count;
     size_t stride = 1; /* runs for one value of the axis */
-    for (size_t i = 0; i < axes; i++) {
-        stride *= scene->axes[i].count;
+    for (size_t i = 0; i < scene->axis_count; i++) {
+        stride *= i == along ? 1 : scene->axes[i].count;
     }
     size_t left = out->run % stride;
     int used = 0;
@@ -168,9 +171,12 @@ static void run_describe(const raw *out, char text[RAW_TITLE])
     if (scene->model_count > 1) {
         used = snprintf(text, RAW_TITLE, ", model = %s", scene->models[out->run / stride]->name);
     }
-    for (size_t i = 0; i < axes && used < RAW_TITLE; i++) {
+    for (size_t i = 0; i < scene->axis_count && used < RAW_TITLE; i++) {
         const dea_axis *axis = &scene->axes[i];
         char number[DEA_NUMBER_LENGTH];
+        if (i == along) {
+            continue;
+        }
         stride /= axis->count;
         dea_number_text(number, axis->values[left / stride], 9);
         used += snprintf(text + used, (size_t)(RAW_TITLE - used), ", %s = %s", axis->column, number);
@@ -217,7 +223,7 @@ static void row_write(raw *out, size_t index, const char *row)
         const trace *vector = &out->traces[i];
         double value[2] = {0.0, 0.0}; /* real and imaginary part */
         if (vector->kind == TRACE_AXIS) {
-            value[0] = scene->axes[scene->axis_count - 1].values[index];
+            value[0] = scene->axes[out->axis].values[index];
         } else if (vector->kind == TRACE_STATE) {
             value[0] = (double)dea_layout_state(&out->layout, row);
         } else if (vector->kind == TRACE_COLUMN) {
@@ -241,10 +247,10 @@ static bool has_numbers(const dea_layout *layout, const char *row)
     return state != DEA_STATE_PULL_IN && state != DEA_STATE_FAILED;
 }
 
-/* Writes the rows of the next run as a plot. */
+/* Writes the rows of the next run as a plot; others may lie between them. */
 static dea_status run_write(raw *out, const char *rows, dea_error *error)
 {
-    const size_t size = out->layout.row_size;
+    const size_t size = out->inner * out->layout.row_size;
     size_t points = 0;
     for (size_t i = 0; i < out->length; i++) {
         points += has_numbers(&out->layout, rows + i * size);
@@ -291,6 +297,22 @@ static dea_status raw_close(void *state, bool keep, dea_error *error)
     return status;
 }
 
+/* The longest axis, the later of two, of those whose runs can be held until they are whole. */
+static void axis_choose(raw *out)
+{
+    const dea_scene *scene = out->scene;
+    size_t inner = 1;
+    for (size_t i = scene->axis_count; i-- > 0;) {
+        const size_t count = scene->axes[i].count;
+        if (i + 1 == scene->axis_count || (count > out->length && count <= RAW_HELD / out->layout.row_size / inner)) {
+            out->axis = i;
+            out->inner = inner;
+            out->length = count;
+        }
+        inner *= count;
+    }
+}
+
 static dea_status raw_open(const dea_scene *scene, const char *engine, dea_atomic *file, void **state, dea_error *error)
 {
     (void)engine;
@@ -302,8 +324,12 @@ static dea_status raw_open(const dea_scene *scene, const char *engine, dea_atomi
     out->layout = dea_layout_of(scene);
     out->file = file;
     out->is_sweep = scene->study == DEA_STUDY_SWEEP && scene->axis_count > 0;
-    out->length = out->is_sweep ? scene->axes[scene->axis_count - 1].count : out->layout.rows;
-    out->rows = out->is_sweep ? calloc(out->length, out->layout.row_size) : NULL;
+    out->inner = 1;
+    out->length = out->layout.rows;
+    if (out->is_sweep) {
+        axis_choose(out);
+        out->rows = calloc(out->length * out->inner, out->layout.row_size);
+    }
     out->buffer = malloc(RAW_BUFFER + RAW_PIECE);
     if (!out->buffer || (out->is_sweep && !out->rows)) {
         raw_free(out);
@@ -315,15 +341,19 @@ static dea_status raw_open(const dea_scene *scene, const char *engine, dea_atomi
     return DEA_OK;
 }
 
-/* Takes one point: a whole run, or a row of the run of a sweep. */
+/* Takes one point: a whole run, or a row of a run of a sweep. */
 static dea_status raw_point(raw *out, const char *point, dea_error *error)
 {
     if (!out->is_sweep) {
         return run_write(out, point, error);
     }
     memcpy(out->rows + out->row_next * out->layout.row_size, point, out->layout.row_size);
-    out->row_next = (out->row_next + 1) % out->length;
-    return out->row_next == 0 ? run_write(out, out->rows, error) : DEA_OK;
+    out->row_next = (out->row_next + 1) % (out->length * out->inner);
+    dea_status status = DEA_OK;
+    for (size_t i = 0; i < out->inner && out->row_next == 0 && status == DEA_OK; i++) {
+        status = run_write(out, out->rows + i * out->layout.row_size, error);
+    }
+    return status;
 }
 
 static dea_status raw_points(void *state, size_t first, const void *points, size_t count, dea_error *error)

@@ -1,7 +1,7 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#include <sundials/sundials_version.h>
+#include <sundials/sundials_config.h>
 
 #include "program/program.h"
 
@@ -37,9 +37,7 @@ static void print_usage(FILE *out)
 
 static void print_version(void)
 {
-    char sundials[64] = "";
-    SUNDIALSGetVersion(sundials, sizeof sundials);
-    printf("deaspice %s (SUNDIALS %s; engines:", DEA_VERSION, sundials);
+    printf("deaspice %s (built for SUNDIALS %s; engines:", DEA_VERSION, SUNDIALS_VERSION); /* loads nothing */
     for (size_t i = 0; i < dea_engine_count(); i++)
         printf(" %s", dea_engine_at(i)->name);
     puts(")");

@@ -4,7 +4,7 @@
 
 #include "../bench/bench.h"
 
-#include <lapacke.h>
+#include "support/lapack.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -55,7 +55,7 @@ static double condition(const matrix *m)
     for (int i = 0; i < m->n * m->n; i++) {
         work[i] = m->at[i];
     }
-    if (LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'N', 'N', m->n, m->n, work, m->n, values, NULL, 1, NULL, 1, rest) != 0) {
+    if (dea_lapacke_dgesvd(LAPACK_COL_MAJOR, 'N', 'N', m->n, m->n, work, m->n, values, NULL, 1, NULL, 1, rest) != 0) {
         return (double)NAN;
     }
     const double ratio = values[0] / values[m->n - 1];

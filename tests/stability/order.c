@@ -253,11 +253,11 @@ static stability_order measure_flight(const stability_case *which)
     dea_dynamics dynamics;
     dea_signal signal = {0};
     dea_flight flight = {0};
-    SUNContext context = NULL;
-    dea_status status = dea_sundials_open(&context, &error);
+    dea_sundials sundials;
+    dea_status status = dea_sundials_open(&sundials, &error);
     status = status == DEA_OK ? dea_dynamics_open(&scene, scene.models[0], &dynamics, &error) : status;
     status = status == DEA_OK ? dea_signal_open(&scene, &signal, &error) : status;
-    status = status == DEA_OK ? dea_flight_open(context, &scene, &dynamics, &signal, &flight, &error) : status;
+    status = status == DEA_OK ? dea_flight_open(&sundials, &scene, &dynamics, &signal, &flight, &error) : status;
     if (status != DEA_OK) {
         bench_give_up("%s", error.message);
     }
@@ -267,7 +267,7 @@ static stability_order measure_flight(const stability_case *which)
     dea_flight_close(&flight);
     dea_signal_close(&signal);
     dea_dynamics_close(&dynamics);
-    SUNContext_Free(&context);
+    dea_sundials_close(&sundials);
     dea_scene_free(&scene);
     return order;
 }

@@ -493,19 +493,19 @@ static long steps_at(double tolerance)
     dea_dynamics dynamics;
     dea_signal signal;
     dea_flight flight;
-    SUNContext context;
+    dea_sundials sundials;
     dea_trace trace = {.moments = moments};
     assert_int_equal(dea_scene_read("examples/work-precision.yaml", NULL, 0, "coverage", &scene, &error), DEA_OK);
-    assert_int_equal(dea_sundials_open(&context, &error), DEA_OK);
+    assert_int_equal(dea_sundials_open(&sundials, &error), DEA_OK);
     assert_int_equal(dea_dynamics_open(&scene, scene.models[0], &dynamics, &error), DEA_OK);
     assert_int_equal(dea_signal_open(&scene, &signal, &error), DEA_OK);
-    assert_int_equal(dea_flight_open(context, &scene, &dynamics, &signal, &flight, &error), DEA_OK);
+    assert_int_equal(dea_flight_open(&sundials, &scene, &dynamics, &signal, &flight, &error), DEA_OK);
     dea_flight_run(&flight, tolerance, &trace, NULL);
     const long steps = trace.count == flight.rows ? flight.steps : LONG_MAX;
     dea_flight_close(&flight);
     dea_signal_close(&signal);
     dea_dynamics_close(&dynamics);
-    SUNContext_Free(&context);
+    dea_sundials_close(&sundials);
     dea_scene_free(&scene);
     return steps;
 }

@@ -293,7 +293,7 @@ static void frequency_response_is_a_plot_of_complex_numbers(void **state)
     }
 }
 
-static void sweep_has_one_plot_for_each_run_of_its_last_axis(void **state)
+static void sweep_has_one_plot_for_each_run_of_its_longest_axis(void **state)
 {
     (void)state;
     static const char *const titles[] = {"a dot, model = lumped, prestretch = 1.1", "a dot, model = lumped, prestretch = 1.3",
@@ -314,6 +314,34 @@ static void sweep_has_one_plot_for_each_run_of_its_last_axis(void **state)
             const double x = (double)(3 * i + k);
             const double wanted[] = {1500.0 * (double)k, 0.001 * x, 1e-5 * x, 0.25 + x, 1e6 / (1.0 + x), 0.0};
             assert_memory_equal(plots[i].numbers + 6 * k, wanted, sizeof wanted);
+        }
+    }
+}
+
+/* 200 values of the first axis, 3 of the last: 3 plots with their headers, not 200. */
+static void a_long_axis_before_a_short_one_costs_no_more(void **state)
+{
+    (void)state;
+    enum { LONG = 200 };
+    static double many[LONG];
+    dea_scene scene = scene_make(2, 2);
+    for (size_t i = 0; i < LONG; i++) {
+        many[i] = 1.0 + 0.01 * (double)i;
+    }
+    axes[0].values = many;
+    axes[0].count = LONG;
+    scene_write(&scene, "a.raw");
+    plots_read("a.raw");
+    assert_int_equal(plot_count, 6);
+    assert_string_equal(plots[1].title, "a dot, model = lumped, voltage_V = 1500");
+    assert_string_equal(plots[5].title, "a dot, model = coverage, voltage_V = 3000");
+    for (size_t i = 0; i < 6; i++) {
+        assert_string_equal(plots[i].names[0], "prestretch");
+        assert_int_equal(plots[i].points, LONG);
+        for (size_t k = 0; k < LONG; k++) {
+            const size_t number = i / 3 * 3 * LONG + 3 * k + i % 3;
+            assert_true(number_of(&plots[i], k, 0) == many[k]);
+            assert_true(number_of(&plots[i], k, 1) == 0.001 * (double)number);
         }
     }
 }
@@ -575,7 +603,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         IN_FOLDER(transient_is_a_plot_over_time),
         IN_FOLDER(frequency_response_is_a_plot_of_complex_numbers),
-        IN_FOLDER(sweep_has_one_plot_for_each_run_of_its_last_axis),
+        IN_FOLDER(sweep_has_one_plot_for_each_run_of_its_longest_axis),
+        IN_FOLDER(a_long_axis_before_a_short_one_costs_no_more),
         IN_FOLDER(point_without_an_axis_is_an_operating_point),
         IN_FOLDER(every_run_of_a_transient_is_a_plot),
         IN_FOLDER(rows_without_numbers_are_left_out),

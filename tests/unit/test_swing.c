@@ -2,10 +2,10 @@
 #include "random_transients.h"
 
 #include <complex.h>
-#include <lapacke.h>
 #include <stdlib.h>
 
 #include "network/swing.h"
+#include "support/lapack.h"
 
 static const char *const models[] = {"lumped", "lame", "coverage"};
 
@@ -111,7 +111,7 @@ static double complex eigenvalue_of(dea_dynamics *d, double u, double voltage)
         a[n + n - 1] = -2.0 * e.push * voltage / e.capacitance;
         a[(n - 1) * n + n - 1] = -(1.0 / d->series + d->conductance) / (e.capacitance * omega);
     }
-    assert_int_equal(LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, a, n, real, imaginary, NULL, 1, NULL, 1), 0);
+    assert_int_equal(dea_lapacke_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, a, n, real, imaginary, NULL, 1, NULL, 1), 0);
     double complex pair = 0.0;
     for (int i = 0; i < n; i++) {
         if (imaginary[i] > 1e-6) {

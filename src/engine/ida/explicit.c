@@ -1,16 +1,9 @@
 /* A ring by ARKODE: Verner's explicit Runge-Kutta method of order 6, from sample to sample. (Fehlberg's of order 8 cannot see the
  * error of a pure integral, and the module ERKStep of SUNDIALS 6 takes the last stage of either for the first of the next step.)
  * In an audited run the energies are unknowns too, and where means are wanted the integral of the displacement. */
-#include <arkode/arkode_arkstep.h>
 #include <math.h>
 
 #include "engine/ida/flight.h"
-
-#if SUNDIALS_VERSION_MAJOR > 7 || (SUNDIALS_VERSION_MAJOR == 7 && SUNDIALS_VERSION_MINOR >= 1)
-#define DEA_ARK(name) ARKode##name
-#else
-#define DEA_ARK(name) ARKStep##name
-#endif
 
 /* Error test failures of one step after which a run is given up: a step that outgrew its stability is far too long. */
 enum { MOST_FAILS = 30 };
@@ -50,8 +43,8 @@ static int rates(sunrealtype time, N_Vector w, N_Vector wp, void *user)
 {
     const explicit_run *run = user;
     const dea_flight *flight = run->flight;
-    const sunrealtype *unknowns = N_VGetArrayPointer(w);
-    sunrealtype *out = N_VGetArrayPointer(wp);
+    const sunrealtype *unknowns = NV_DATA_S(w);
+    sunrealtype *out = NV_DATA_S(wp);
     const dea_turn turn = dea_ring_turn(flight->ring, time, 0.0);
     double y[DEA_MOTION_MOST], f[DEA_MOTION_MOST];
     dea_ring_state(flight->ring, turn, unknowns, y);
@@ -82,31 +75,31 @@ static bool begin(explicit_run *run)
 {
     dea_flight *flight = run->flight;
     const int n = flight->motion.count;
-    const SUNContext context = flight->integrator.context;
-    run->w = N_VNew_Serial(n + run->audited + run->integrated, context);
-    run->tolerance = run->w ? N_VClone(run->w) : NULL;
+    const dea_sundials *sun = flight->integrator.sun;
+    run->w = sun->N_VNew_Serial(n + run->audited + run->integrated, sun->context);
+    run->tolerance = run->w ? sun->N_VClone(run->w) : NULL;
     if (!run->tolerance) {
         return false;
     }
-    N_VConst(0.0, run->w);
-    N_VConst(flight->tolerance, run->tolerance);
-    dea_ring_unknowns(flight->ring, dea_ring_turn(flight->ring, 0.0, 0.0), flight->y, N_VGetArrayPointer(run->w));
+    sun->N_VConst(0.0, run->w);
+    sun->N_VConst(flight->tolerance, run->tolerance);
+    dea_ring_unknowns(flight->ring, dea_ring_turn(flight->ring, 0.0, 0.0), flight->y, NV_DATA_S(run->w));
     for (int i = 0; i < run->audited; i++) {
-        N_VGetArrayPointer(run->tolerance)[n + i] = 1e-4 * flight->scene->accuracy;
+        NV_DATA_S(run->tolerance)[n + i] = 1e-4 * flight->scene->accuracy;
     }
-    run->ark = ARKStepCreate(rates, NULL, 0.0, run->w, context);
+    run->ark = sun->ARKStepCreate(rates, NULL, 0.0, run->w, sun->context);
     if (!run->ark) {
         return false;
     }
 #if SUNDIALS_VERSION_MAJOR < 7
-    ARKStepSetErrHandlerFn(run->ark, dea_sundials_ignore, NULL);
-    ARKStepSetErrorBias(run->ark, 1.0); /* as SUNDIALS 7 has it */
+    sun->ARKStepSetErrHandlerFn(run->ark, dea_sundials_ignore, NULL);
+    sun->ARKStepSetErrorBias(run->ark, 1.0); /* as SUNDIALS 7 has it */
 #endif
-    return DEA_ARK(SetMaxStep)(run->ark, longest_step(flight)) == ARK_SUCCESS &&
-           DEA_ARK(SetUserData)(run->ark, run) == ARK_SUCCESS &&
-           DEA_ARK(SetMaxErrTestFails)(run->ark, MOST_FAILS) == ARK_SUCCESS &&
-           ARKStepSetTableNum(run->ark, ARKODE_DIRK_NONE, ARKODE_VERNER_8_5_6) == ARK_SUCCESS &&
-           DEA_ARK(SVtolerances)(run->ark, flight->tolerance, run->tolerance) == ARK_SUCCESS;
+    return sun->DEA_ARK(SetMaxStep)(run->ark, longest_step(flight)) == ARK_SUCCESS &&
+           sun->DEA_ARK(SetUserData)(run->ark, run) == ARK_SUCCESS &&
+           sun->DEA_ARK(SetMaxErrTestFails)(run->ark, MOST_FAILS) == ARK_SUCCESS &&
+           sun->ARKStepSetTableNum(run->ark, ARKODE_DIRK_NONE, ARKODE_VERNER_8_5_6) == ARK_SUCCESS &&
+           sun->DEA_ARK(SVtolerances)(run->ark, flight->tolerance, run->tolerance) == ARK_SUCCESS;
 }
 
 /* True where the ring will take more steps than there are, told from those so far; they get longer as it decays. */
@@ -141,7 +134,7 @@ static void integrate(explicit_run *run, double before, double time)
     dea_flight *flight = run->flight;
     const dea_motion *motion = &flight->motion;
     const double middle = motion->segment->from + 0.5 * (before + time);
-    const double whole = run->integrated > 0 ? N_VGetArrayPointer(run->w)[motion->count + run->audited] : 0.0;
+    const double whole = run->integrated > 0 ? NV_DATA_S(run->w)[motion->count + run->audited] : 0.0;
     for (size_t i = 0; i < flight->scene->transient.average_count; i++) {
         const dea_window *window = &flight->scene->transient.averages[i];
         if (window->from < middle && middle < window->to) {
@@ -155,18 +148,19 @@ static void integrate(explicit_run *run, double before, double time)
 static dea_state advance(explicit_run *run, double to, double *time)
 {
     dea_flight *flight = run->flight;
+    const dea_sundials *sun = flight->integrator.sun;
     const dea_segment *segment = flight->motion.segment;
     const double next = dea_flight_next_sample(flight), before = *time, end = next_end(flight, before, to);
     const bool sampled = next <= segment->to && next - segment->from <= end;
     const double stop = sampled ? fmax(before, next - segment->from) : end;
     for (int code = ARK_SUCCESS; *time < stop && code != ARK_TSTOP_RETURN;) {
-        code = DEA_ARK(SetStopTime)(run->ark, stop);
-        code = code == ARK_SUCCESS ? DEA_ARK(Evolve)(run->ark, stop, run->w, time, ARK_ONE_STEP) : code;
+        code = sun->DEA_ARK(SetStopTime)(run->ark, stop);
+        code = code == ARK_SUCCESS ? sun->DEA_ARK(Evolve)(run->ark, stop, run->w, time, ARK_ONE_STEP) : code;
         if (code < 0) {
             const bool gone = code == ARK_REPTD_RHSFUNC_ERR || code == ARK_FIRST_RHSFUNC_ERR || code == ARK_UNREC_RHSFUNC_ERR;
             return gone ? DEA_STATE_PULL_IN : dea_flight_broke(flight, "ARKODE", code, *time);
         }
-        if (!dea_flight_step(flight, *time, N_VGetArrayPointer(run->w)) || endless(run, to, *time)) {
+        if (!dea_flight_step(flight, *time, NV_DATA_S(run->w)) || endless(run, to, *time)) {
             return DEA_STATE_FAILED;
         }
     }
@@ -177,7 +171,7 @@ static dea_state advance(explicit_run *run, double to, double *time)
 static void close_energies(const explicit_run *run, double time)
 {
     dea_flight *flight = run->flight;
-    const double *energy = N_VGetArrayPointer(run->w) + flight->motion.count;
+    const double *energy = NV_DATA_S(run->w) + flight->motion.count;
     double z[DEA_PRONY_MAX];
     const dea_moment moment = dea_motion_moment(&flight->motion, time, flight->y);
     dea_motion_branches(&flight->motion, flight->y, z);
@@ -190,6 +184,7 @@ static void close_energies(const explicit_run *run, double time)
 dea_state dea_flight_explicit(dea_flight *flight, double to)
 {
     const dea_motion *motion = &flight->motion;
+    const dea_sundials *sun = flight->integrator.sun;
     explicit_run run = {
         .flight = flight, .before = flight->steps, .energy = motion->stiffness * motion->size[0] * motion->size[0]};
     run.audited = flight->audit ? ENERGIES : 0;
@@ -203,13 +198,13 @@ dea_state dea_flight_explicit(dea_flight *flight, double to)
         close_energies(&run, time);
     }
     if (run.ark) {
-        DEA_ARK(Free)(&run.ark);
+        sun->DEA_ARK(Free)(&run.ark);
     }
     if (run.tolerance) {
-        N_VDestroy(run.tolerance);
+        sun->N_VDestroy(run.tolerance);
     }
     if (run.w) {
-        N_VDestroy(run.w);
+        sun->N_VDestroy(run.w);
     }
     return state;
 }

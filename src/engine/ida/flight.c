@@ -10,7 +10,7 @@ enum { MOST_STEPS = 3000000 };
 /* Share of its size below which an unknown needs a smaller one. */
 static const double small = 0.03;
 
-dea_status dea_flight_open(SUNContext context, const dea_scene *scene, dea_dynamics *dynamics, const dea_signal *signal,
+dea_status dea_flight_open(const dea_sundials *sun, const dea_scene *scene, dea_dynamics *dynamics, const dea_signal *signal,
                            dea_flight *flight, dea_error *error)
 {
     *flight = (dea_flight){.scene = scene, .signal = signal, .rows = dea_layout_of(scene).rows};
@@ -19,13 +19,13 @@ dea_status dea_flight_open(SUNContext context, const dea_scene *scene, dea_dynam
     if (!flight->ring) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while IDA starts");
     }
-    return dea_flight_integrator(context, flight, error);
+    return dea_flight_integrator(sun, flight, error);
 }
 
 void dea_flight_close(dea_flight *flight)
 {
     if (flight->between) {
-        N_VDestroy(flight->between);
+        flight->integrator.sun->N_VDestroy(flight->between);
     }
     dea_integrator_close(&flight->integrator);
     free(flight->ring);

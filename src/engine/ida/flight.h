@@ -39,12 +39,12 @@ typedef struct dea_flight {
 } dea_flight;
 
 /* Prepares runs of a scene; the caller ends them with dea_flight_close(), also after a failure. */
-dea_status dea_flight_open(SUNContext context, const dea_scene *scene, dea_dynamics *dynamics, const dea_signal *signal,
+dea_status dea_flight_open(const dea_sundials *sun, const dea_scene *scene, dea_dynamics *dynamics, const dea_signal *signal,
                            dea_flight *flight, dea_error *error);
 void dea_flight_close(dea_flight *flight);
 
 /* Its integrator; part of opening. */
-dea_status dea_flight_integrator(SUNContext context, dea_flight *flight, dea_error *error);
+dea_status dea_flight_integrator(const dea_sundials *sun, dea_flight *flight, dea_error *error);
 
 /* Runs; with a summary, fills its energies. */
 void dea_flight_run(dea_flight *flight, double tolerance, dea_trace *trace, dea_summary *summary);

@@ -1,7 +1,6 @@
 /* Engine `ida`: networks and the exact membrane by SUNDIALS. */
 #include <stdio.h>
 #include <stdlib.h>
-#include <sundials/sundials_version.h>
 
 #include "engine/engines.h"
 #include "engine/ida/sundials.h"
@@ -9,7 +8,7 @@
 #include "network/balance.h"
 
 typedef struct session_state {
-    SUNContext context; /* owned, as all */
+    dea_sundials sundials; /* owned, as all */
     dea_ramp *ramp;
     dea_shooting *shooting;
 } session_state;
@@ -34,9 +33,7 @@ static void end(void *session)
     if (state) {
         dea_ramp_close(state->ramp);
         dea_shooting_close(state->shooting);
-        if (state->context) {
-            SUNContext_Free(&state->context);
-        }
+        dea_sundials_close(&state->sundials);
         free(state);
     }
 }
@@ -48,12 +45,12 @@ static dea_status begin(void **session, dea_error *error)
     if (!state) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while IDA starts");
     }
-    dea_status status = dea_sundials_open(&state->context, error);
+    dea_status status = dea_sundials_open(&state->sundials, error);
     if (status == DEA_OK) {
-        status = dea_ramp_open(state->context, &state->ramp, error);
+        status = dea_ramp_open(&state->sundials, &state->ramp, error);
     }
     if (status == DEA_OK) {
-        status = dea_shooting_open(state->context, &state->shooting, error);
+        status = dea_shooting_open(&state->sundials, &state->shooting, error);
     }
     if (status != DEA_OK) {
         end(state);
@@ -122,14 +119,13 @@ static dea_status transient(void *session, const dea_scene *scene, const dea_mod
                             dea_summary *summary, dea_error *error)
 {
     const session_state *state = session;
-    return dea_transient_solve(state->context, scene, model, samples, summary, error);
+    return dea_transient_solve(&state->sundials, scene, model, samples, summary, error);
 }
 
 static void library(char *text, size_t size)
 {
-    char version[32] = "";
-    SUNDIALSGetVersion(version, sizeof version);
-    snprintf(text, size, "SUNDIALS %s", version);
+    char version[32];
+    snprintf(text, size, "SUNDIALS %s", dea_sundials_version(version, sizeof version));
 }
 
 const dea_engine dea_engine_ida = {

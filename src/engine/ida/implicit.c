@@ -15,9 +15,9 @@ enum { MOST_FAILS = 40 };
 static int residual(sunrealtype time, N_Vector w, N_Vector wp, N_Vector r, void *user)
 {
     const dea_flight *flight = user;
-    const sunrealtype *unknowns = N_VGetArrayPointer(w);
-    const sunrealtype *slope = N_VGetArrayPointer(wp);
-    sunrealtype *out = N_VGetArrayPointer(r);
+    const sunrealtype *unknowns = NV_DATA_S(w);
+    const sunrealtype *slope = NV_DATA_S(wp);
+    sunrealtype *out = NV_DATA_S(r);
     const dea_turn turn = dea_ring_turn(flight->ring, time, 0.0);
     double y[DEA_MOTION_MOST], f[DEA_MOTION_MOST];
     dea_ring_state(flight->ring, turn, unknowns, y);
@@ -36,12 +36,12 @@ static int jacobian(sunrealtype time, sunrealtype cj, N_Vector w, N_Vector wp, N
 {
     const dea_flight *flight = user;
     const int n = flight->motion.count;
-    sunrealtype *data = SUNDenseMatrix_Data(matrix);
+    sunrealtype *data = SM_DATA_D(matrix);
     (void)wp, (void)r, (void)work1, (void)work2, (void)work3;
     if (flight->ring->turns) {
         memcpy(data, flight->ring->jacobian, (size_t)(n * n) * sizeof *data);
     } else {
-        dea_motion_jacobian(&flight->motion, time, N_VGetArrayPointer(w), data);
+        dea_motion_jacobian(&flight->motion, time, NV_DATA_S(w), data);
     }
     for (int i = 0; i < n * n; i++) {
         data[i] = -data[i];
@@ -52,16 +52,16 @@ static int jacobian(sunrealtype time, sunrealtype cj, N_Vector w, N_Vector wp, N
     return 0;
 }
 
-dea_status dea_flight_integrator(SUNContext context, dea_flight *flight, dea_error *error)
+dea_status dea_flight_integrator(const dea_sundials *sun, dea_flight *flight, dea_error *error)
 {
-    const dea_status status = dea_integrator_open(context, flight->motion.count, residual, &flight->integrator, error);
+    const dea_status status = dea_integrator_open(sun, flight->motion.count, residual, &flight->integrator, error);
     if (status != DEA_OK) {
         return status;
     }
     void *ida = flight->integrator.ida;
-    flight->between = N_VClone(flight->integrator.y);
-    if (!flight->between || IDASetJacFn(ida, jacobian) != IDA_SUCCESS || IDASetUserData(ida, flight) != IDA_SUCCESS ||
-        IDASetMaxErrTestFails(ida, MOST_FAILS) != IDA_SUCCESS || IDASetMaxConvFails(ida, MOST_FAILS) != IDA_SUCCESS) {
+    flight->between = sun->N_VClone(flight->integrator.y);
+    if (!flight->between || sun->IDASetJacFn(ida, jacobian) != IDA_SUCCESS || sun->IDASetUserData(ida, flight) != IDA_SUCCESS ||
+        sun->IDASetMaxErrTestFails(ida, MOST_FAILS) != IDA_SUCCESS || sun->IDASetMaxConvFails(ida, MOST_FAILS) != IDA_SUCCESS) {
         return dea_fail(error, DEA_ERROR_ENGINE, "IDA did not start");
     }
     return DEA_OK;
@@ -71,7 +71,7 @@ dea_status dea_flight_integrator(SUNContext context, dea_flight *flight, dea_err
 static const double *unknowns_at(const dea_flight *flight, double time, int derivative)
 {
     N_Vector w = flight->between;
-    return IDAGetDky(flight->integrator.ida, time, derivative, w) == IDA_SUCCESS ? N_VGetArrayPointer(w) : NULL;
+    return flight->integrator.sun->IDAGetDky(flight->integrator.ida, time, derivative, w) == IDA_SUCCESS ? NV_DATA_S(w) : NULL;
 }
 
 /* The drop over a small R_s is a difference of almost equal voltages; over a step longer than R_s C IDA's own slope of the charge
@@ -81,7 +81,7 @@ static void take_current(const dea_flight *flight, double time, dea_turn turn, c
     const dea_motion *motion = &flight->motion;
     const dea_ring *ring = flight->ring;
     double step, rate[DEA_MOTION_MOST], y[DEA_MOTION_MOST];
-    if (motion->q < 0 || IDAGetLastStep(flight->integrator.ida, &step) != IDA_SUCCESS ||
+    if (motion->q < 0 || flight->integrator.sun->IDAGetLastStep(flight->integrator.ida, &step) != IDA_SUCCESS ||
         step * motion->signal->largest < motion->dynamics->series * motion->size[motion->q]) {
         return;
     }
@@ -264,9 +264,10 @@ static int best_order(const dea_flight *flight, double from)
 static bool begin(dea_flight *flight, double from)
 {
     dea_integrator *m = &flight->integrator;
+    const dea_sundials *sun = m->sun;
     double f[DEA_MOTION_MOST];
-    double *w = N_VGetArrayPointer(m->y);
-    double *slope = N_VGetArrayPointer(m->yp);
+    double *w = NV_DATA_S(m->y);
+    double *slope = NV_DATA_S(m->yp);
     const dea_turn turn = dea_ring_turn(flight->ring, from, 0.0);
     dea_ring_unknowns(flight->ring, turn, flight->y, w);
     if (!dea_motion_rates(&flight->motion, from, flight->y, f)) {
@@ -276,9 +277,10 @@ static bool begin(dea_flight *flight, double from)
     if (flight->motion.algebraic) {
         slope[0] = dea_motion_moment(&flight->motion, from, flight->y).v / flight->motion.size[0];
     }
-    return IDAReInit(m->ida, from, m->y, m->yp) == IDA_SUCCESS && IDASetMaxOrd(m->ida, best_order(flight, from)) == IDA_SUCCESS &&
-           IDASStolerances(m->ida, flight->tolerance, flight->tolerance) == IDA_SUCCESS &&
-           IDASetStopTime(m->ida, flight->motion.segment->to - flight->motion.segment->from) == IDA_SUCCESS;
+    return sun->IDAReInit(m->ida, from, m->y, m->yp) == IDA_SUCCESS &&
+           sun->IDASetMaxOrd(m->ida, best_order(flight, from)) == IDA_SUCCESS &&
+           sun->IDASStolerances(m->ida, flight->tolerance, flight->tolerance) == IDA_SUCCESS &&
+           sun->IDASetStopTime(m->ida, flight->motion.segment->to - flight->motion.segment->from) == IDA_SUCCESS;
 }
 
 dea_state dea_flight_implicit(dea_flight *flight, double from)
@@ -291,12 +293,12 @@ dea_state dea_flight_implicit(dea_flight *flight, double from)
     double time = from;
     for (int code = IDA_SUCCESS; code != IDA_TSTOP_RETURN;) {
         const double before = time;
-        code = IDASolve(m->ida, width, &time, m->y, m->yp, IDA_ONE_STEP);
+        code = m->sun->IDASolve(m->ida, width, &time, m->y, m->yp, IDA_ONE_STEP);
         if (code < 0) {
             const bool gone = code == IDA_REP_RES_ERR || dea_motion_firmness(&flight->motion, time, flight->y) < soft;
             return gone ? DEA_STATE_PULL_IN : dea_flight_broke(flight, "IDA", code, time);
         }
-        if (!dea_flight_step(flight, time, N_VGetArrayPointer(m->y))) {
+        if (!dea_flight_step(flight, time, NV_DATA_S(m->y))) {
             return DEA_STATE_FAILED;
         }
         const dea_state state = take_samples(flight, time, code == IDA_TSTOP_RETURN);

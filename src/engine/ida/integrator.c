@@ -3,55 +3,38 @@
 /* Steps of one problem after which it is given up; a good one takes some hundreds. */
 enum { MOST_STEPS = 20000 };
 
-#if SUNDIALS_VERSION_MAJOR < 7
-void dea_sundials_ignore(int code, const char *module, const char *function, char *message, void *user)
-{
-    (void)code, (void)module, (void)function, (void)message, (void)user;
-}
-#endif
-
-dea_status dea_sundials_open(SUNContext *context, dea_error *error)
-{
-    if (SUNContext_Create(DEA_SUN_COMM_NULL, context) != 0) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "SUNDIALS did not start");
-    }
-#if SUNDIALS_VERSION_MAJOR >= 7
-    SUNContext_ClearErrHandlers(*context);
-#endif
-    return DEA_OK;
-}
-
 static bool allocate(sunindextype n, dea_integrator *m)
 {
-    m->y = N_VNew_Serial(n, m->context);
-    m->yp = N_VNew_Serial(n, m->context);
-    m->id = N_VNew_Serial(n, m->context);
-    m->tolerance = N_VNew_Serial(n, m->context);
-    m->matrix = SUNDenseMatrix(n, n, m->context);
-    m->ida = IDACreate(m->context);
+    m->y = m->sun->N_VNew_Serial(n, m->sun->context);
+    m->yp = m->sun->N_VNew_Serial(n, m->sun->context);
+    m->id = m->sun->N_VNew_Serial(n, m->sun->context);
+    m->tolerance = m->sun->N_VNew_Serial(n, m->sun->context);
+    m->matrix = m->sun->SUNDenseMatrix(n, n, m->sun->context);
+    m->ida = m->sun->IDACreate(m->sun->context);
     if (!m->y || !m->yp || !m->id || !m->tolerance || !m->matrix || !m->ida) {
         return false;
     }
-    m->solver = SUNLinSol_Dense(m->y, m->matrix, m->context);
+    m->solver = m->sun->SUNLinSol_Dense(m->y, m->matrix, m->sun->context);
     return m->solver != NULL;
 }
 
-dea_status dea_integrator_open(SUNContext context, sunindextype n, IDAResFn residual, dea_integrator *m, dea_error *error)
+dea_status dea_integrator_open(const dea_sundials *sun, sunindextype n, IDAResFn residual, dea_integrator *m, dea_error *error)
 {
-    *m = (dea_integrator){.context = context};
+    *m = (dea_integrator){.sun = sun};
     if (!allocate(n, m)) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while IDA starts");
     }
 #if SUNDIALS_VERSION_MAJOR < 7
-    IDASetErrHandlerFn(m->ida, dea_sundials_ignore, NULL);
+    m->sun->IDASetErrHandlerFn(m->ida, dea_sundials_ignore, NULL);
 #endif
-    N_VConst(0.0, m->y);
-    N_VConst(0.0, m->yp);
-    N_VConst(1.0, m->id);
-    N_VConst(1.0, m->tolerance);
-    if (IDAInit(m->ida, residual, 0.0, m->y, m->yp) != IDA_SUCCESS ||
-        IDASVtolerances(m->ida, 1e-6, m->tolerance) != IDA_SUCCESS ||
-        IDASetLinearSolver(m->ida, m->solver, m->matrix) != IDA_SUCCESS || IDASetMaxNumSteps(m->ida, MOST_STEPS) != IDA_SUCCESS) {
+    m->sun->N_VConst(0.0, m->y);
+    m->sun->N_VConst(0.0, m->yp);
+    m->sun->N_VConst(1.0, m->id);
+    m->sun->N_VConst(1.0, m->tolerance);
+    if (m->sun->IDAInit(m->ida, residual, 0.0, m->y, m->yp) != IDA_SUCCESS ||
+        m->sun->IDASVtolerances(m->ida, 1e-6, m->tolerance) != IDA_SUCCESS ||
+        m->sun->IDASetLinearSolver(m->ida, m->solver, m->matrix) != IDA_SUCCESS ||
+        m->sun->IDASetMaxNumSteps(m->ida, MOST_STEPS) != IDA_SUCCESS) {
         return dea_fail(error, DEA_ERROR_ENGINE, "IDA did not start");
     }
     return DEA_OK;
@@ -60,18 +43,18 @@ dea_status dea_integrator_open(SUNContext context, sunindextype n, IDAResFn resi
 void dea_integrator_close(dea_integrator *m)
 {
     if (m->ida) {
-        IDAFree(&m->ida);
+        m->sun->IDAFree(&m->ida);
     }
     if (m->solver) {
-        SUNLinSolFree(m->solver);
+        m->sun->SUNLinSolFree(m->solver);
     }
     if (m->matrix) {
-        SUNMatDestroy(m->matrix);
+        m->sun->SUNMatDestroy(m->matrix);
     }
     N_Vector vectors[] = {m->y, m->yp, m->id, m->tolerance};
     for (size_t i = 0; i < sizeof vectors / sizeof vectors[0]; i++) {
         if (vectors[i]) {
-            N_VDestroy(vectors[i]);
+            m->sun->N_VDestroy(vectors[i]);
         }
     }
     *m = (dea_integrator){0};

@@ -26,11 +26,11 @@ struct dea_ramp {
 static int residual(sunrealtype tau, N_Vector y, N_Vector yp, N_Vector r, void *user)
 {
     dea_ramp *ramp = user;
-    const sunrealtype *v = N_VGetArrayPointer(y);
-    sunrealtype *out = N_VGetArrayPointer(r);
+    const sunrealtype *v = NV_DATA_S(y);
+    sunrealtype *out = NV_DATA_S(r);
     (void)tau;
     const dea_forces f = dea_balance_forces(ramp->balance, ramp->symbol, v[PLACE] * ramp->length);
-    out[PLACE] = N_VGetArrayPointer(yp)[PLACE] - 1.0;
+    out[PLACE] = NV_DATA_S(yp)[PLACE] - 1.0;
     out[SHARE] = (f.elastic - v[SHARE] * f.load) / ramp->load;
     return isfinite(out[SHARE]) ? 0 : 1; /* a trial step too far: IDA takes a shorter one */
 }
@@ -39,7 +39,7 @@ static int jacobian(sunrealtype tau, sunrealtype cj, N_Vector y, N_Vector yp, N_
                     N_Vector work1, N_Vector work2, N_Vector work3)
 {
     dea_ramp *ramp = user;
-    const sunrealtype *v = N_VGetArrayPointer(y);
+    const sunrealtype *v = NV_DATA_S(y);
     (void)tau, (void)yp, (void)r, (void)work1, (void)work2, (void)work3;
     const dea_forces f = dea_balance_forces(ramp->balance, ramp->symbol, v[PLACE] * ramp->length);
     SM_ELEMENT_D(matrix, PLACE, PLACE) = cj;
@@ -52,7 +52,7 @@ static int jacobian(sunrealtype tau, sunrealtype cj, N_Vector y, N_Vector yp, N_
 static int watch(sunrealtype tau, N_Vector y, N_Vector yp, sunrealtype *out, void *user)
 {
     dea_ramp *ramp = user;
-    const sunrealtype *v = N_VGetArrayPointer(y);
+    const sunrealtype *v = NV_DATA_S(y);
     (void)tau, (void)yp;
     const dea_forces f = dea_balance_forces(ramp->balance, ramp->symbol, v[PLACE] * ramp->length);
     out[FULL_LOAD] = v[SHARE] - 1.0;
@@ -60,20 +60,20 @@ static int watch(sunrealtype tau, N_Vector y, N_Vector yp, sunrealtype *out, voi
     return 0;
 }
 
-dea_status dea_ramp_open(SUNContext context, dea_ramp **out, dea_error *error)
+dea_status dea_ramp_open(const dea_sundials *sun, dea_ramp **out, dea_error *error)
 {
     dea_ramp *ramp = calloc(1, sizeof *ramp);
     *out = ramp;
     if (!ramp) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while IDA starts");
     }
-    const dea_status status = dea_integrator_open(context, UNKNOWNS, residual, &ramp->integrator, error);
+    const dea_status status = dea_integrator_open(sun, UNKNOWNS, residual, &ramp->integrator, error);
     if (status != DEA_OK) {
         return status;
     }
     void *ida = ramp->integrator.ida;
-    if (IDASetJacFn(ida, jacobian) != IDA_SUCCESS || IDASetUserData(ida, ramp) != IDA_SUCCESS ||
-        IDARootInit(ida, ROOTS, watch) != IDA_SUCCESS) {
+    if (sun->IDASetJacFn(ida, jacobian) != IDA_SUCCESS || sun->IDASetUserData(ida, ramp) != IDA_SUCCESS ||
+        sun->IDARootInit(ida, ROOTS, watch) != IDA_SUCCESS) {
         return dea_fail(error, DEA_ERROR_ENGINE, "IDA did not start");
     }
     return DEA_OK;
@@ -92,13 +92,14 @@ void dea_ramp_close(dea_ramp *ramp)
 static bool start(dea_ramp *ramp, double tolerance, double end)
 {
     dea_integrator *m = &ramp->integrator;
+    const dea_sundials *sun = m->sun;
     const double longest = fmax(0.05 * dea_balance_length(ramp->balance) / fabs(ramp->length), 1e-3);
-    N_VConst(0.0, m->y);
-    N_VConst(1.0, m->yp);
-    N_VConst(tolerance, m->tolerance);
-    return IDAReInit(m->ida, 0.0, m->y, m->yp) == IDA_SUCCESS &&
-           IDASVtolerances(m->ida, tolerance, m->tolerance) == IDA_SUCCESS && IDASetMaxStep(m->ida, longest) == IDA_SUCCESS &&
-           IDASetStopTime(m->ida, end) == IDA_SUCCESS;
+    sun->N_VConst(0.0, m->y);
+    sun->N_VConst(1.0, m->yp);
+    sun->N_VConst(tolerance, m->tolerance);
+    return sun->IDAReInit(m->ida, 0.0, m->y, m->yp) == IDA_SUCCESS &&
+           sun->IDASVtolerances(m->ida, tolerance, m->tolerance) == IDA_SUCCESS &&
+           sun->IDASetMaxStep(m->ida, longest) == IDA_SUCCESS && sun->IDASetStopTime(m->ida, end) == IDA_SUCCESS;
 }
 
 void dea_ramp_solve(dea_ramp *ramp, dea_balance *balance, double symbol, double accuracy, dea_row *row)
@@ -126,9 +127,9 @@ void dea_ramp_solve(dea_ramp *ramp, dea_balance *balance, double symbol, double 
     const double end = dea_balance_end(balance) / fabs(ramp->length);
     double tau = 0.0;
     int found[ROOTS] = {0, 0};
-    const int code = start(ramp, tolerance, end) ? IDASolve(m->ida, end, &tau, m->y, m->yp, IDA_NORMAL) : IDA_ILL_INPUT;
-    if (code == IDA_ROOT_RETURN && IDAGetRootInfo(m->ida, found) == IDA_SUCCESS && found[FULL_LOAD]) {
-        dea_balance_fill(balance, symbol, N_VGetArrayPointer(m->y)[PLACE] * ramp->length, row);
+    const int code = start(ramp, tolerance, end) ? m->sun->IDASolve(m->ida, end, &tau, m->y, m->yp, IDA_NORMAL) : IDA_ILL_INPUT;
+    if (code == IDA_ROOT_RETURN && m->sun->IDAGetRootInfo(m->ida, found) == IDA_SUCCESS && found[FULL_LOAD]) {
+        dea_balance_fill(balance, symbol, NV_DATA_S(m->y)[PLACE] * ramp->length, row);
     } else if (code >= 0) {
         row->state = DEA_STATE_PULL_IN; /* a fold, or the end of the film */
     }

@@ -1,8 +1,9 @@
 #include "engine/ida/ring.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <string.h>
+
+#include "support/lapack.h"
 
 /* Radians of a segment that make a ring worth it, and its least quality Im lambda/|Re lambda|. */
 static const double long_enough = 6.0;
@@ -55,8 +56,8 @@ static bool invert(dea_ring *ring)
     const int n = ring->n;
     lapack_int pivots[N];
     memcpy(ring->inverse, ring->basis, (size_t)(n * n) * sizeof *ring->basis);
-    return LAPACKE_dgetrf(LAPACK_COL_MAJOR, n, n, ring->inverse, n, pivots) == 0 &&
-           LAPACKE_dgetri(LAPACK_COL_MAJOR, n, ring->inverse, n, pivots) == 0;
+    return dea_lapacke_dgetrf(LAPACK_COL_MAJOR, n, n, ring->inverse, n, pivots) == 0 &&
+           dea_lapacke_dgetri(LAPACK_COL_MAJOR, n, ring->inverse, n, pivots) == 0;
 }
 
 /* X^-1 J X - Omega. */
@@ -120,7 +121,7 @@ void dea_ring_find(const dea_motion *motion, dea_ring *ring)
     }
     dea_motion_jacobian(motion, 0.0, ring->center, jacobian);
     memcpy(work, jacobian, (size_t)(n * n) * sizeof *work);
-    if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'V', 'V', n, work, n, real, imaginary, left, n, right, n) != 0) {
+    if (dea_lapacke_dgeev(LAPACK_COL_MAJOR, 'V', 'V', n, work, n, real, imaginary, left, n, right, n) != 0) {
         return;
     }
     const int pair = find_pair(real, imaginary, ring);

@@ -8,8 +8,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include <kinsol/kinsol.h>
-
 #include "engine/ida/sundials.h"
 
 enum { SIGMA, HOOP, RADIAL, UNKNOWNS };
@@ -63,9 +61,9 @@ static int residual(sunrealtype x, N_Vector y, N_Vector yp, N_Vector r, void *us
 {
     const dea_shooting *s = user;
     const dea_film *film = &s->point->film;
-    const sunrealtype *v = N_VGetArrayPointer(y);
-    const sunrealtype *slope = N_VGetArrayPointer(yp);
-    sunrealtype *out = N_VGetArrayPointer(r);
+    const sunrealtype *v = NV_DATA_S(y);
+    const sunrealtype *slope = NV_DATA_S(yp);
+    sunrealtype *out = NV_DATA_S(r);
     (void)x;
     const double d1 = s->strain * v[RADIAL];
     const double d2 = s->strain * v[HOOP];
@@ -101,7 +99,7 @@ static void set_load(dea_shooting *s, double share)
 /* Notes stresses and area at one place of the annulus. */
 static void note(dea_shooting *s)
 {
-    const sunrealtype *v = N_VGetArrayPointer(s->integrator.y);
+    const sunrealtype *v = NV_DATA_S(s->integrator.y);
     const double l1 = s->point->film.prestretch + s->strain * v[RADIAL];
     const double l2 = s->point->film.prestretch + s->strain * v[HOOP];
     const dea_stress stress = dea_yeoh_stress(s->point->film.yeoh, l1, l2);
@@ -133,17 +131,18 @@ static double jump_guess(const dea_shooting *s, double l)
 static bool start(dea_shooting *s, double edge)
 {
     dea_integrator *m = &s->integrator;
+    const dea_sundials *sun = m->sun;
     const double l = s->point->film.prestretch + edge;
     const double sigma = stress_change(&s->point->film, edge, edge) - s->disc_k * l * l * l;
-    sunrealtype *v = N_VGetArrayPointer(m->y);
+    sunrealtype *v = NV_DATA_S(m->y);
     v[SIGMA] = sigma / s->stress;
     v[HOOP] = edge / s->strain;
     v[RADIAL] = (edge - jump_guess(s, l)) / s->strain;
-    N_VConst(0.0, m->yp);
-    if (IDAReInit(m->ida, 0.0, m->y, m->yp) != IDA_SUCCESS ||
-        IDASVtolerances(m->ida, s->tolerance, m->tolerance) != IDA_SUCCESS ||
-        IDACalcIC(m->ida, IDA_YA_YDP_INIT, fmin(1e-3, -log(s->point->coverage))) != IDA_SUCCESS ||
-        IDAGetConsistentIC(m->ida, m->y, m->yp) != IDA_SUCCESS) {
+    sun->N_VConst(0.0, m->yp);
+    if (sun->IDAReInit(m->ida, 0.0, m->y, m->yp) != IDA_SUCCESS ||
+        sun->IDASVtolerances(m->ida, s->tolerance, m->tolerance) != IDA_SUCCESS ||
+        sun->IDACalcIC(m->ida, IDA_YA_YDP_INIT, fmin(1e-3, -log(s->point->coverage))) != IDA_SUCCESS ||
+        sun->IDAGetConsistentIC(m->ida, m->y, m->yp) != IDA_SUCCESS) {
         return false;
     }
     const double l1 = s->point->film.prestretch + s->strain * v[RADIAL];
@@ -161,17 +160,17 @@ static double miss_at_frame(dea_shooting *s, double edge)
     dea_integrator *m = &s->integrator;
     const double length = -log(s->point->coverage);
     double x = 0.0;
-    if (!(s->point->film.prestretch + edge > 0.0) || !start(s, edge) || IDASetStopTime(m->ida, length) != IDA_SUCCESS) {
+    if (!(s->point->film.prestretch + edge > 0.0) || !start(s, edge) || m->sun->IDASetStopTime(m->ida, length) != IDA_SUCCESS) {
         return NAN;
     }
     int code = IDA_SUCCESS;
     for (int i = 0; i < MOST_STEPS && code == IDA_SUCCESS; i++) {
-        code = IDASolve(m->ida, length, &x, m->y, m->yp, IDA_ONE_STEP);
+        code = m->sun->IDASolve(m->ida, length, &x, m->y, m->yp, IDA_ONE_STEP);
         if (code >= 0) {
             note(s);
         }
     }
-    return code == IDA_TSTOP_RETURN ? N_VGetArrayPointer(m->y)[HOOP] : NAN;
+    return code == IDA_TSTOP_RETURN ? NV_DATA_S(m->y)[HOOP] : NAN;
 }
 
 /* Fixed points for KINSOL: of the edge at a load, edge - miss, or of the load at an edge, share + miss. Both slopes are near 1
@@ -179,7 +178,7 @@ static double miss_at_frame(dea_shooting *s, double edge)
 static int next_guess(N_Vector guess, N_Vector next, void *user)
 {
     dea_shooting *s = user;
-    const double at = N_VGetArrayPointer(guess)[0];
+    const double at = NV_DATA_S(guess)[0];
     if (s->search == SEARCH_SHARE) {
         set_load(s, at * s->share);
     }
@@ -187,40 +186,40 @@ static int next_guess(N_Vector guess, N_Vector next, void *user)
     if (isnan(miss)) {
         return -1;
     }
-    N_VGetArrayPointer(next)[0] = s->search == SEARCH_EDGE ? at - miss * s->held / s->strain : at + miss;
+    NV_DATA_S(next)[0] = s->search == SEARCH_EDGE ? at - miss * s->held / s->strain : at + miss;
     return 0;
 }
 
-static bool open_kinsol(SUNContext context, dea_shooting *s)
+static bool open_kinsol(const dea_sundials *sun, dea_shooting *s)
 {
-    s->edge = N_VNew_Serial(1, context);
-    s->ones = N_VNew_Serial(1, context);
-    s->kinsol = KINCreate(context);
+    s->edge = sun->N_VNew_Serial(1, sun->context);
+    s->ones = sun->N_VNew_Serial(1, sun->context);
+    s->kinsol = sun->KINCreate(sun->context);
     if (!s->edge || !s->ones || !s->kinsol) {
         return false;
     }
-    N_VConst(1.0, s->ones);
+    sun->N_VConst(1.0, s->ones);
 #if SUNDIALS_VERSION_MAJOR < 7
-    KINSetErrHandlerFn(s->kinsol, dea_sundials_ignore, NULL);
+    sun->KINSetErrHandlerFn(s->kinsol, dea_sundials_ignore, NULL);
 #endif
-    return KINSetMAA(s->kinsol, 1) == KIN_SUCCESS && KINInit(s->kinsol, next_guess, s->edge) == KIN_SUCCESS &&
-           KINSetUserData(s->kinsol, s) == KIN_SUCCESS && KINSetNumMaxIters(s->kinsol, 20) == KIN_SUCCESS;
+    return sun->KINSetMAA(s->kinsol, 1) == KIN_SUCCESS && sun->KINInit(s->kinsol, next_guess, s->edge) == KIN_SUCCESS &&
+           sun->KINSetUserData(s->kinsol, s) == KIN_SUCCESS && sun->KINSetNumMaxIters(s->kinsol, 20) == KIN_SUCCESS;
 }
 
-dea_status dea_shooting_open(SUNContext context, dea_shooting **out, dea_error *error)
+dea_status dea_shooting_open(const dea_sundials *sun, dea_shooting **out, dea_error *error)
 {
     dea_shooting *s = calloc(1, sizeof *s);
     *out = s;
     if (!s) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while IDA starts");
     }
-    const dea_status status = dea_integrator_open(context, UNKNOWNS, residual, &s->integrator, error);
+    const dea_status status = dea_integrator_open(sun, UNKNOWNS, residual, &s->integrator, error);
     if (status != DEA_OK) {
         return status;
     }
-    N_VGetArrayPointer(s->integrator.id)[RADIAL] = 0.0;
-    if (IDASetUserData(s->integrator.ida, s) != IDA_SUCCESS || IDASetId(s->integrator.ida, s->integrator.id) != IDA_SUCCESS ||
-        !open_kinsol(context, s)) {
+    NV_DATA_S(s->integrator.id)[RADIAL] = 0.0;
+    if (sun->IDASetUserData(s->integrator.ida, s) != IDA_SUCCESS ||
+        sun->IDASetId(s->integrator.ida, s->integrator.id) != IDA_SUCCESS || !open_kinsol(sun, s)) {
         return dea_fail(error, DEA_ERROR_ENGINE, "IDA and KINSOL did not start");
     }
     return DEA_OK;
@@ -229,14 +228,15 @@ dea_status dea_shooting_open(SUNContext context, dea_shooting **out, dea_error *
 void dea_shooting_close(dea_shooting *s)
 {
     if (s) {
+        const dea_sundials *sun = s->integrator.sun;
         if (s->kinsol) {
-            KINFree(&s->kinsol);
+            sun->KINFree(&s->kinsol);
         }
         if (s->edge) {
-            N_VDestroy(s->edge);
+            sun->N_VDestroy(s->edge);
         }
         if (s->ones) {
-            N_VDestroy(s->ones);
+            sun->N_VDestroy(s->ones);
         }
         dea_integrator_close(&s->integrator);
         free(s);
@@ -246,14 +246,14 @@ void dea_shooting_close(dea_shooting *s)
 /* Runs KINSOL from v = start on; NAN where it does not settle. */
 static double search_from(dea_shooting *s, search what, double start)
 {
+    const dea_sundials *sun = s->integrator.sun;
     s->search = what;
-    N_VConst(s->tolerance, s->integrator.tolerance);
-    N_VGetArrayPointer(s->integrator.tolerance)[HOOP] *=
-        1.0 - s->point->coverage; /* the hoop strain of a narrow annulus is that small */
-    N_VGetArrayPointer(s->edge)[0] = start;
-    KINSetFuncNormTol(s->kinsol, 100.0 * s->tolerance * fabs(start));
-    const int code = KINSol(s->kinsol, s->edge, KIN_FP, s->ones, s->ones);
-    return code < 0 ? NAN : N_VGetArrayPointer(s->edge)[0];
+    sun->N_VConst(s->tolerance, s->integrator.tolerance);
+    NV_DATA_S(s->integrator.tolerance)[HOOP] *= 1.0 - s->point->coverage; /* the hoop strain of a narrow annulus is that small */
+    NV_DATA_S(s->edge)[0] = start;
+    sun->KINSetFuncNormTol(s->kinsol, 100.0 * s->tolerance * fabs(start));
+    const int code = sun->KINSol(s->kinsol, s->edge, KIN_FP, s->ones, s->ones);
+    return code < 0 ? NAN : NV_DATA_S(s->edge)[0];
 }
 
 /* Edge under the full load from a guess of it; NAN where KINSOL does not settle. */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "engine/ida/flight.h"
+#include "support/lapack.h"
 
 enum { MOST_RUNS = 8, MOST_FITS = 4 };
 
@@ -170,14 +171,14 @@ static dea_status fly(dea_flight *flight, dea_sample *samples, dea_summary *summ
     return room ? DEA_OK : dea_fail(error, DEA_ERROR_MEMORY, "out of memory for %zu samples", flight->rows);
 }
 
-static dea_status fly_signal(SUNContext context, const dea_scene *scene, dea_dynamics *dynamics, dea_sample *samples,
+static dea_status fly_signal(const dea_sundials *sun, const dea_scene *scene, dea_dynamics *dynamics, dea_sample *samples,
                              dea_summary *summary, dea_error *error)
 {
     dea_signal signal;
     dea_flight flight;
     dea_status status = dea_signal_open(scene, &signal, error);
     if (status == DEA_OK) {
-        status = dea_flight_open(context, scene, dynamics, &signal, &flight, error);
+        status = dea_flight_open(sun, scene, dynamics, &signal, &flight, error);
         if (status == DEA_OK) {
             status = fly(&flight, samples, summary, error);
         }
@@ -187,14 +188,18 @@ static dea_status fly_signal(SUNContext context, const dea_scene *scene, dea_dyn
     return status;
 }
 
-dea_status dea_transient_solve(SUNContext context, const dea_scene *scene, const dea_model *model, dea_sample *samples,
+dea_status dea_transient_solve(const dea_sundials *sun, const dea_scene *scene, const dea_model *model, dea_sample *samples,
                                dea_summary *summary, dea_error *error)
 {
     dea_dynamics dynamics;
     *summary = dea_summary_failed();
-    dea_status status = dea_dynamics_open(scene, model, &dynamics, error);
+    dea_status status = dea_lapack_load(error); /* for the ring, see ring.c */
+    if (status != DEA_OK) {
+        return status;
+    }
+    status = dea_dynamics_open(scene, model, &dynamics, error);
     if (status == DEA_OK) {
-        status = fly_signal(context, scene, &dynamics, samples, summary, error);
+        status = fly_signal(sun, scene, &dynamics, samples, summary, error);
     }
     dea_dynamics_close(&dynamics);
     return status;

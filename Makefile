@@ -145,12 +145,11 @@ $(BUILD)/stability: $(STABILITY_PARTS) $(BUILD)/tests/stability/main.o $(BUILD)/
 	@$(CC) $(CFLAGS) $(LDFLAGS) $^ -o $@ $(LIBS)
 
 # Random scenes by all engines and accuracies against truths found another way: broken promises of accuracy. About 15 minutes;
-# SCENES=n, SEED=s for others.
+# SCENES=n, SEED=s for others. The seed is the date unless given, printed with the command that repeats the run.
 SCENES ?= 500
-SEED   ?= 1
 promises:
 	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/promises
-	@$(BUILD)/promises --scenes $(SCENES) --seed $(SEED)
+	@$(BUILD)/promises --scenes $(SCENES) $(if $(SEED),--seed $(SEED))
 
 PROMISES := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tests/promises/*.c)))
 $(BUILD)/promises: $(PROMISES) $(BUILD)/libdeaspice.a

@@ -11,7 +11,7 @@
 #include "model/field.h"
 #include "model/film_balance.h"
 
-enum { GBS_COLUMNS = 7 };
+enum { GBS_COLUMNS = 7, ELLIPTIC_SAMPLES = 8 };
 
 /* Longest step in x: the extrapolation error per step is then below 1e-13 of D, but for a film close to the loss of ellipticity,
  * where the step is halved until the last column of the extrapolation changes little. Where less than 1e-6 is wanted of the
@@ -20,6 +20,7 @@ enum { GBS_COLUMNS = 7 };
 static const double longest_step = 0.35;
 static const double shortest_step = 1e-3; /* of the longest: there the film ends */
 static const double little = 1e-11;       /* of D */
+static const double tenth = 0.1;          /* and of the accuracy: deep in slack the force follows the strain some twenty times */
 
 static double step_for(double accuracy)
 {
@@ -198,6 +199,35 @@ static membrane under_load(const membrane *full, double share)
     return m;
 }
 
+/* lambda_1 behind the edge under a share of the load; NAN where there is none. */
+static double radial_stretch(const membrane *full, double share, double edge)
+{
+    const membrane m = under_load(full, share);
+    const double l = full->film->prestretch + edge;
+    return l - jump_at_edge(&m, l);
+}
+
+/* A place of the equilibrium: the edge, the share of the load that holds it, and lambda_1 behind the edge. */
+typedef struct place {
+    double edge, share, stretch;
+} place;
+
+/* True where s11 behind the edge stays above @p least on the straight way from one place to another. Where it does not, the film
+ * ends between them (loss of ellipticity), and a root on the other side is not connected to rest. */
+static bool stays_elliptic(const membrane *full, place from, place to, double least)
+{
+    for (int i = 1; i <= ELLIPTIC_SAMPLES; i++) {
+        const double t = (double)i / ELLIPTIC_SAMPLES;
+        const double l2 = full->film->prestretch + from.edge + t * (to.edge - from.edge);
+        const double l1 = from.stretch + t * (to.stretch - from.stretch);
+        const double k = full->annulus_k * (from.share + t * (to.share - from.share));
+        if (!(dea_yeoh_stress(full->film->yeoh, l1, l2).w11 - k * l2 * l2 > least)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /* Strain of the linearised membrane (the model `lame`), NAN where it has pulled in. */
 static double linear_guess(const dea_point *point, double m)
 {
@@ -210,7 +240,8 @@ static double linear_guess(const dea_point *point, double m)
     return stiffness > 0.0 ? dea_point_sign(point) * m * film->square * film->prestretch / stiffness : NAN;
 }
 
-/* Secant from the linear answer; true where it settles on a root so near to rest that no fold can lie between. */
+/* Secant from the linear answer; true where it settles on a root so near to rest that no fold can lie between, nor an end of the
+ * film: a small strain of a wide disc is a large one of the narrow annulus around it. */
 static bool near_rest(const membrane *m, double guess, double *edge)
 {
     double e0 = guess;
@@ -224,7 +255,10 @@ static bool near_rest(const membrane *m, double guess, double *edge)
             *edge = e1;
             const double size = fabs(e1) / m->film->prestretch;
             const double softest = fmin(first_slope, slope); /* falls from 1 at rest to 0 at a fold */
-            return fmax(first_slope, slope) < 2.0 && (softest > 0.4 ? size < 0.1 : softest > 0.1 && size < 0.05);
+            const place rest = {0.0, 0.0, m->film->prestretch};
+            const place here = {e1, 1.0, radial_stretch(m, 1.0, e1)};
+            return fmax(first_slope, slope) < 2.0 && (softest > 0.4 ? size < 0.1 : softest > 0.1 && size < 0.05) &&
+                   fabs(here.stretch - rest.stretch) < 0.5 * rest.stretch && stays_elliptic(m, rest, here, 0.1 * m->film->w11);
         }
         const double miss1 = miss_at_frame(m, e1, NULL);
         slope = (miss1 - miss0) / (e1 - e0);
@@ -323,53 +357,38 @@ static double edge_of_largest_share(const membrane *full, double low, double hig
     return f1 > f2 ? x1 : x2;
 }
 
-/* lambda_1 behind the edge under a share of the load; NAN where there is none. */
-static double radial_stretch(const membrane *full, double share, double edge)
-{
-    const membrane m = under_load(full, share);
-    const double l = full->film->prestretch + edge;
-    return l - jump_at_edge(&m, l);
-}
-
 /* Follows the equilibrium from rest in steps of the edge until the load is reached or falls again; false: pull-in. Where the film
- * ends, or lambda_1 jumps to another equilibrium, the steps become short and then end. */
+ * ends, the steps become short and then end. */
 static bool trace(const membrane *full, double sign, double end, double *edge)
 {
     const double pre = full->film->prestretch;
-    double before = 0.0;
-    double last = 0.0;
-    double share = 0.0;
-    double share_before = 0.0;
-    double stretch = pre;
+    place before = {0.0, 0.0, pre};
+    place last = before;
     double step = 0.03;
-    while (fabs(last) < fabs(end) && step > 1e-5) {
-        const double here = sign * fmin(fabs(end), fabs(last) + step * (pre + fmax(0.0, last)));
-        const double guess = share > 0.0 ? share * fabs(here / last) : 0.1;
-        const double next = share_at(full, here, guess);
-        const double stretch_next = radial_stretch(full, next, here);
-        const bool connected = fabs(stretch_next - stretch) < 0.2 * stretch;
-        *edge = connected && next >= 1.0 ? bracketed_edge(full, last, share, here, next) : NAN;
+    while (fabs(last.edge) < fabs(end) && step > 1e-5) {
+        const double at = sign * fmin(fabs(end), fabs(last.edge) + step * (pre + fmax(0.0, last.edge)));
+        const double share = share_at(full, at, last.share > 0.0 ? last.share * fabs(at / last.edge) : 0.1);
+        const place here = {at, share, radial_stretch(full, share, at)};
+        const bool connected = fabs(here.stretch - last.stretch) < 0.2 * last.stretch && stays_elliptic(full, last, here, 0.0);
+        *edge = connected && share >= 1.0 ? bracketed_edge(full, last.edge, last.share, at, share) : NAN;
         if (isfinite(*edge)) {
             return true;
         }
-        if (!connected || next >= 1.0) {
+        if (!connected || share >= 1.0) {
             step *= 0.5;
             continue;
         }
-        if (!(next > share)) {
+        if (!(share > last.share)) {
             double largest;
-            const double top = edge_of_largest_share(full, before, here, share, &largest);
+            const double top = edge_of_largest_share(full, before.edge, at, last.share, &largest);
             if (!(largest >= 1.0)) {
                 return false;
             }
-            *edge = bracketed_edge(full, before, share_before, top, largest);
+            *edge = bracketed_edge(full, before.edge, before.share, top, largest);
             return true;
         }
         before = last;
-        share_before = share;
         last = here;
-        share = next;
-        stretch = stretch_next;
         step = fmin(0.03, 1.5 * step);
     }
     return false;
@@ -405,7 +424,7 @@ void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row)
 
 static void solve(const dea_point *point, double accuracy, dea_row *row)
 {
-    dea_field_solve(point, (dea_field_mesh){step_for(accuracy), little}, row);
+    dea_field_solve(point, (dea_field_mesh){step_for(accuracy), fmin(little, tenth * accuracy)}, row);
 }
 
 const dea_model dea_model_field = {

@@ -377,6 +377,12 @@ static void sample_uncharged(dea_dynamics *dynamics, const dea_moment *moment, d
     sample->current = moment->source / series;
 }
 
+bool dea_dynamics_inside(dea_dynamics *dynamics, double u)
+{
+    const bool framed = u > -dynamics->radius && u < dynamics->point.frame_radius - dynamics->radius;
+    return framed && (!dynamics->port || dea_dynamics_edge(dynamics, u).capacitance > 0.0);
+}
+
 bool dea_dynamics_sample(dea_dynamics *dynamics, const dea_moment *moment, dea_sample *sample)
 {
     dea_row row = dea_row_failed();
@@ -384,7 +390,7 @@ bool dea_dynamics_sample(dea_dynamics *dynamics, const dea_moment *moment, dea_s
         sample_uncharged(dynamics, moment, sample);
         return true;
     }
-    const bool inside = moment->u > -dynamics->radius && moment->u < dynamics->point.frame_radius - dynamics->radius;
+    const bool inside = dea_dynamics_inside(dynamics, moment->u);
     if (inside) {
         dea_balance_fill(&dynamics->balance, moment->voltage, moment->u, &row);
     }

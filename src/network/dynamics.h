@@ -72,6 +72,10 @@ double dea_dynamics_velocity(dea_dynamics *dynamics, double u, double voltage, d
 /* The same behind a series resistance, where the film voltage has that @p slope only at constant u: U' = slope - U C'/C v. */
 double dea_dynamics_velocity_charged(dea_dynamics *dynamics, double u, double voltage, double slope, const double *z);
 
+/* True where disc and annulus both are there and, with an electrical port, a capacitance is: that of the linear models falls to
+ * zero before the electrode is gone, and what charges it ends there. */
+bool dea_dynamics_inside(dea_dynamics *dynamics, double u);
+
 /* State of the moving network at one time. */
 typedef struct dea_moment {
     double time;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "../unit/random_transients.h"
+#include "scene/reader.h"
 
 enum { TEXT = 16384, SWEEP_POINTS = 6, BRANCHES = 8 };
 
@@ -238,6 +239,14 @@ static void repeat(uint64_t *seed, dea_waveform *w, double until)
     w->period = period;
 }
 
+/* A rise is a jump, or no shorter than edges can be. */
+static void lengthen(dea_waveform *w)
+{
+    if (w->kind == DEA_WAVE_STEP && w->step.rise < DEA_EDGE_MIN) {
+        w->step.rise = 0.0;
+    }
+}
+
 static void draw_transient(uint64_t *seed, paper *p)
 {
     dea_scene scene;
@@ -256,6 +265,7 @@ static void draw_transient(uint64_t *seed, paper *p)
     if (random_chance(seed, 0.2)) {
         repeat(seed, &scene.drive.waveform, run->until);
     }
+    lengthen(&scene.drive.waveform);
     draw_ports(seed, &scene, run->until);
     put_actuator(p, &scene.actuator);
     put_material(p, &scene.material);

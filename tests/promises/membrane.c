@@ -113,8 +113,7 @@ static tension tension_at(const true_film *f, long double k, long double d1, lon
     const long double q = 2.0L * f->yeoh[1] + 6.0L * f->yeoh[2] * j, rest = 2.0L * (l - 1.0L / (l4 * l));
     const long double da1 = 2.0L * (d1 - dc * i1 + d1 * i1 / (l4 * l)), da2 = 2.0L * (d2 - dc * i2 + d2 * i2 / (l4 * l));
     const long double a1 = rest + da1, a2 = rest + da2;
-    return (tension){w * da1 + dw * rest - k * area * l2,
-                     w * da2 + dw * rest - k * area * l1,
+    return (tension){w * da1 + dw * rest - k * area * l2, w * da2 + dw * rest - k * area * l1,
                      w * (2.0L + 6.0L * c * i1 * i1) + q * a1 * a1 - k * l2 * l2,
                      4.0L * w * c * i1 * i2 + q * a1 * a2 - 2.0L * k * area,
                      w * (2.0L + 6.0L * c * i2 * i2) + q * a2 * a2 - k * l1 * l1};
@@ -168,8 +167,7 @@ static void add_place(membrane *m, int element, int place, const long double *e,
         for (int j = 0; j < SHAPES; j++) {
             const int column = unknown(element, j);
             if (column >= 0 && column <= row) {
-                m->stiffness[row][DEGREE + column - row] +=
-                    first * (s->value[j] + scale * s->slope[j]) + second * s->value[j];
+                m->stiffness[row][DEGREE + column - row] += first * (s->value[j] + scale * s->slope[j]) + second * s->value[j];
             }
         }
     }

@@ -12,6 +12,7 @@
 enum { STAGES = 6, UNKNOWNS = 2 * STAGES, NEWTON = 20 };
 
 static const double most_steps = 60000.0;
+static const long double nearly = 0.02L; /* share of what is there at rest below which it counts as lost */
 static const long double pi = 3.14159265358979323846264338327950288L;
 
 typedef struct square {
@@ -399,9 +400,21 @@ static long double held_stiffness(const true_film *f, const state *s)
            e.push.slope * s->w * s->w;
 }
 
-static bool inside(const motion *m, long double u)
+static bool is_framed(const motion *m, long double u)
 {
     return u > -m->film.divide && u < m->film.frame - m->film.divide;
+}
+
+/* A film with a port needs a capacitance; that of the linear models may end within the frame. */
+static bool has_capacitance(const true_film *f, long double u)
+{
+    return film_edge(f, u).capacitance > 0.0L;
+}
+
+static bool inside(const motion *m, long double u)
+{
+    const true_film *f = &m->film;
+    return is_framed(m, u) && ((f->series == 0.0L && f->conductance == 0.0L) || has_capacitance(f, u));
 }
 
 /* A film without mass and damper: its displacement goes with the voltage, branches held. */
@@ -525,6 +538,18 @@ static long double distance(const motion *m, const state *a, const state *b)
     return fmaxl(u, fmaxl(v, w));
 }
 
+/* Steps of any length fail where a film without mass and damper has nearly lost its stiffness, or one that charges its
+ * capacitance, or where the film ends; anywhere else that is the fault of these steps and says nothing of the film. */
+static bool is_ending(const motion *m, const state *s)
+{
+    const true_film *f = &m->film;
+    const state rest = {0};
+    const long double room = fminl(s->u + f->divide, f->frame - f->divide - s->u);
+    return (is_free(f) && held_stiffness(f, s) < nearly * held_stiffness(f, &rest)) ||
+           (f->series > 0.0L && film_edge(f, s->u).capacitance < nearly * film_edge(f, 0.0L).capacitance) ||
+           room < 1e-6L * fminl(f->divide, f->frame - f->divide);
+}
+
 /* First step behind an edge: short against everything. */
 static long double first_step(const motion *m)
 {
@@ -568,12 +593,14 @@ static bool run_segment(motion *m, state *s)
             const long double share = found ? fmaxl(0.1L, 0.7L * powl(m->tolerance / error, 0.125L)) : 0.25L;
             h *= share;
             if (h < 1e-15L * width || h < 1e-18L * m->segment->to) {
-                m->gone = true;
+                m->gone = is_ending(m, s);
+                m->why = m->gone ? NULL : "the truth's equations were not solved";
                 return false;
             }
             continue;
         }
-        const bool stays = linear || inside(m, two.u); /* of a linear film only the samples tell */
+        /* of a linear film only the samples tell, and what charges it */
+        const bool stays = linear ? m->film.series == 0.0L || has_capacitance(&m->film, two.u) : inside(m, two.u);
         if (!stays || (is_free(&m->film) && !(held_stiffness(&m->film, &two) > 0.0L))) {
             if (h > 1e-9L * width) {
                 h *= 0.1L; /* rows before it counts are still to be taken */

@@ -32,6 +32,7 @@ void dea_motion_open(dea_dynamics *d, const dea_signal *signal, dea_motion *m)
     m->stiffness = dea_dynamics_stiffness(d, 0.0, 0.0, false);
     m->algebraic = !heavy && !(d->retardation > 0.0);
     m->pace = pace_of(d, rest.capacitance);
+    m->capacitance = rest.capacitance;
     m->size[0] = length;
     if (heavy) {
         m->v = 1;
@@ -63,10 +64,10 @@ double dea_motion_slope(const dea_motion *m, double time)
 
 bool dea_motion_inside(const dea_motion *m, double u)
 {
-    return u > -m->dynamics->radius && u < m->dynamics->point.frame_radius - m->dynamics->radius;
+    return dea_dynamics_inside(m->dynamics, u);
 }
 
-/* False where a number is not finite, or a stretch not positive in springs that are not linear. */
+/* False where a number is not finite, or a stretch not positive in springs that are not linear, or nothing is left to charge. */
 static bool look(const dea_motion *m, double time, const double *y, local_state *at)
 {
     dea_dynamics *d = m->dynamics;
@@ -78,6 +79,9 @@ static bool look(const dea_motion *m, double time, const double *y, local_state 
     at->edge = dea_dynamics_edge(d, at->u);
     at->voltage_slope = 0.0;
     if (m->q >= 0) {
+        if (!(at->edge.capacitance > 0.0)) {
+            return false;
+        }
         at->voltage = y[m->q] * m->size[m->q] / at->edge.capacitance;
         at->voltage_slope = -at->voltage * at->edge.capacitance_slope / at->edge.capacitance;
     } else {
@@ -181,7 +185,14 @@ void dea_motion_jacobian(const dea_motion *m, double time, const double *y, doub
 double dea_motion_firmness(const dea_motion *m, double time, const double *y)
 {
     local_state at;
-    return !m->algebraic ? 1.0 : look(m, time, y, &at) ? -force_slope(m, &at) / m->stiffness : 0.0;
+    if (!m->algebraic && m->q < 0) {
+        return 1.0;
+    }
+    if (!look(m, time, y, &at)) {
+        return 0.0;
+    }
+    const double charge = m->q < 0 ? 1.0 : fmin(1.0, at.edge.capacitance / m->capacitance);
+    return m->algebraic ? fmin(charge, -force_slope(m, &at) / m->stiffness) : charge;
 }
 
 void dea_motion_branches(const dea_motion *m, const double *y, double *z)

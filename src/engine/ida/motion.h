@@ -23,6 +23,7 @@ typedef struct dea_motion {
     bool algebraic;   /* u is */
     double stiffness; /* at rest with the branches held [N/m] */
     double pace;      /* of an algebraic u: makes its row as large as those of the states, whatever the unit of time [1/s] */
+    double capacitance; /* at rest [F] */
     double size[DEA_MOTION_MOST]; /* of the unknowns [m, m/s, Pa or N, C] */
 } dea_motion;
 
@@ -39,7 +40,8 @@ bool dea_motion_inside(const dea_motion *motion, double u);
 bool dea_motion_rates(const dea_motion *motion, double time, const double *y, double *f);
 /* df/dy, column by column. S'' of the damper's force is left out: it serves Newton's method. */
 void dea_motion_jacobian(const dea_motion *motion, double time, const double *y, double *jacobian);
-/* Net stiffness that holds an algebraic u, over that at rest: 0 where it loses its equilibrium. 1 for a u that is a state. */
+/* Net stiffness that holds an algebraic u, over that at rest: 0 where it loses its equilibrium. Of a film that charges through a
+ * resistance no more than its capacitance over that at rest: 0 where nothing is left to charge. 1 for what has neither end. */
 double dea_motion_firmness(const dea_motion *motion, double time, const double *y);
 
 /* The state at the begin of a run; false without a stable equilibrium. */

@@ -18,6 +18,11 @@ typedef enum search { SEARCH_EDGE, SEARCH_SHARE } search;
 /* Steps along the radius after which a guess is taken as hopeless; a good one takes some hundreds. */
 enum { MOST_STEPS = 3000 };
 
+/* Tightest tolerance of IDA: ten times that leaves an error of 4e-9 in the force of a film deep in slack. */
+static const double finest = 1e-13;
+/* Share of s11 at rest below which a film that cannot be followed any further has come to its end. */
+static const double nearly = 0.1;
+
 struct dea_shooting {
     dea_integrator integrator;
     void *kinsol;           /* owned */
@@ -36,6 +41,7 @@ struct dea_shooting {
     double least_stress; /* of the last integration [Pa] */
     double largest_area; /* largest lambda_1 lambda_2 of the electroded region [1] */
     double edge_force;   /* lambda_1 lambda_2^2 of the electroded side at r_a [1] */
+    double radial;       /* lambda_1 behind r_a [1] */
 };
 
 /* p1(l + d1, l + d2) - p1(l, l), factored in d1 and d2. */
@@ -149,6 +155,7 @@ static bool start(dea_shooting *s, double edge)
     const bool lens = s->point->kind == DEA_LENS;
     s->least_stress = dea_yeoh_stress(s->point->film.yeoh, l, l).p1 - s->disc_k * l * l * l;
     s->largest_area = lens ? l1 * l : l * l;
+    s->radial = l1;
     s->edge_force = lens ? l1 * l * l : l * l * l;
     note(s);
     return true;
@@ -281,10 +288,27 @@ static double share_at(dea_shooting *s, double edge, double guess)
     return search_from(s, SEARCH_SHARE, 1.0) * guess;
 }
 
-/* A place of the equilibrium: the edge, and the share of the load that holds it. */
+/* A place of the equilibrium: the edge, the share of the load that holds it, and lambda_1 behind r_a there. */
 typedef struct place {
-    double edge, share;
+    double edge, share, radial;
 } place;
+
+/* Smallest s11 behind r_a [Pa] on the straight way between two places: where it is lost the film ends, and what holds the load
+ * beyond is not connected to rest. */
+static double least_s11(const dea_shooting *s, place a, place b)
+{
+    enum { PARTS = 10 };
+    const bool lens = s->point->kind == DEA_LENS;
+    double least = INFINITY;
+    for (int i = 0; i <= PARTS; i++) {
+        const double weight = (double)i / PARTS;
+        const double l2 = s->point->film.prestretch + a.edge + weight * (b.edge - a.edge);
+        const double l1 = a.radial + weight * (b.radial - a.radial);
+        const double k = lens ? s->pressure * (a.share + weight * (b.share - a.share)) : 0.0;
+        least = fmin(least, dea_yeoh_stress(s->point->film.yeoh, l1, l2).w11 - k * l2 * l2);
+    }
+    return least;
+}
 
 /* Edge under the full load between two places on either side of it. */
 static double edge_between(dea_shooting *s, place low, place high)
@@ -297,7 +321,7 @@ static double edge_between(dea_shooting *s, place low, place high)
             return edge;
         }
         const double middle = 0.5 * (low.edge + high.edge);
-        const place half = {middle, share_at(s, middle, 1.0)};
+        const place half = {middle, share_at(s, middle, 1.0), s->radial};
         *(half.share < 1.0 ? &low : &high) = half;
     }
     return NAN;
@@ -310,7 +334,9 @@ static place largest_share(dea_shooting *s, place a, place b, place c)
         const double left = (b.edge - a.edge) * (b.share - c.share);
         const double right = (b.edge - c.edge) * (b.share - a.share);
         const double step = 0.5 * ((b.edge - a.edge) * left - (b.edge - c.edge) * right) / (left - right);
-        const place next = {b.edge - step, share_at(s, b.edge - step, b.share)};
+        const double at = b.edge - step;
+        const double share = share_at(s, at, b.share);
+        const place next = {at, share, s->radial};
         if (!isfinite(next.share) || fabs(step) <= 1e-6 * fabs(b.edge)) {
             break;
         }
@@ -325,30 +351,39 @@ static place largest_share(dea_shooting *s, place a, place b, place c)
     return b;
 }
 
-/* Follows the equilibrium from rest in steps of the edge until it holds the full load; NAN where the load falls again before:
- * pull-in. */
-static double follow(dea_shooting *s, double linear, double end, bool *folds)
+/* True where no end of the film lies between two places of the equilibrium near to each other. */
+static bool is_connected(const dea_shooting *s, place a, place b)
+{
+    return fabs(b.radial - a.radial) < 0.2 * a.radial && least_s11(s, a, b) > 0.0;
+}
+
+/* Follows the equilibrium from rest in steps of the edge until it holds the full load; NAN where the load falls again before, or
+ * the film ends: pull-in. */
+static double follow(dea_shooting *s, double linear, double end, bool *lost)
 {
     const double pre = s->point->film.prestretch;
     const double sign = linear > 0.0 ? 1.0 : -1.0;
     const double fine = s->tolerance;
-    place before = {0.0, 0.0};
-    place last = {0.0, 0.0};
+    place before = {0.0, 0.0, pre};
+    place last = before;
     double edge = NAN;
+    bool torn = false;               /* the last step went past the end of the film */
     s->tolerance = fmax(fine, 1e-9); /* enough to find the neighbourhood */
     double step = 0.03;
     while (fabs(last.edge) < end && step > 1e-5) {
         const double at = sign * fmin(end, fabs(last.edge) + step * (pre + fmax(0.0, last.edge)));
         const double guess = last.share > 0.0 ? fmin(1.5, last.share * at / last.edge) : at / linear;
-        place here = {at, share_at(s, at, guess)};
-        if (isnan(here.share)) {
+        const double share = share_at(s, at, guess);
+        place here = {at, share, s->radial};
+        torn = !isnan(share) && !is_connected(s, last, here);
+        if (isnan(share) || torn) {
             step *= 0.5; /* the film ends here, or the step was too long */
             continue;
         }
         if (!(here.share > last.share)) {
             here = largest_share(s, before, last, here);
             if (!(here.share >= 1.0)) {
-                *folds = true;
+                *lost = true;
                 break;
             }
             last = before;
@@ -360,9 +395,23 @@ static double follow(dea_shooting *s, double linear, double end, bool *folds)
         }
         before = last;
         last = here;
+        step = fmin(0.03, 1.5 * step);
     }
     s->tolerance = fine;
+    *lost = *lost || (isnan(edge) && (torn || least_s11(s, last, last) < nearly * s->point->film.w11));
     return edge;
+}
+
+/* True where no fold can lie between rest and the edge under the full load, and no end of the film. */
+static bool is_near_rest(dea_shooting *s, double edge)
+{
+    const dea_film *film = &s->point->film;
+    const double stiffness = stiffness_at(s, edge);
+    const double size = fabs(edge) / film->prestretch;
+    const place rest = {0.0, 0.0, film->prestretch};
+    const place here = {edge, 1.0, s->radial};
+    return (stiffness > 0.4 ? size < 0.1 : stiffness > 0.1 && size < 0.05) &&
+           fabs(here.radial - rest.radial) < 0.5 * rest.radial && least_s11(s, rest, here) > nearly * film->w11;
 }
 
 void dea_shooting_solve(dea_shooting *s, const dea_point *point, double accuracy, dea_row *row)
@@ -373,7 +422,7 @@ void dea_shooting_solve(dea_shooting *s, const dea_point *point, double accuracy
     const double b2 = point->coverage * point->coverage;
     s->point = point;
     s->pressure = film->permittivity * nominal * nominal;
-    s->tolerance = fmin(1e-7, fmax(1e-6 * accuracy, 1e-12));
+    s->tolerance = fmin(1e-7, fmax(1e-6 * accuracy, finest));
     *row = dea_row_failed();
     if (s->pressure == 0.0) {
         *row = (dea_row){0.0, 0.0, 0.0, 0.0, film->tension > 0.0 ? DEA_STATE_OK : DEA_STATE_SLACK};
@@ -386,13 +435,11 @@ void dea_shooting_solve(dea_shooting *s, const dea_point *point, double accuracy
     const double linear =
         sign * s->pressure * film->square * film->prestretch * (1.0 - b2) / (2.0 * film->w11); /* without softening */
     double edge = fabs(linear) < 0.2 * film->prestretch ? edge_at_full_load(s, linear) : NAN;
-    const double size = fabs(edge) / film->prestretch;
-    const double stiffness = isnan(edge) ? NAN : stiffness_at(s, edge);
-    if (!(stiffness > 0.4 ? size < 0.1 : stiffness > 0.1 && size < 0.05)) { /* else too near to rest for a fold between */
+    if (isnan(edge) || !is_near_rest(s, edge)) {
         const double end = sign > 0.0 ? film->prestretch * (1.0 / point->coverage - 1.0) : film->prestretch;
-        bool folds = false;
-        edge = follow(s, linear, end * (1.0 - 1e-9), &folds);
-        row->state = folds ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
+        bool lost = false;
+        edge = follow(s, linear, end * (1.0 - 1e-9), &lost);
+        row->state = lost ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
     }
     if (isnan(edge)) {
         return;

@@ -257,14 +257,15 @@ static void integrate(runner *r, const node *b)
     }
 }
 
-/* The edge lies between centre and frame. A linear film knows no frame: of what it does there only the samples tell. */
-static bool is_inside(const dea_dynamics *d, const node *n)
+/* The edge lies between centre and frame. A linear film knows no frame: of what it does there only the samples tell; but what
+ * charges it through a resistance ends with its capacitance. */
+static bool is_inside(dea_dynamics *d, const node *n)
 {
     const double u = n->moment.u;
-    if (d->linear) {
-        return isfinite(u) && isfinite(n->moment.v);
+    if (!isfinite(u) || !isfinite(n->moment.v)) {
+        return false;
     }
-    return u > -d->radius && u < d->point.frame_radius - d->radius && isfinite(n->moment.v);
+    return d->linear ? d->series == 0.0 || dea_dynamics_edge(d, u).capacitance > 0.0 : dea_dynamics_inside(d, u);
 }
 
 /* Takes the samples up to the point @p b, or up to where the film leaves its frame before that. */

@@ -15,6 +15,7 @@ typedef struct dea_track {
     dea_track_point *points; /* owned: computed by dea_track_run(), `reached` of them */
     size_t reached;          /* samples before the run ended */
     dea_state end;           /* why: ok, pull_in, failed */
+    bool bounces;            /* it failed since its steps went through where the film turns back */
     dea_audit audit;
     dea_moment first, last;
     dea_mobility_state start, stop; /* the states that go with them */

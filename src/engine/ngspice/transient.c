@@ -111,23 +111,25 @@ static dea_mobility_state better_state(const dea_mobility_state *coarse, const d
     return state;
 }
 
-/* Energies at the end from both runs, as the states are. */
+/* Energies at the end from both runs, as the states are; none where the motion ends before the run. */
 static void fill_summary(const dea_route *route, const levels *l, dea_summary *summary)
 {
     dea_dynamics *d = route->dynamics;
-    const bool whole = l->fine.end == DEA_STATE_OK;
-    const dea_track *other = whole ? &l->coarse : &l->fine; /* runs that end early do not end at one time */
-    const dea_audit *coarse = &other->audit;
+    const dea_audit *coarse = &l->coarse.audit;
     const dea_audit *fine = &l->fine.audit;
+    *summary = dea_summary_failed();
+    summary->error = l->error;
+    if (l->fine.end != DEA_STATE_OK || l->coarse.end != DEA_STATE_OK) {
+        return;
+    }
     const dea_audit audit = {better(coarse->work, fine->work), better(coarse->dissipated, fine->dissipated),
                              better(coarse->branch, fine->branch), fine->largest};
-    const dea_mobility_state stop = better_state(&other->stop, &l->fine.stop, d->branch_count);
+    const dea_mobility_state stop = better_state(&l->coarse.stop, &l->fine.stop, d->branch_count);
     dea_moment last = l->fine.last;
     last.u = stop.u;
     last.v = stop.v;
     last.voltage = dea_route_voltage(route, last.source, stop.u, stop.charge);
     dea_audit_close(&audit, d, &l->fine.first, l->fine.start.z, &last, stop.z, summary);
-    summary->error = l->error;
 }
 
 /* From measured errors: three runs from there on mostly do. */
@@ -200,7 +202,10 @@ static dea_status afford(const dea_route *route, const levels *l, double finenes
     if (is_affordable(&b, spent) && l->runs <= MOST_LEVELS) {
         return DEA_OK;
     }
-    if (l->runs > 2 && l->error <= wanted) {
+    if (l->runs > 1 && l->fine.bounces) {
+        snprintf(why, sizeof why, "%.2g time steps go through the point where the film turns back",
+                 route->pieces->points / fineness / 2.0);
+    } else if (l->runs > 2 && l->error <= wanted) {
         snprintf(why, sizeof why, "the balance of energies is open by %.1g, at most %g is wanted", l->residual, 10.0 * wanted);
     } else if (l->runs > 2) {
         snprintf(why, sizeof why, "%.2g time steps leave an error of %.1g, the scene wants %g",
@@ -224,7 +229,7 @@ static dea_status refine_once(const dea_route *route, levels *l, double fineness
         judge(l);
         fill_summary(route, l, summary);
         l->residual = summary->residual;
-        const bool settled = l->fine.end != DEA_STATE_FAILED || l->runs >= STUBBORN;
+        const bool settled = l->fine.end != DEA_STATE_FAILED || (l->runs >= STUBBORN && !l->fine.bounces);
         const bool closed = l->fine.end != DEA_STATE_OK || summary->residual <= 10.0 * wanted || l->error <= enough * wanted;
         *done = l->error <= wanted && settled && closed;
     }

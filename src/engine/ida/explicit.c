@@ -160,8 +160,9 @@ static dea_state advance(explicit_run *run, double to, double *time)
             const bool gone = code == ARK_REPTD_RHSFUNC_ERR || code == ARK_FIRST_RHSFUNC_ERR || code == ARK_UNREC_RHSFUNC_ERR;
             return gone ? DEA_STATE_PULL_IN : dea_flight_broke(flight, "ARKODE", code, *time);
         }
-        if (!dea_flight_step(flight, *time, NV_DATA_S(run->w)) || endless(run, to, *time)) {
-            return DEA_STATE_FAILED;
+        const dea_state state = dea_flight_step(flight, *time, NV_DATA_S(run->w));
+        if (state != DEA_STATE_OK || endless(run, to, *time)) {
+            return state != DEA_STATE_OK ? state : DEA_STATE_FAILED;
         }
     }
     integrate(run, before, stop);

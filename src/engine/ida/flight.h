@@ -36,6 +36,8 @@ typedef struct dea_flight {
     double y[DEA_MOTION_MOST];
     double reach[DEA_MOTION_MOST]; /* largest of each unknown on the way */
     long steps;
+    double stepped; /* to this time of the segment [s] */
+    int crawls;     /* last steps that hardly added to it */
 } dea_flight;
 
 /* Prepares runs of a scene; the caller ends them with dea_flight_close(), also after a failure. */
@@ -59,8 +61,8 @@ double dea_flight_next_sample(const dea_flight *flight);
 bool dea_flight_record(dea_flight *flight, double time, const double *y);
 /* True where so many steps are left. */
 bool dea_flight_affords(dea_flight *flight, double steps);
-/* Takes w of the end of a step as the state; false past the most steps. */
-bool dea_flight_step(dea_flight *flight, double time, const double *w);
+/* Takes w of the end of a step as the state; `failed` past the most steps, `pull_in` where the film runs away. */
+dea_state dea_flight_step(dea_flight *flight, double time, const double *w);
 
 /* `failed`, because a solver ended with an error code at a time of the segment. */
 dea_state dea_flight_broke(dea_flight *flight, const char *solver, int code, double time);

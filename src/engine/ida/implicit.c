@@ -298,10 +298,10 @@ dea_state dea_flight_implicit(dea_flight *flight, double from)
             const bool gone = code == IDA_REP_RES_ERR || dea_motion_firmness(&flight->motion, time, flight->y) < soft;
             return gone ? DEA_STATE_PULL_IN : dea_flight_broke(flight, "IDA", code, time);
         }
-        if (!dea_flight_step(flight, time, NV_DATA_S(m->y))) {
-            return DEA_STATE_FAILED;
+        dea_state state = dea_flight_step(flight, time, NV_DATA_S(m->y));
+        if (state == DEA_STATE_OK) {
+            state = take_samples(flight, time, code == IDA_TSTOP_RETURN);
         }
-        const dea_state state = take_samples(flight, time, code == IDA_TSTOP_RETURN);
         if (state != DEA_STATE_OK) {
             return state;
         }

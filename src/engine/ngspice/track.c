@@ -386,6 +386,27 @@ static dea_state verdict(const runner *r)
     return lost ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
 }
 
+/* True where the film turns back before the frame or the centre that @p n lies behind: the stress of what gets narrow there grows
+ * beyond all bounds, against the motion unless the material has lost its stiffness. */
+static bool turns_back(const runner *r, const node *n)
+{
+    dea_dynamics *d = r->route->dynamics;
+    const double end = n->moment.u > 0.0 ? d->point.frame_radius - d->radius : -d->radius;
+    const dea_edge e = dea_dynamics_edge(d, (1.0 - 1e-6) * end);
+    const double force = e.push * n->moment.voltage * n->moment.voltage - e.area * e.stress;
+    return !d->linear && isfinite(n->moment.u) && force * end < 0.0;
+}
+
+/* Mass or damper carry the film out of its frame: pull_in. Where it would turn back the steps are too long. */
+static void leave(runner *r, const node *n)
+{
+    r->track->bounces = turns_back(r, n);
+    r->track->end = r->track->bounces ? DEA_STATE_FAILED : DEA_STATE_PULL_IN;
+    if (!r->track->bounces) {
+        take_samples(r, n);
+    }
+}
+
 /* Slope at @p time of the parabola through three values. */
 static double parabola_slope(const double time[3], double a, double b, double c, double at)
 {
@@ -439,11 +460,10 @@ static bool advance(runner *r, const ahead *p)
     node n = read_point(r, p);
     correct(r, p->time - r->last.moment.time, &n);
     if (!is_possible(r, &n)) {
-        /* mass and damper carry the film out; without them Newton's method may have found a root of no film */
-        const bool carried = !is_free(r->route->dynamics);
-        r->track->end = carried ? DEA_STATE_PULL_IN : verdict(r);
-        if (carried) {
-            take_samples(r, &n);
+        if (is_free(r->route->dynamics)) {
+            r->track->end = verdict(r); /* Newton's method may have found a root of no film */
+        } else {
+            leave(r, &n);
         }
         return false;
     }

@@ -16,6 +16,7 @@ typedef struct dea_track {
     size_t reached;          /* samples before the run ended */
     dea_state end;           /* why: ok, pull_in, failed */
     double integrals[DEA_WINDOWS]; /* of u over the windows of the scene [m s] */
+    bool bounces;            /* it failed since its steps went through where the film turns back */
     dea_audit audit;
     dea_moment first, last;
     dea_mobility_state start, stop; /* the states that go with them */

@@ -3,17 +3,27 @@
  * close too. */
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "engine/ngspice/moving.h"
 #include "engine/ngspice/track.h"
 
-/* Most work that all runs may take, in time steps of a linear network: about half a minute. Other steps and a netlist take so
- * much of that. Most runs, and those after which a failure is one. */
+/* Most work that all runs of a transient may take, in time steps of a linear network, and how much of that other steps and a
+ * netlist take. A scene is refused as early as it can be told that it takes more; once so much is spent that a refusal would come
+ * late, it gets more. */
 static const double most_work = 5e6;
+static const double late_work = 1e6;
+static const double late_share = 3.0;
 static const double nonlinear_step = 5.0;
 static const double netlist = 1000.0;
+static const double work_time = 6e-6; /* of one processor, roughly [s] */
+
+/* Most runs, and those after which a failure is one. */
 enum { MOST_LEVELS = 14, STUBBORN = 5 };
+
+/* Pieces that are many. */
+enum { MANY = 200 };
 
 /* Share of the wanted error at which an open balance of energies is no longer worth finer runs: the study says that it is open.
  */
@@ -134,24 +144,26 @@ static dea_mobility_state better_state(const dea_mobility_state *coarse, const d
     return state;
 }
 
-/* Energies at the end from both runs, as the states are. */
+/* Energies at the end from both runs, as the states are; none where the motion ends before the run. */
 static void fill_summary(const dea_route *route, const levels *l, dea_summary *summary)
 {
     dea_dynamics *d = route->dynamics;
-    const bool whole = l->fine.end == DEA_STATE_OK;
-    const dea_track *other = whole ? &l->coarse : &l->fine; /* runs that end early do not end at one time */
-    const dea_audit *coarse = &other->audit;
+    const dea_audit *coarse = &l->coarse.audit;
     const dea_audit *fine = &l->fine.audit;
+    *summary = dea_summary_failed();
+    summary->error = l->error;
+    if (l->fine.end != DEA_STATE_OK || l->coarse.end != DEA_STATE_OK) {
+        return;
+    }
     const dea_audit audit = {better(coarse->work, fine->work), better(coarse->dissipated, fine->dissipated),
                              better(coarse->branch, fine->branch), fine->largest};
-    const dea_mobility_state stop = better_state(&other->stop, &l->fine.stop, d->branch_count);
+    const dea_mobility_state stop = better_state(&l->coarse.stop, &l->fine.stop, d->branch_count);
     dea_moment last = l->fine.last;
     last.u = stop.u;
     last.v = stop.v;
     last.voltage = dea_route_voltage(route, last.source, stop.u, stop.charge);
     dea_audit_close(&audit, d, &l->fine.first, l->fine.start.z, &last, stop.z, summary);
     tell_averages(route, l, summary);
-    summary->error = l->error;
 }
 
 /* From measured errors: three runs from there on mostly do. */
@@ -176,35 +188,66 @@ static double least_runs(const levels *l, double wanted)
     return isfinite(l->error) ? fmax(1.0, ceil(log(l->error / wanted) / log(16.0))) : 1.0;
 }
 
+/* What the next runs would take. */
+typedef struct bill {
+    double steps; /* of the finest */
+    double work;  /* of all runs, those that were done too */
+} bill;
+
+static bool is_affordable(const bill *b, double spent)
+{
+    return b->work <= (spent > late_work ? late_share : 1.0) * most_work;
+}
+
+/* Refuses with what it would take, the limit, and what to do. */
+static dea_status refuse(const bill *b, const char *why, dea_error *error)
+{
+    return dea_fail(error, DEA_ERROR_ENGINE,
+                    "%s: %.2g time steps of ngspice or more, some %.0f s, at most %.0f s are spent on a run; take --engine ida, a "
+                    "looser accuracy or a shorter run",
+                    why, b->steps, b->work * work_time, most_work * work_time);
+}
+
+/* Why a run takes so many steps before anything of it is known. */
+static void explain_length(const dea_route *route, char *why, size_t size)
+{
+    const dea_signal *signal = route->signal;
+    const double periods = route->omega * dea_pieces_ringing(route->pieces) / (2.0 * DEA_PI);
+    const double turns = signal->segments[signal->count - 1].sine ? signal->sine.frequency * route->scene->transient.until : 0.0;
+    if (periods > 1000.0) {
+        snprintf(why, size, "the film rings for %.2g periods", periods);
+    } else if (turns > 1000.0) {
+        snprintf(why, size, "the sine of the drive turns %.2g times", turns);
+    } else if (route->pieces->count > MANY) {
+        snprintf(why, size, "the drive has %zu edges and ramps, which makes %zu netlists", signal->count, route->pieces->count);
+    } else {
+        snprintf(why, size, "the run is very long beside the fastest times of the film");
+    }
+}
+
 /* Refuses runs that would take too long: number l->runs is next, of that fineness. */
 static dea_status afford(const dea_route *route, const levels *l, double fineness, double spent, dea_error *error)
 {
+    char why[200];
     const double wanted = route->scene->accuracy;
     const double runs = least_runs(l, wanted);
-    const double rest = work_of(route, fineness) * (exp2(runs) - 1.0);
-    const double steps = route->pieces->points / fineness * exp2(runs - 1.0);
-    if (spent + rest <= most_work && l->runs <= MOST_LEVELS) {
+    const bill b = {.steps = route->pieces->points / fineness * exp2(runs - 1.0),
+                    .work = spent + work_of(route, fineness) * (exp2(runs) - 1.0)};
+    if (is_affordable(&b, spent) && l->runs <= MOST_LEVELS) {
         return DEA_OK;
     }
-    if (l->runs > 2 && l->error <= wanted) {
-        return dea_fail(
-            error, DEA_ERROR_ENGINE,
-            "%.2g time steps of ngspice leave the balance of energies open by %.1g, at most %g is wanted, which takes "
-            "%.2g steps or more",
-            route->pieces->points / fineness / 2.0, l->residual, 10.0 * wanted, steps);
+    if (l->runs > 1 && l->fine.bounces) {
+        snprintf(why, sizeof why, "%.2g time steps go through the point where the film turns back",
+                 route->pieces->points / fineness / 2.0);
+    } else if (l->runs > 2 && l->error <= wanted) {
+        snprintf(why, sizeof why, "the balance of energies is open by %.1g, at most %g is wanted", l->residual, 10.0 * wanted);
+    } else if (l->runs > 2) {
+        snprintf(why, sizeof why, "%.2g time steps leave an error of %.1g, the scene wants %g",
+                 route->pieces->points / fineness / 2.0, l->error, wanted);
+    } else {
+        explain_length(route, why, sizeof why);
     }
-    if (l->runs > 2) {
-        return dea_fail(error, DEA_ERROR_ENGINE,
-                        "%.2g time steps of ngspice leave an error of %.1g, the scene wants %g, which takes %.2g steps or more",
-                        route->pieces->points / fineness / 2.0, l->error, wanted, steps);
-    }
-    const double periods = route->omega * dea_pieces_ringing(route->pieces) / (2.0 * DEA_PI);
-    if (periods > 1000.0) {
-        return dea_fail(error, DEA_ERROR_ENGINE,
-                        "the film rings for %.2g periods, which takes %.2g time steps of ngspice or more", periods, steps);
-    }
-    return dea_fail(error, DEA_ERROR_ENGINE, "the run takes %.2g time steps of ngspice in %zu pieces or more", steps,
-                    route->pieces->count);
+    return refuse(&b, why, error);
 }
 
 /* One more run, twice as fine as the last; true in *done where the answer is good enough. */
@@ -220,7 +263,7 @@ static dea_status refine_once(const dea_route *route, levels *l, double fineness
         judge(route, l);
         fill_summary(route, l, summary);
         l->residual = summary->residual;
-        const bool settled = l->fine.end != DEA_STATE_FAILED || l->runs >= STUBBORN;
+        const bool settled = l->fine.end != DEA_STATE_FAILED || (l->runs >= STUBBORN && !l->fine.bounces);
         const bool closed = l->fine.end != DEA_STATE_OK || summary->residual <= 10.0 * wanted || l->error <= enough * wanted;
         *done = l->error <= wanted && settled && closed;
     }
@@ -351,7 +394,8 @@ static dea_status can_tell_edges(const dea_route *route, const dea_pace *pace, d
         const double width = s->to - s->from;
         if (s->start != s->end && !s->sine && width < 1e4 * DBL_EPSILON * s->to && pace->fastest < 1e4 * width) {
             return dea_fail(error, DEA_ERROR_ENGINE,
-                            "an edge of %.3g s at %.9g s is too short beside its time for the steps of ngspice",
+                            "an edge of %.3g s at %.9g s is too short beside its time for the steps of ngspice; take --engine ida or a "
+                            "longer rise",
                             width / route->unit, s->from / route->unit);
         }
     }
@@ -370,7 +414,8 @@ static dea_status can_see_branches(const dea_route *route, dea_error *error)
     if (d->linear || until <= most_decades * fastest) {
         return DEA_OK;
     }
-    return dea_fail(error, DEA_ERROR_ENGINE, "a branch of %.3g s in a run of %.3g s is too fast for the tolerances of ngspice",
+    return dea_fail(error, DEA_ERROR_ENGINE, "a branch of %.3g s in a run of %.3g s is too fast for the tolerances of ngspice; take --engine "
+                    "ida",
                     fastest / route->unit, until / route->unit);
 }
 
@@ -386,7 +431,8 @@ static dea_status can_keep_phase(const dea_route *route, const dea_pace *pace, d
         return DEA_OK;
     }
     return dea_fail(error, DEA_ERROR_ENGINE,
-                    "the film rings for %.2g periods, over which ngspice loses a phase of %.1g, the scene wants an error of %g",
+                    "the film rings for %.2g periods, over which ngspice loses a phase of %.1g, the scene wants an error of %g; "
+                    "take --engine ida, a looser accuracy or a shorter run",
                     angle / (2.0 * DEA_PI), angle * drift, route->scene->accuracy);
 }
 

@@ -15,6 +15,7 @@ static const double safety = 9.0;
 static const double doubt = 1.5;       /* most that an error is taken for, over the difference of two runs */
 static const double first_share = 0.1; /* from one tolerance to the next */
 static const double least_tolerance = 1e-14;
+static const double tight = 1e-11; /* a tolerance that sees every ring that rounding leaves */
 
 /* Peak of the displacement over the samples, or a tenth of that over the run where the samples miss it [m]. */
 static double peak(const dea_trace *trace)
@@ -82,11 +83,18 @@ static gap difference(const dea_flight *flight, const dea_scales *scales, const 
     return g;
 }
 
-/* Local tolerance with which a run is likely to be good enough: errors of an explicit method add up over a ring. */
-static double first_tolerance(const dea_flight *flight, double accuracy)
+/* Local tolerance with which a run is likely to be good enough: errors of an explicit method add up over a ring. A corner of a slow
+ * voltage sets off a ring of a velocity like the film's own, 1/(omega T) of its displacement, which no looser run would see. */
+static double first_tolerance(const dea_flight *flight, const dea_scales *scales, double accuracy)
 {
     const dea_dynamics *d = flight->motion.dynamics;
-    return (d->mass > 0.0 && !d->linear ? 1e-3 : 0.1) * accuracy;
+    const double tolerance = (d->mass > 0.0 && !d->linear ? 1e-3 : 0.1) * accuracy;
+    if (!(d->mass > 0.0)) {
+        return tolerance;
+    }
+    const double rate = dea_scales_allowance(offsetof(dea_sample, velocity)) * scales->pace;
+    const double seen = tolerance * fmin(1.0, rate * sqrt(d->mass / flight->motion.stiffness));
+    return fmax(seen, fmin(tolerance, tight));
 }
 
 /* Share by which a tolerance must shrink so that a run of error @p error becomes one whose estimate is half the
@@ -101,7 +109,7 @@ static double next_share(double error, double accuracy)
 static bool refine(dea_flight *flight, const dea_scales *scales, double accuracy, dea_trace traces[2], dea_summary *summary,
                    dea_rate_errors *rates)
 {
-    double tolerance = first_tolerance(flight, accuracy);
+    double tolerance = first_tolerance(flight, scales, accuracy);
     double share = first_share;
     flight->loosest = tolerance;
     dea_flight_run(flight, tolerance, &traces[1], NULL);

@@ -75,6 +75,9 @@ typedef struct dea_average {
 /** What a transient tells besides its samples. Energies are those between start and end of the run [J]. */
 typedef struct dea_summary {
     double error;    /**< estimated error of the displacement, relative to its peak, with what is left out [1] */
+    double velocity_error; /**< estimated error of the velocity, relative to the larger of its peak and the peak of the
+                              displacement over the run's fastest time [1], with what is left out */
+    double current_error;  /**< of the source's current in the same way, with the charge of the film [1]; NAN: no electrical port */
     double omitted;  /**< bound of what is left out, relative to the peak [1], 0: nothing is */
     double work;     /**< put in by the source */
     double electric; /**< stored in the film's capacitance */

@@ -2,10 +2,12 @@
 
 #include "deaspice/needs.h"
 #include "engine/line.h"
+#include "result/scales.h"
 #include "network/swing.h"
 
 #include <math.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdio.h>
 
 enum {
@@ -246,6 +248,8 @@ static dea_status run_transient(const dea_plan *plan, void *session, dea_scene *
     tell_swing((dea_swing){needs.resonance, needs.decay}, summary);
     summary->omitted = needs.bound;
     summary->error += needs.bound;
+    summary->velocity_error += dea_scales_allowance(offsetof(dea_sample, velocity)) * needs.bound;
+    summary->current_error += dea_scales_allowance(offsetof(dea_sample, current)) * needs.bound;
     return status;
 }
 

@@ -15,6 +15,7 @@ static const double ring_share = 0.02; /* of the accuracy: what is left of a rin
 static const double safe_linear = 1.5; /* bound over what the stand-in says, where it is the film itself */
 static const double safe_nonlinear = 4.0;
 static const double doubt = 5.0;   /* what a relative variation of the stiffness adds to it */
+static const double rate_allowance = 10.0; /* accuracies that velocity and current promise */
 static const double missed = 0.01; /* share of the static displacement that counts as peak where the samples see less */
 
 static const double rounding = 1e-12; /* of a stand-in's answer, relative to its peak */
@@ -30,6 +31,7 @@ typedef struct planner {
     double left; /* of the budget [1] */
     double safety;
     double peaks[DEA_SURROGATE_POINTS]; /* of the displacement, as the film itself would have them [m] */
+    double speeds[DEA_SURROGATE_POINTS]; /* of the velocity, likewise [m/s] */
 } planner;
 
 static bool pays(const planner *p, dea_part part)
@@ -45,13 +47,21 @@ static void omit(planner *p, dea_omission omission)
     p->reduction = dea_needs_reduction(p->needs->omissions, p->needs->count);
 }
 
-/* Change of the displacement at a probe over its peak, the larger of the operating points. */
+/* True of the first sample of a film at its bias: it rests, which dea_dynamics_sample() knows without the parts too. */
+static bool is_start(const planner *p, size_t probe)
+{
+    return p->surrogate.scene->transient.from_bias && probe == 0;
+}
+
+/* Change of the displacement at a probe over its peak, or of the velocity against what its column promises; the larger of the
+ * operating points. */
 static double change_at(const planner *p, size_t probe)
 {
     double change = 0.0;
     for (int i = 0; i < p->surrogate.point_count; i++) {
         const size_t k = (size_t)i * p->surrogate.count + probe;
-        const double here = fabs(p->next.u[k] - p->now.u[k]) / p->peaks[i];
+        const double rate = is_start(p, probe) ? 0.0 : fabs(p->next.v[k] - p->now.v[k]) / (rate_allowance * p->speeds[i]);
+        const double here = fmax(fabs(p->next.u[k] - p->now.u[k]) / p->peaks[i], rate);
         change = here <= change ? change : isnan(here) ? (double)INFINITY : here;
     }
     return p->safety * change;
@@ -213,7 +223,9 @@ static double ring_at(const planner *p, double omega, size_t probe)
     double ring = 0.0;
     for (int i = 0; i < p->surrogate.point_count; i++) {
         const size_t k = (size_t)i * p->surrogate.count + probe;
-        const double here = hypot(p->next.u[k] - p->now.u[k], (p->next.v[k] - p->now.v[k]) / omega) / p->peaks[i];
+        const double swing = hypot(p->next.u[k] - p->now.u[k], (p->next.v[k] - p->now.v[k]) / omega);
+        const double rate = probe < p->surrogate.sampled ? omega * swing / (rate_allowance * p->speeds[i]) : 0.0;
+        const double here = fmax(swing / p->peaks[i], rate);
         ring = here <= ring ? ring : isnan(here) ? (double)INFINITY : here;
     }
     return p->safety * ring;
@@ -314,6 +326,34 @@ static double lag_at(const planner *p, double lag, size_t segment, size_t probe)
     return 4.0 * change / s->largest;
 }
 
+/* What the current C U' misses behind R_s, against what its column promises: the charge of a jump flows as
+ * exp(-t/(R_s C))/(R_s C), behind a corner the slope comes to its new value. */
+static double late_current_at(const planner *p, double lag, size_t segment, size_t probe, double steepest)
+{
+    const dea_surrogate *s = &p->surrogate;
+    const dea_segment *here = &s->source.segments[segment];
+    const dea_segment rest = {.end = s->scene->transient.from_bias ? here->start : 0.0};
+    const dea_segment *before = segment > 0 ? here - 1 : &rest;
+    const double slope = dea_segment_slope(&s->source, here, here->from);
+    const double last = segment > 0 ? dea_segment_slope(&s->source, before, before->to) : 0.0;
+    const double change = fabs(here->start - before->end) / lag + fabs(slope - last);
+    return 4.0 * change * exp(-s->ages[probe] / lag) / (rate_allowance * steepest);
+}
+
+/* Largest slope of the source at a sample, no less than what charges the film once within the run [V/s]. */
+static double steepest_of(const planner *p)
+{
+    const dea_surrogate *s = &p->surrogate;
+    double steepest = s->largest / s->scene->transient.until;
+    size_t segment = 0;
+    for (size_t i = 0; i < s->sampled; i++) {
+        const double time = dea_layout_place(s->scene, s->probes[i]);
+        segment = dea_signal_find(&s->source, segment, time);
+        steepest = fmax(steepest, fabs(dea_segment_slope(&s->source, &s->source.segments[segment], time)));
+    }
+    return steepest;
+}
+
 static void try_series(planner *p)
 {
     const dea_surrogate *s = &p->surrogate;
@@ -321,17 +361,20 @@ static void try_series(planner *p)
     const double lag = s->dynamics.series * s->capacitance;
     double late = leak;
     size_t segment = 0;
-    /* the first sample of a film at rest has no charge in any case */
+    const double steepest = steepest_of(p);
+    /* the first sample of a film at rest has no charge in any case, that of a film at its bias only the current of the leakage */
     for (size_t i = s->scene->transient.from_bias ? 0 : 1; i < s->sampled; i++) {
         segment = dea_signal_find(&s->source, segment, dea_layout_place(s->scene, s->probes[i]));
         late = fmax(late, leak + lag_at(p, lag, segment, i));
+        late = is_start(p, i) ? late : fmax(late, late_current_at(p, lag, segment, i, steepest));
     }
     if (late <= one_share * p->left) {
         (void)try(p, (dea_omission){.part = DEA_PART_SERIES, .bound = late});
     }
 }
 
-/* Peaks of the displacement over the probes. */
+/* Peaks of the displacement over the probes, and of the velocity, no less than what moves the film once within the run. The
+ * start of a film from rest, where its peak may be an edge's alone, counts where a sample sees it. */
 static void set_peaks(planner *p)
 {
     const dea_surrogate *s = &p->surrogate;
@@ -341,7 +384,12 @@ static void set_peaks(planner *p)
         for (size_t k = 0; k < s->count; k++) {
             p->peaks[i] = fmax(p->peaks[i], fabs(p->now.u[(size_t)i * s->count + k]));
         }
+        p->speeds[i] = p->peaks[i] / s->scene->transient.until;
+        for (size_t k = is_start(p, 0) ? 1 : 0; k < s->sampled; k++) {
+            p->speeds[i] = fmax(p->speeds[i], fabs(p->now.v[(size_t)i * s->count + k]));
+        }
         p->peaks[i] /= point->excess;
+        p->speeds[i] /= point->excess;
     }
 }
 

@@ -84,7 +84,7 @@ static void set_port(const dea_scene *scene, dea_dynamics *d)
     d->port = !isnan(drive->series_resistance) || !isnan(drive->leakage_resistance);
     d->series = isnan(drive->series_resistance) ? 0.0 : drive->series_resistance;
     if (scene->reduction.series) {
-        d->dropped = scene->transient.from_bias ? 0.0 : d->series;
+        d->dropped = d->series;
         d->series = 0.0;
     }
     d->conductance = isnan(drive->leakage_resistance) ? 0.0 : 1.0 / drive->leakage_resistance;
@@ -166,6 +166,9 @@ dea_status dea_dynamics_open(const dea_scene *scene, const dea_model *model, dea
         return status;
     }
     set_port(scene, d);
+    d->biased = scene->transient.from_bias &&
+                (d->dropped > 0.0 || (scene->reduction.mass && dea_point_mass(scene, &d->point) > 0.0) ||
+                 (scene->reduction.damper && !isnan(scene->material.retardation)));
     d->radius = d->point.coverage * d->point.frame_radius;
     d->mass = scene->reduction.mass ? 0.0 : dea_point_mass(scene, &d->point);
     if (!isnan(d->focal_length) && !(d->focal_length * (d->refractive_index - 1.0) >= d->radius)) {
@@ -383,9 +386,25 @@ bool dea_dynamics_inside(dea_dynamics *dynamics, double u)
     return framed && (!dynamics->port || dea_dynamics_edge(dynamics, u).capacitance > 0.0);
 }
 
+/* The first sample of a film at its bias, whose mass, damper or resistance, left out, would hold it there for the moment. */
+static void sample_biased(dea_dynamics *dynamics, const dea_moment *moment, dea_sample *sample)
+{
+    const double slope = dynamics->dropped > 0.0 ? 0.0 : moment->slope;
+    const dea_moment rest = {
+        .time = moment->time, .source = moment->source, .voltage = moment->voltage, .slope = slope, .u = moment->u};
+    dea_dynamics plain = *dynamics; /* borrows its tapes */
+    plain.biased = false;
+    plain.dropped = 0.0;
+    (void)dea_dynamics_sample(&plain, &rest, sample);
+}
+
 bool dea_dynamics_sample(dea_dynamics *dynamics, const dea_moment *moment, dea_sample *sample)
 {
     dea_row row = dea_row_failed();
+    if (dynamics->biased && moment->time == 0.0) {
+        sample_biased(dynamics, moment, sample);
+        return true;
+    }
     if (dynamics->dropped > 0.0 && moment->time == 0.0) {
         sample_uncharged(dynamics, moment, sample);
         return true;

@@ -26,7 +26,8 @@ typedef struct dea_dynamics {
     double total_share;                    /* sum of their c_i */
     bool port;                             /* a resistance is given: current and charge are wanted */
     double series;                         /* R_s [Ohm], 0: the film sees the source */
-    double dropped;                        /* R_s that is left out and shows in the first sample of a run from rest alone [Ohm], else 0 */
+    double dropped;                        /* R_s that is left out and shows in the first sample alone [Ohm], else 0 */
+    bool biased;                           /* the first sample shows a film at rest under its bias, whatever is left out */
     double conductance;                    /* 1/R_p [S], 0: no leakage */
     double radius;                         /* r_a [m] */
     double focal_length, refractive_index; /* NAN: no optics */

@@ -20,7 +20,7 @@
 #define DEA_VERSION "unknown"
 #endif
 
-enum { SLAB_ROWS = 4096, TEXT_LENGTH = 512, SUMMARIES = 8, AVERAGES = 2 };
+enum { SLAB_ROWS = 4096, TEXT_LENGTH = 512, SUMMARIES = 10, AVERAGES = 2 };
 
 /* Largest number of doubles in one variable of the 64-bit offset format: 2^32 - 4 bytes. */
 static const uint64_t offset_values = UINT64_C(4294967292) / sizeof(double);
@@ -57,6 +57,9 @@ typedef struct figure {
 
 static const figure summaries[SUMMARIES] = {
     {"estimated_error", "estimated error of the displacement, relative to its peak", "1", offsetof(dea_summary, error)},
+    {"estimated_velocity_error", "estimated error of the velocity, relative to its scale", "1",
+     offsetof(dea_summary, velocity_error)},
+    {"estimated_current_error", "estimated error of the current, relative to its scale", "1", offsetof(dea_summary, current_error)},
     {"work_J", "work of the source", "J", offsetof(dea_summary, work)},
     {"electric_energy_J", "change of the energy in the film's capacitance", "J", offsetof(dea_summary, electric)},
     {"elastic_energy_J", "change of the elastic energy", "J", offsetof(dea_summary, elastic)},

@@ -34,6 +34,8 @@ dea_findings dea_findings_begin(const dea_scene *scene, FILE *averages)
                              .layout = dea_layout_of(scene),
                              .averages = averaged ? averages : NULL,
                              .error = none,
+                             .velocity_error = none,
+                             .current_error = none,
                              .residual = none,
                              .pull_in = none,
                              .resonance = {none, none}};
@@ -81,6 +83,8 @@ static void take_transient(dea_findings *findings, size_t number, const void *po
     const dea_sample *samples = point;
     memcpy(&findings->summary, (const char *)point + layout->rows * layout->row_size, sizeof findings->summary);
     findings->error = fmax(findings->error, findings->summary.error);
+    findings->velocity_error = fmax(findings->velocity_error, findings->summary.velocity_error);
+    findings->current_error = fmax(findings->current_error, findings->summary.current_error);
     findings->residual = fmax(findings->residual, findings->summary.residual);
     findings->reduced += findings->summary.omitted > 0.0 ? 1 : 0;
     findings->omitted = fmax(findings->omitted, findings->summary.omitted);
@@ -212,11 +216,24 @@ static void print_omissions(const dea_findings *findings, const dea_engine *engi
     }
 }
 
+/* Estimates of the columns that are rates, each of its own scale. */
+static void print_rates(const dea_findings *findings)
+{
+    if (!isnan(findings->velocity_error)) {
+        fprintf(stderr, " (velocity %.2g", findings->velocity_error);
+        if (!isnan(findings->current_error)) {
+            fprintf(stderr, ", current %.2g", findings->current_error);
+        }
+        fputc(')', stderr);
+    }
+}
+
 static void print_transients(const dea_findings *findings, const dea_engine *engine)
 {
     const char *worst = findings->points > 1 ? "worst " : "";
     if (!isnan(findings->error)) {
         fprintf(stderr, "%sestimated error %.2g of the largest displacement", worst, findings->error);
+        print_rates(findings);
         fputs(isnan(findings->residual) ? "\n" : ", ", stderr);
     }
     if (!isnan(findings->residual)) {

@@ -17,6 +17,7 @@ typedef struct dea_findings {
     size_t points;                  /**< taken so far */
     size_t states[DEA_STATE_COUNT]; /**< rows in each state */
     double error, residual;         /**< the worst of all transients, NAN: none known */
+    double velocity_error, current_error; /**< likewise */
     size_t reduced;                 /**< transients that leave something out */
     double omitted;                 /**< largest bound of what they leave out [1] */
     size_t pulled;                  /**< runs that pull in */

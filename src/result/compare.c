@@ -4,14 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "drive/signal.h"
+#include "engine/line.h"
 #include "network/dynamics.h"
+#include "result/scales.h"
 
 /* Numbers below this share of a column's largest reference value are compared with that instead of with themselves. */
 static const double negligible = 1e-9;
 
-/* Columns that engines must agree on. Velocity and current of a film without mass or resistance are peaks at edges, which no
- * sample tells. */
+/* Columns that engines must agree on. */
 static void choose_columns(dea_comparison *comparison)
 {
     static const struct {
@@ -26,7 +26,9 @@ static void choose_columns(dea_comparison *comparison)
         {DEA_STUDY_SWEEP, offsetof(dea_row, field), DEA_OVER_ITSELF, "field"},
         {DEA_STUDY_TRANSIENT, offsetof(dea_sample, displacement), DEA_OVER_PEAK, "displacement"},
         {DEA_STUDY_TRANSIENT, offsetof(dea_sample, strain), DEA_OVER_PEAK, "strain"},
+        {DEA_STUDY_TRANSIENT, offsetof(dea_sample, velocity), DEA_OVER_PEAK, "velocity"},
         {DEA_STUDY_TRANSIENT, offsetof(dea_sample, force), DEA_OVER_PEAK, "force"},
+        {DEA_STUDY_TRANSIENT, offsetof(dea_sample, current), DEA_OVER_PEAK, "current"},
         {DEA_STUDY_TRANSIENT, offsetof(dea_sample, charge), DEA_OVER_PEAK, "charge"},
         {DEA_STUDY_TRANSIENT, offsetof(dea_sample, focal_length), DEA_OVER_PEAK, "focal_length"},
         {DEA_STUDY_AC, offsetof(dea_response, displacement), DEA_OVER_ITSELF, "displacement"},
@@ -37,7 +39,10 @@ static void choose_columns(dea_comparison *comparison)
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         for (size_t k = 0; known[i].study == comparison->scene->study && k < comparison->layout.column_count; k++) {
             if (comparison->layout.columns[k].offset == known[i].offset) {
-                comparison->columns[comparison->column_count++] = (dea_compared){k, known[i].measure, known[i].head};
+                const double allowance =
+                    known[i].study == DEA_STUDY_TRANSIENT ? dea_scales_allowance(known[i].offset) : 1.0;
+                comparison->columns[comparison->column_count++] =
+                    (dea_compared){k, known[i].measure, known[i].head, allowance};
             }
         }
     }
@@ -64,29 +69,6 @@ static void set_least_response(dea_comparison *comparison)
     dea_dynamics_close(&dynamics);
 }
 
-/* A hundredth of what the largest voltage of the run would do at rest. */
-static void set_least(dea_comparison *comparison)
-{
-    dea_dynamics dynamics;
-    dea_signal signal = {0};
-    const dea_scene *scene = comparison->scene;
-    if (dea_dynamics_open(scene, scene->models[0], &dynamics, NULL) == DEA_OK &&
-        dea_signal_open(scene, &signal, NULL) == DEA_OK && signal.largest > 0.0) {
-        const double u = dea_dynamics_scale(&dynamics, signal.largest);
-        const dea_edge at = dea_dynamics_edge(&dynamics, 0.0);
-        const dea_sample swing = {.displacement = u,
-                                  .strain = u / dynamics.radius,
-                                  .force = fabs(at.push) * signal.largest * signal.largest,
-                                  .charge = at.capacitance * signal.largest,
-                                  .focal_length = fmax(0.0, dynamics.focal_length)};
-        for (size_t c = 0; c < comparison->column_count; c++) {
-            comparison->least[c] = 0.01 * value_of(comparison, (const char *)&swing, c);
-        }
-    }
-    dea_signal_close(&signal);
-    dea_dynamics_close(&dynamics);
-}
-
 /* Largest magnitude of a column over the rows of a point. */
 static double peak_of(const dea_comparison *comparison, const char *point, size_t number)
 {
@@ -95,6 +77,23 @@ static double peak_of(const dea_comparison *comparison, const char *point, size_
         peak = fmax(peak, fabs(value_of(comparison, point + i * comparison->layout.row_size, number)));
     }
     return peak;
+}
+
+/* What the columns of a point of the reference count by. */
+static void find_peaks(const dea_comparison *comparison, size_t number, const char *point, double peaks[DEA_COMPARED_COLUMNS])
+{
+    const bool moving = comparison->scene->study == DEA_STUDY_TRANSIENT;
+    dea_sample of = dea_sample_refused(0.0, 0.0, DEA_STATE_OK);
+    if (moving) {
+        dea_scene here = *comparison->scene;
+        dea_axes_place(&here, number);
+        const dea_scales scales = dea_scales_open(&here, here.models[0]);
+        of = dea_scales_of(&scales, (const dea_sample *)(const void *)point, comparison->layout.rows);
+    }
+    for (size_t c = 0; c < comparison->column_count; c++) {
+        peaks[c] = moving ? value_of(comparison, (const char *)&of, c)
+                          : fmax(peak_of(comparison, point, c), comparison->least[c]);
+    }
 }
 
 static double angle_between(double a, double b)
@@ -208,8 +207,8 @@ static void take_point(dea_comparison *comparison, size_t number, const char *po
     if (comparison->filling) {
         memcpy(reference, point, layout->point_size);
     }
+    find_peaks(comparison, number, reference, peaks);
     for (size_t c = 0; c < comparison->column_count; c++) {
-        peaks[c] = fmax(peak_of(comparison, reference, c), comparison->least[c]);
         comparison->scale[c] = fmax(comparison->scale[c], peaks[c]);
     }
     if (!comparison->filling) {
@@ -225,9 +224,7 @@ dea_status dea_comparison_open(dea_comparison *comparison, const dea_scene *scen
     *comparison =
         (dea_comparison){.scene = scene, .layout = dea_layout_of(scene), .points = dea_scene_point_count(scene), .filling = true};
     choose_columns(comparison);
-    if (scene->study == DEA_STUDY_TRANSIENT) {
-        set_least(comparison);
-    } else if (scene->study == DEA_STUDY_AC) {
+    if (scene->study == DEA_STUDY_AC) {
         set_least_response(comparison);
     }
     dea_comparison_forget(comparison);
@@ -266,7 +263,7 @@ double dea_comparison_worst(const dea_comparison *comparison)
 {
     double worst = fmax(comparison->mean, comparison->swing);
     for (size_t c = 0; c < comparison->column_count; c++) {
-        worst = fmax(worst, comparison->worst[c]);
+        worst = fmax(worst, comparison->worst[c] / comparison->columns[c].allowance);
     }
     return worst;
 }

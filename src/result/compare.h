@@ -5,12 +5,12 @@
 #include "deaspice/result.h"
 #include "deaspice/scene.h"
 
-enum { DEA_COMPARED_COLUMNS = 5 };
+enum { DEA_COMPARED_COLUMNS = 7 };
 
 /* How the difference of two numbers counts. */
 typedef enum dea_measure {
     DEA_OVER_ITSELF, /* relative to the reference's own number */
-    DEA_OVER_PEAK,   /* relative to the largest of its column over the run */
+    DEA_OVER_PEAK,   /* relative to the scale of its column over the run (result/scales.h) */
     DEA_OVER_RADIAN  /* an angle in degrees: absolute, in radian, whole turns taken off */
 } dea_measure;
 
@@ -19,6 +19,7 @@ typedef struct dea_compared {
     size_t column; /* of the layout */
     dea_measure measure;
     const char *head;
+    double allowance; /* accuracies that the column promises */
 } dea_compared;
 
 /* The reference points of one model, and what the points that come after them differ by. */
@@ -53,7 +54,7 @@ void dea_comparison_forget(dea_comparison *comparison);
 /* Takes points in any order: into the reference, or against it. Rows that one of the two did not solve are not compared.
  * @return DEA_OK, DEA_ERROR_ENGINE (more points than the study has) */
 dea_status dea_comparison_take(dea_comparison *comparison, size_t first, const void *points, size_t count, dea_error *error);
-/* Largest difference over the compared columns and figures; rows whose states differ do not count here. */
+/* Largest difference over the compared columns and figures, each over its allowance; rows whose states differ do not count here. */
 double dea_comparison_worst(const dea_comparison *comparison);
 
 #endif

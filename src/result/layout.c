@@ -89,7 +89,7 @@ dea_summary *dea_layout_summary(const dea_layout *layout, void *point)
 dea_summary dea_summary_failed(void)
 {
     const double none = (double)NAN;
-    dea_summary summary = {none, 0.0, none, none, none, none, none, none, none, none, {{none, none}}};
+    dea_summary summary = {none, none, none, 0.0, none, none, none, none, none, none, none, none, {{none, none}}};
     for (size_t i = 0; i < DEA_WINDOWS; i++) {
         summary.averages[i] = (dea_average){none, none};
     }

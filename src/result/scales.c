@@ -46,7 +46,7 @@ static double change_within(const dea_signal *signal, const dea_segment *segment
 /* 1/T; @p follows: what changes with the voltage itself does so at once, and a jump of it is no rate. */
 static double pace_of(const dea_signal *signal, double first, double time, bool follows)
 {
-    double pace = 0.0, before = first;
+    double pace = 1.0 / signal->segments[signal->count - 1].to, before = first;
     for (size_t i = 0; i < signal->count; i++) {
         const dea_segment *segment = &signal->segments[i];
         double width;
@@ -112,4 +112,19 @@ dea_sample dea_scales_of(const dea_scales *scales, const dea_sample *samples, si
     peak.current =
         fmax(peak.current, peak.charge * scales->charging + scales->motional * peak.displacement * scales->pace);
     return peak;
+}
+
+/* 0 / 0 = 0: what neither moves nor charges has no error. */
+static double share(double error, double scale)
+{
+    return error > 0.0 ? error / scale : 0.0;
+}
+
+void dea_scales_tell(const dea_scales *scales, const dea_sample *samples, size_t count, dea_rate_errors errors,
+                     dea_summary *summary)
+{
+    const dea_sample scale = dea_scales_of(scales, samples, count);
+    const bool port = count > 0 && !isnan(samples[0].current);
+    summary->velocity_error = share(errors.velocity, scale.velocity);
+    summary->current_error = port ? share(errors.current, scale.current) : (double)NAN;
 }

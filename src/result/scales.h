@@ -11,7 +11,8 @@
  *
  * t is the time in which the film answers: the largest of sqrt(m/K), tau_KV and R C of those that it has, as each holds back what
  * is faster (current: R C alone). A film that has none of them follows its voltage, so that its velocity in a jump is no number
- * of the run; it creeps behind it in t = 1/sum(g_i/tau_i), its g of the instantaneous modulus. */
+ * of the run; it creeps behind it in t = 1/sum(g_i/tau_i), its g of the instantaneous modulus. T is at
+ * most the run itself: what rounding does to a film at rest is nothing. */
 #ifndef DEA_SCALES_H
 #define DEA_SCALES_H
 
@@ -25,6 +26,11 @@ typedef struct dea_scales {
     double motional;  /* C' U_max: current of a velocity [A s/m] */
 } dea_scales;
 
+/* Largest difference that a column may have from the truth, in its unit. */
+typedef struct dea_rate_errors {
+    double velocity, current; /* [m/s], [A] */
+} dea_rate_errors;
+
 /* Accuracies that a column of a transient promises, relative to its scale: 1 for displacement and strain, 10 for the others. */
 double dea_scales_allowance(size_t offset);
 
@@ -32,5 +38,9 @@ double dea_scales_allowance(size_t offset);
 dea_scales dea_scales_open(const dea_scene *scene, const dea_model *model);
 /* Scales of the columns over the rows of a run that have numbers, in the fields of a sample; time and voltage 0. */
 dea_sample dea_scales_of(const dea_scales *scales, const dea_sample *samples, size_t count);
+
+/* Errors of velocity and current over their scales, into the summary. */
+void dea_scales_tell(const dea_scales *scales, const dea_sample *samples, size_t count, dea_rate_errors errors,
+                     dea_summary *summary);
 
 #endif

@@ -168,6 +168,8 @@ static void point_make(const dea_scene *scene, const dea_layout *layout, size_t 
     if (scene->study == DEA_STUDY_TRANSIENT) {
         const double x = (double)number;
         *dea_layout_summary(layout, point) = (dea_summary){.error = 1e-9,
+                                                           .velocity_error = 2e-9,
+                                                           .current_error = 3e-9,
                                                            .work = 1.0 + x,
                                                            .electric = 2.0 + x,
                                                            .elastic = 3.0 + x,
@@ -568,6 +570,7 @@ static void netcdf_of_a_transient_holds_time_samples_and_summaries(void **state)
         const size_t window[] = {number / 12, number / 4 % 3, number % 4, 1};
         assert_true(netcdf_value(library, path, "displacement_m", place) == sample_displacement(number, 28.0));
         assert_true(netcdf_value(library, path, "work_J", place) == 1.0 + (double)number);
+        assert_true(netcdf_value(library, path, "estimated_velocity_error", place) == 2e-9);
         assert_true(netcdf_value(library, path, "resonance_Hz", place) == 700.0 + (double)number);
         assert_true(netcdf_value(library, path, "state", place) == (double)DEA_STATE_OK);
         assert_true(netcdf_value(library, path, "average_displacement_m", window) == 2e-3 + (double)number);

@@ -334,7 +334,8 @@ static dea_status run_segments(run *r, dea_summary *summary, dea_error *error)
         close_audit(r, &first, summary);
     }
     tell_averages(r, summary);
-    summary->error = error_of(r);
+    summary->error = summary->velocity_error = error_of(r); /* rounding of modes, whose rates are as exact */
+    summary->current_error = r->dynamics.port ? summary->error : (double)NAN;
     tell_swing(r, summary);
     return status;
 }

@@ -1,9 +1,11 @@
 /* Transients: runs at tighter and tighter tolerances, until two of them show that the answer is good enough. */
 #include <float.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 
 #include "engine/ida/flight.h"
+#include "result/scales.h"
 #include "support/lapack.h"
 
 enum { MOST_RUNS = 8, MOST_FITS = 4 };
@@ -14,6 +16,7 @@ static const double safety = 9.0;
 static const double doubt = 1.5;       /* most that an error is taken for, over the difference of two runs */
 static const double first_share = 0.1; /* from one tolerance to the next */
 static const double least_tolerance = 1e-14;
+static const double tight = 1e-11; /* a tolerance that sees every ring that rounding leaves */
 
 /* Peak of the displacement over the samples, or a tenth of that over the run where the samples miss it [m]. */
 static double peak(const dea_trace *trace)
@@ -39,34 +42,60 @@ static bool covers(const dea_flight *flight, const dea_trace *trace, size_t wind
     return trace->end == DEA_STATE_OK || flight->scene->transient.averages[window].to <= last;
 }
 
-/* Largest difference of two runs: displacement, its means and film voltage relative to their peaks. A velocity that is a state is held to
- * ten times that, relative to its peak and no less than what moves the film by its displacement within the run. */
-static double difference(const dea_flight *flight, const dea_trace *a, const dea_trace *b)
+/* What two runs differ by. */
+typedef struct gap {
+    double answer;         /* of the column that is worst against what it promises, times its allowance [1] */
+    double displacement;   /* of displacement, its means and film voltage, over their peaks [1] */
+    dea_rate_errors rates; /* of velocity and current */
+} gap;
+
+/* Current of the source behind its resistance, where it has one. */
+static double current(const dea_dynamics *d, const dea_moment *m)
 {
-    const double u = peak(b);
-    const double v = fmax(b->largest_v, u / flight->scene->transient.until);
-    const double film = fmax(flight->signal->largest, DBL_MIN);
-    const double share = flight->motion.v >= 0 ? 0.1 : 0.0;
+    return m->charging ? m->charge_slope + m->voltage * d->conductance : d->series > 0.0 ? (m->source - m->voltage) / d->series : 0.0;
+}
+
+/* Largest differences of two runs; velocity and current are held to what their columns promise. */
+static gap difference(const dea_flight *flight, const dea_scales *scales, const dea_trace *a, const dea_trace *b)
+{
+    const dea_dynamics *d = flight->motion.dynamics;
+    const double u = peak(b), film = fmax(flight->signal->largest, DBL_MIN);
     const size_t count = a->count < b->count ? a->count : b->count;
-    double largest = 0.0;
+    double v = DBL_MIN, flow = DBL_MIN; /* peaks */
+    gap g = {0.0, 0.0, {0.0, 0.0}};
     for (size_t i = 0; i < flight->scene->transient.average_count; i++) {
         const bool both = covers(flight, a, i) && covers(flight, b, i);
-        largest = fmax(largest, both ? fabs(mean(flight, a, i) - mean(flight, b, i)) / u : 0.0);
+        g.displacement = fmax(g.displacement, both ? fabs(mean(flight, a, i) - mean(flight, b, i)) / u : 0.0);
     }
     for (size_t i = 0; i < count; i++) {
         const dea_moment *p = &a->moments[i];
         const dea_moment *q = &b->moments[i];
-        const double here = fmax(fabs(p->u - q->u) / u, share * fabs(p->v - q->v) / v);
-        largest = fmax(largest, fmax(here, fabs(p->voltage - q->voltage) / film));
+        const double i_p = current(d, p), i_q = current(d, q);
+        g.displacement = fmax(g.displacement, fmax(fabs(p->u - q->u) / u, fabs(p->voltage - q->voltage) / film));
+        g.rates.velocity = fmax(g.rates.velocity, fabs(p->v - q->v));
+        g.rates.current = fmax(g.rates.current, fabs(i_p - i_q));
+        v = fmax(v, fabs(q->v));
+        flow = fmax(flow, fabs(i_q));
     }
-    return largest;
+    v = fmax(v, u * scales->pace);
+    flow = fmax(flow, film * dea_dynamics_edge(flight->motion.dynamics, 0.0).capacitance * scales->charging);
+    const double rate = fmax(g.rates.velocity / v, g.rates.current / flow);
+    g.answer = fmax(g.displacement, rate / dea_scales_allowance(offsetof(dea_sample, velocity)));
+    return g;
 }
 
-/* Local tolerance with which a run is likely to be good enough: errors of an explicit method add up over a ring. */
-static double first_tolerance(const dea_flight *flight, double accuracy)
+/* Local tolerance with which a run is likely to be good enough: errors of an explicit method add up over a ring. A corner of a slow
+ * voltage sets off a ring of a velocity like the film's own, 1/(omega T) of its displacement, which no looser run would see. */
+static double first_tolerance(const dea_flight *flight, const dea_scales *scales, double accuracy)
 {
     const dea_dynamics *d = flight->motion.dynamics;
-    return (d->mass > 0.0 && !d->linear ? 1e-3 : 0.1) * accuracy;
+    const double tolerance = (d->mass > 0.0 && !d->linear ? 1e-3 : 0.1) * accuracy;
+    if (!(d->mass > 0.0)) {
+        return tolerance;
+    }
+    const double rate = dea_scales_allowance(offsetof(dea_sample, velocity)) * scales->pace;
+    const double seen = tolerance * fmin(1.0, rate * sqrt(d->mass / flight->motion.stiffness));
+    return fmax(seen, fmin(tolerance, tight));
 }
 
 /* Share by which a tolerance must shrink so that a run of error @p error becomes one whose estimate is half the
@@ -78,9 +107,10 @@ static double next_share(double error, double accuracy)
 
 /* Leaves the better run of the last two in traces[1]; false where the accuracy was not reached. A run that broke off is good up
  * to there. */
-static bool refine(dea_flight *flight, double accuracy, dea_trace traces[2], dea_summary *summary)
+static bool refine(dea_flight *flight, const dea_scales *scales, double accuracy, dea_trace traces[2], dea_summary *summary,
+                   dea_rate_errors *rates)
 {
-    double tolerance = first_tolerance(flight, accuracy);
+    double tolerance = first_tolerance(flight, scales, accuracy);
     double share = first_share;
     flight->loosest = tolerance;
     dea_flight_run(flight, tolerance, &traces[1], NULL);
@@ -96,15 +126,18 @@ static bool refine(dea_flight *flight, double accuracy, dea_trace traces[2], dea
         *summary = dea_summary_failed();
         dea_flight_run(flight, tolerance, &traces[1], summary);
         const double shrinks = pow(share, order);
-        const double gap = difference(flight, &traces[0], &traces[1]);
+        const gap apart = difference(flight, scales, &traces[0], &traces[1]);
         const bool failed = traces[1].end == DEA_STATE_FAILED;
 
         const bool comparable = failed || traces[0].count == traces[1].count;
-        summary->error = fmax(gap * fmin(doubt, safety * shrinks), fmax(10.0 * tolerance, 0.1 * accuracy));
-        if ((comparable && summary->error <= accuracy) || failed) {
-            return summary->error <= accuracy;
+        const double trust = fmin(doubt, safety * shrinks), least = fmax(10.0 * tolerance, 0.1 * accuracy);
+        const double worst = fmax(apart.answer * trust, least);
+        summary->error = fmax(apart.displacement * trust, least);
+        *rates = (dea_rate_errors){apart.rates.velocity * trust, apart.rates.current * trust};
+        if ((comparable && worst <= accuracy) || failed) {
+            return worst <= accuracy;
         }
-        share = comparable ? next_share(gap * shrinks, accuracy) : first_share;
+        share = comparable ? next_share(apart.answer * shrinks, accuracy) : first_share;
     }
     return false;
 }
@@ -155,7 +188,9 @@ static dea_status fly(dea_flight *flight, dea_sample *samples, dea_summary *summ
     traces[1].moments = malloc(flight->rows * sizeof *traces[1].moments);
     const bool room = traces[0].moments && traces[1].moments;
     if (room) {
-        const bool reached = refine(flight, flight->scene->accuracy, traces, summary);
+        const dea_scales scales = dea_scales_open(flight->scene, flight->motion.dynamics->model);
+        dea_rate_errors rates = {0.0, 0.0};
+        const bool reached = refine(flight, &scales, flight->scene->accuracy, traces, summary, &rates);
         if (!reached || traces[1].end == DEA_STATE_FAILED) {
             explain(flight, summary, error);
         }
@@ -165,6 +200,10 @@ static dea_status fly(dea_flight *flight, dea_sample *samples, dea_summary *summ
         }
         fill(flight, &traces[1], samples);
         tell_averages(flight, &traces[1], summary);
+        if (!(flight->motion.dynamics->series > 0.0)) { /* the current C U' + C' U v is as good as the velocity */
+            rates.current = scales.motional * rates.velocity;
+        }
+        dea_scales_tell(&scales, samples, flight->rows, rates, summary);
     }
     free(traces[0].moments);
     free(traces[1].moments);

@@ -3,11 +3,13 @@
  * close too. */
 #include <float.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "engine/ngspice/moving.h"
 #include "engine/ngspice/track.h"
+#include "result/scales.h"
 
 /* Most work that all runs of a transient may take, in time steps of a linear network, and how much of that other steps and a
  * netlist take. A scene is refused as early as it can be told that it takes more; once so much is spent that a refusal would come
@@ -33,7 +35,10 @@ typedef struct levels {
     dea_track coarse, fine; /* the last two runs */
     dea_track before;       /* extrapolated from the two before: points and integrals only */
     size_t runs;
-    double error;    /* of the answer */
+    double error;    /* of the answer: that of the column that is worst against what it promises */
+    double displacement;   /* error of displacement and charge */
+    dea_rate_errors rates; /* of velocity and current */
+    dea_scales scales;
     double residual; /* of its energies */
 } levels;
 
@@ -54,24 +59,40 @@ static size_t common(const levels *l)
     return l->coarse.reached < l->fine.reached ? l->coarse.reached : l->fine.reached;
 }
 
-/* Largest difference of displacement and charge, each over its peak. */
-typedef struct gap {
-    double u, charge, u_peak, charge_peak;
-} gap;
+/* Largest differences and peaks of the columns. */
+typedef struct apart {
+    dea_track_point most, peak;
+} apart;
 
-static void widen(gap *g, const dea_track_point *a, const dea_track_point *b)
+static void widen(apart *g, const dea_track_point *a, const dea_track_point *b)
 {
-    g->u = fmax(g->u, fabs(a->u - b->u));
-    g->charge = fmax(g->charge, fabs(a->charge - b->charge));
-    g->u_peak = fmax(g->u_peak, fabs(b->u));
-    g->charge_peak = fmax(g->charge_peak, fabs(b->charge));
+    g->most.u = fmax(g->most.u, fabs(a->u - b->u));
+    g->most.v = fmax(g->most.v, fabs(a->v - b->v));
+    g->most.charge = fmax(g->most.charge, fabs(a->charge - b->charge));
+    g->most.current = fmax(g->most.current, fabs(a->current - b->current));
+    g->peak.u = fmax(g->peak.u, fabs(b->u));
+    g->peak.v = fmax(g->peak.v, fabs(b->v));
+    g->peak.charge = fmax(g->peak.charge, fabs(b->charge));
+    g->peak.current = fmax(g->peak.current, fabs(b->current));
 }
 
-static double largest(const gap *g)
+static double over(double gap, double scale)
 {
-    const double u = g->u > 0.0 ? g->u / g->u_peak : 0.0;
-    const double charge = g->charge > 0.0 ? g->charge / g->charge_peak : 0.0;
-    return fmax(u, charge);
+    return gap > 0.0 ? gap / scale : 0.0;
+}
+
+/* Of displacement and charge. */
+static double largest(const apart *g)
+{
+    return fmax(over(g->most.u, g->peak.u), over(g->most.charge, g->peak.charge));
+}
+
+/* Of velocity and the slope of the charge, over their scales. */
+static double largest_rate(const apart *g, const dea_scales *scales)
+{
+    const double u = fmax(g->peak.u, scales->least.displacement), charge = fmax(g->peak.charge, scales->least.charge);
+    return fmax(over(g->most.v, fmax(g->peak.v, u * scales->pace)),
+                over(g->most.current, fmax(g->peak.current, charge * scales->charging)));
 }
 
 /* True where the film has numbers all over a window in both of the last runs. */
@@ -83,15 +104,15 @@ static bool covers(const dea_route *route, const levels *l, size_t window)
 }
 
 /* The same for the means of the displacement. */
-static void widen_means(const dea_route *route, levels *l, gap *second, gap *fourth)
+static void widen_means(const dea_route *route, levels *l, apart *second, apart *fourth)
 {
     for (size_t i = 0; i < route->scene->transient.average_count; i++) {
         const dea_window *window = &route->scene->transient.averages[i];
         const double width = window->to - window->from;
         const double coarse = l->coarse.integrals[i], fine = l->fine.integrals[i], answer = better(coarse, fine);
         if (covers(route, l, i)) {
-            second->u = fmax(second->u, fabs(fine - coarse) / width);
-            fourth->u = fmax(fourth->u, l->runs > 2 ? fabs(answer - l->before.integrals[i]) / width : 0.0);
+            second->most.u = fmax(second->most.u, fabs(fine - coarse) / width);
+            fourth->most.u = fmax(fourth->most.u, l->runs > 2 ? fabs(answer - l->before.integrals[i]) / width : 0.0);
         }
         l->before.integrals[i] = answer;
     }
@@ -111,8 +132,9 @@ static void tell_averages(const dea_route *route, const levels *l, dea_summary *
  * factors bound the errors of random scenes. */
 static void judge(const dea_route *route, levels *l)
 {
-    gap second = {0};
-    gap fourth = {0};
+    const dea_track_point none = {0.0, 0.0, 0.0, 0.0};
+    apart second = {none, none};
+    apart fourth = second;
     const size_t count = common(l);
     for (size_t i = 0; i < count; i++) {
         const dea_track_point answer = better_point(&l->coarse.points[i], &l->fine.points[i]);
@@ -125,12 +147,18 @@ static void judge(const dea_route *route, levels *l)
         }
     }
     widen_means(route, l, &second, &fourth);
-    l->error = 2.0 * largest(&second);
+    l->displacement = 2.0 * largest(&second);
+    l->rates = (dea_rate_errors){2.0 * second.most.v, 2.0 * second.most.current};
+    double rate = 2.0 * largest_rate(&second, &l->scales);
     if (l->runs > 2) {
-        l->error = fmin(l->error, 2.5 * largest(&fourth));
+        l->displacement = fmin(l->displacement, 2.5 * largest(&fourth));
+        l->rates.velocity = fmin(l->rates.velocity, 2.5 * fourth.most.v);
+        l->rates.current = fmin(l->rates.current, 2.5 * fourth.most.current);
+        rate = fmin(rate, 2.5 * largest_rate(&fourth, &l->scales));
     }
+    l->error = fmax(l->displacement, rate / dea_scales_allowance(offsetof(dea_sample, velocity)));
     if (l->coarse.reached != l->fine.reached || l->coarse.end != l->fine.end) {
-        l->error = INFINITY;
+        l->error = l->displacement = INFINITY;
     }
 }
 
@@ -151,7 +179,7 @@ static void fill_summary(const dea_route *route, const levels *l, dea_summary *s
     const dea_audit *coarse = &l->coarse.audit;
     const dea_audit *fine = &l->fine.audit;
     *summary = dea_summary_failed();
-    summary->error = l->error;
+    summary->error = l->displacement;
     if (l->fine.end != DEA_STATE_OK || l->coarse.end != DEA_STATE_OK) {
         return;
     }
@@ -313,6 +341,16 @@ static dea_moment moment_at(const dea_route *route, size_t index, size_t *segmen
                         .charge_slope = point->current};
 }
 
+/* Errors of the rates; where no series resistance makes the charge a state, its slope C U' + C' U v is as good as the velocity. */
+static void tell_rates(const dea_route *route, const levels *l, const dea_sample *samples, dea_summary *summary)
+{
+    dea_rate_errors errors = l->rates;
+    if (!(route->dynamics->series > 0.0)) {
+        errors.current = l->scales.motional * errors.velocity;
+    }
+    dea_scales_tell(&l->scales, samples, route->samples, errors, summary);
+}
+
 static void fill_samples(const dea_route *route, const levels *l, dea_sample *samples)
 {
     const size_t count = common(l);
@@ -442,7 +480,7 @@ static dea_status run_on(dea_route *route, dea_sample *samples, dea_summary *sum
     const dea_pace pace = pace_of_run(route->dynamics, route->signal);
     const bool quiet = transient->from_bias || route->signal->segments[0].start == 0.0;
     dea_pieces pieces;
-    levels l = {.error = INFINITY};
+    levels l = {.error = INFINITY, .scales = dea_scales_open(route->scene, route->dynamics->model)};
     pieces.pieces = NULL;
     dea_status status = can_tell_edges(route, &pace, error);
     if (status == DEA_OK) {
@@ -464,6 +502,7 @@ static dea_status run_on(dea_route *route, dea_sample *samples, dea_summary *sum
     }
     if (status == DEA_OK) {
         fill_samples(route, &l, samples);
+        tell_rates(route, &l, samples, summary);
     }
     free(l.coarse.points);
     free(l.fine.points);

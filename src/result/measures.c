@@ -2,13 +2,19 @@
 
 #include <math.h>
 
-static const double settled = 0.02;   /* of the change of an edge */
+#include "network/dynamics.h"
+
+static const double band = 0.02;      /* of the change of an edge: within it the film has settled */
 static const double prominent = 1e-6; /* a peak that rises less than this share of itself is rounding */
 
-static double mix(double a, double b, double share)
-{
-    return share <= 0.0 ? a : share >= 1.0 ? b : a + share * (b - a); /* exact at the ends, also beside a sample without number */
-}
+/* Intervals behind an edge in which a film without a swing may do something faster than its samples show. */
+enum { SHARP = 4 };
+
+/* Share of an interval within which an edge counts as a jump. */
+static const double short_rise = 0.1;
+
+/* Parts of an interval between samples: with twenty samples a swing their straight lines miss 5e-5 of its amplitude. */
+enum { PARTS = 16 };
 
 /* Number of the last sample at or before @p time. */
 static size_t sample_before(const dea_sample *samples, size_t count, double time)
@@ -21,65 +27,115 @@ static size_t sample_before(const dea_sample *samples, size_t count, double time
     return low;
 }
 
-static double displacement_at(const dea_sample *samples, size_t count, double time)
+/* A state at or between samples. */
+typedef struct place {
+    double time, u, v;
+} place;
+
+static place place_of(const dea_sample *s)
 {
-    const size_t i = sample_before(samples, count, time);
-    const dea_sample *a = &samples[i], *b = &samples[i + 1 < count ? i + 1 : i];
-    const double share = b->time > a->time ? (time - a->time) / (b->time - a->time) : 0.0;
-    return mix(a->displacement, b->displacement, share);
+    return (place){s->time, s->displacement, s->velocity};
 }
 
-/* The samples first ... last of the plateau behind an edge, relative: 0 before the edge, 1 at the end. */
+/* Cubic through two places with their velocities, also beyond them. */
+static place between(place a, place b, double time)
+{
+    const double h = b.time - a.time, x = (time - a.time) / h, y = 1.0 - x;
+    return (place){.time = time,
+                   .u = a.u * y * y * (1.0 + 2.0 * x) + b.u * x * x * (1.0 + 2.0 * y) + h * x * y * (a.v * y - b.v * x),
+                   .v = a.v * y * (1.0 - 3.0 * x) + b.v * x * (1.0 - 3.0 * y) + 6.0 * (b.u - a.u) / h * x * y};
+}
+
+/* An edge, and the trace behind it up to the last sample of its plateau. */
 typedef struct plateau {
     const dea_sample *samples;
-    size_t first, last; /* sample at or before the edge, last sample of the plateau */
-    double begin, edge, change;
+    size_t first, last; /* sample at or before the edge, last sample */
+    place edge;         /* the state where it begins */
+    double ramp;        /* how long it takes [s] */
+    double change;      /* of the displacement, from the edge to where the film would relax to [m] */
+    bool swings;        /* the samples show the film's swing */
 } plateau;
 
-static double share_of(const plateau *p, size_t i)
+static place begin_of(const plateau *p, size_t i)
 {
-    return i == p->first ? 0.0 : (p->samples[i].displacement - p->begin) / p->change;
+    return i == p->first ? p->edge : place_of(&p->samples[i]);
 }
 
-static double time_of(const plateau *p, size_t i)
+/* True where the trace inside interval @p i is not the cubic: something is faster than its samples. */
+static bool is_sharp(const plateau *p, size_t i)
 {
-    return i == p->first ? p->edge : p->samples[i].time;
+    const double from = begin_of(p, i).time, to = p->samples[i + 1].time, corner = p->edge.time + p->ramp;
+    if (!p->swings) {
+        return i < p->first + SHARP || from < corner;
+    }
+    return corner > from && corner < to && p->ramp > short_rise * (to - from);
 }
 
-/* When the share passes @p level between samples i - 1 and i. */
-static double crossing(const plateau *p, size_t i, double level)
+/* A share of the change, and the earliest and latest time at which the trace has it. */
+typedef struct point {
+    double share, early, late;
+} point;
+
+/* Part @p k of the trace: 0 is the edge, PARTS parts an interval. Within one that is sharp nothing is known but that it ends. */
+static point part_of(const plateau *p, size_t k)
 {
-    const double before = share_of(p, i - 1), after = share_of(p, i);
-    return mix(time_of(p, i - 1), time_of(p, i), (level - before) / (after - before));
+    const size_t i = p->first + k / PARTS;
+    const place a = begin_of(p, i);
+    if (k % PARTS == 0) {
+        return (point){(a.u - p->edge.u) / p->change, a.time, a.time};
+    }
+    const place b = place_of(&p->samples[i + 1]);
+    if (is_sharp(p, i)) {
+        return (point){(a.u - p->edge.u) / p->change, a.time, b.time};
+    }
+    const double time = a.time + (b.time - a.time) * ((double)(k % PARTS) / PARTS);
+    return (point){(between(a, b, time).u - p->edge.u) / p->change, time, time};
 }
 
-static double first_reach(const plateau *p, double level)
+static size_t parts_of(const plateau *p)
 {
-    for (size_t i = p->first + 1; i <= p->last; i++) {
-        if (share_of(p, i) >= level) {
-            return crossing(p, i, level);
+    return (p->last - p->first) * PARTS;
+}
+
+/* When the share passes @p level between parts k - 1 and k. */
+static dea_interval crossing(const plateau *p, size_t k, double level)
+{
+    const point a = part_of(p, k - 1), b = part_of(p, k);
+    if (a.late > a.early) {
+        return (dea_interval){a.early, a.late};
+    }
+    const double time = a.late + (b.early - a.late) * (level - a.share) / (b.share - a.share);
+    return (dea_interval){time, time};
+}
+
+static dea_interval first_reach(const plateau *p, double level)
+{
+    for (size_t k = 1; k <= parts_of(p); k++) {
+        if (part_of(p, k).share >= level) {
+            return crossing(p, k, level);
         }
     }
-    return (double)NAN;
+    return (dea_interval){(double)NAN, (double)NAN};
 }
 
-static double settling_time(const plateau *p)
+/* When the trace is outside of the band for the last time; at the edge where it never is. */
+static dea_interval last_outside(const plateau *p, double width)
 {
-    size_t i = p->last;
-    while (i > p->first && fabs(share_of(p, i) - 1.0) <= settled) {
-        i--;
+    size_t k = parts_of(p);
+    while (k > 0 && fabs(part_of(p, k).share - 1.0) <= width) {
+        k--;
     }
-    if (i == p->last) {
-        return (double)NAN;
+    if (k == parts_of(p)) {
+        return (dea_interval){(double)NAN, (double)NAN};
     }
-    return crossing(p, i + 1, share_of(p, i) > 1.0 ? 1.0 + settled : 1.0 - settled) - p->edge;
+    return crossing(p, k + 1, part_of(p, k).share > 1.0 ? 1.0 + width : 1.0 - width);
 }
 
 static double overshoot(const plateau *p)
 {
     double largest = 1.0;
-    for (size_t i = p->first + 1; i <= p->last; i++) {
-        largest = fmax(largest, share_of(p, i));
+    for (size_t k = 1; k <= parts_of(p); k++) {
+        largest = fmax(largest, part_of(p, k).share);
     }
     return largest - 1.0;
 }
@@ -87,50 +143,109 @@ static double overshoot(const plateau *p)
 static bool is_whole(const plateau *p)
 {
     for (size_t i = p->first; i <= p->last; i++) {
-        if (!isfinite(p->samples[i].displacement)) {
+        if (!isfinite(p->samples[i].displacement) || !isfinite(p->samples[i].velocity)) {
             return false;
         }
     }
     return true;
 }
 
-static bool edge_measure(const dea_sample *samples, size_t count, double from, double to, dea_edge_answer *edge)
+/* The state at an edge between two samples goes on from before it. */
+static place state_at(const dea_sample *samples, size_t first, double time)
 {
-    plateau p = {.samples = samples, .edge = from};
-    p.first = sample_before(samples, count, from);
-    p.last = sample_before(samples, count, to);
-    if (p.last <= p.first || samples[p.first].time > from) {
+    const place a = place_of(&samples[first]);
+    if (time <= a.time) {
+        return a;
+    }
+    return first > 0 ? between(place_of(&samples[first - 1]), a, time) : (place){time, a.u + a.v * (time - a.time), a.v};
+}
+
+/* Distance from the final value that the swing can still reach, as a share of the change: its amplitude. */
+static double amplitude_of(const plateau *p, double omega)
+{
+    const place end = place_of(&p->samples[p->last]);
+    const double gap = (end.u - p->edge.u) / p->change - 1.0;
+    return p->swings ? hypot(gap, end.v / (omega * p->change)) : fabs(gap);
+}
+
+bool dea_measure_edge(const dea_sample *samples, size_t count, const dea_step_edge *edge, dea_edge_answer *answer)
+{
+    const double none = (double)NAN;
+    const dea_interval never = {none, none};
+    plateau p = {.samples = samples, .ramp = edge->rise, .swings = edge->omega > 0.0};
+    *answer = (dea_edge_answer){.time = edge->from, .rising = edge->rising, .change = none, .overshoot = none};
+    answer->rise = answer->settling = never;
+    if (count == 0) {
         return false;
     }
-    p.begin = displacement_at(samples, count, from);
-    p.change = samples[p.last].displacement - p.begin;
-    const double none = (double)NAN;
-    *edge = (dea_edge_answer){.time = from, .change = p.change, .rise_time = none, .settling_time = none, .overshoot = none};
-    if (is_whole(&p) && fabs(p.change) > 0.0) {
-        edge->rise_time = first_reach(&p, 0.9) - first_reach(&p, 0.1);
-        edge->settling_time = settling_time(&p);
-        edge->overshoot = overshoot(&p);
+    p.first = sample_before(samples, count, edge->from);
+    p.last = sample_before(samples, count, edge->to);
+    if (p.last <= p.first || samples[p.first].time > edge->from) {
+        return false;
+    }
+    p.edge = state_at(samples, p.first, edge->from);
+    answer->change = p.change = edge->final - p.edge.u;
+    if (!is_whole(&p) || !(fabs(p.change) > 0.0)) {
+        return true;
+    }
+    const dea_interval low = first_reach(&p, 0.1), high = first_reach(&p, 0.9);
+    answer->reached = !isnan(first_reach(&p, 1.0 - band).late);
+    answer->settled = amplitude_of(&p, edge->omega) <= band;
+    if (answer->reached) {
+        answer->rise = (dea_interval){fmax(0.0, high.early - low.late), high.late - low.early};
+        answer->overshoot = overshoot(&p);
+    }
+    if (answer->settled) {
+        const dea_interval narrow = last_outside(&p, band - edge->error), wide = last_outside(&p, band + edge->error);
+        answer->settling = (dea_interval){wide.early - edge->from, (isnan(narrow.late) ? edge->to : narrow.late) - edge->from};
     }
     return true;
 }
 
-size_t dea_measure_edges(const dea_scene *scene, const dea_sample *samples, size_t count, dea_edge_answer edges[DEA_EDGES])
+/* Displacement to which the film relaxes under a voltage of the source; NAN where it has none, or the model no time domain. */
+static double relaxed(const dea_scene *scene, double voltage)
+{
+    dea_dynamics dynamics;
+    double u = (double)NAN;
+    if (dea_dynamics_open(scene, scene->models[0], &dynamics, NULL) != DEA_OK ||
+        !dea_dynamics_equilibrium(&dynamics, voltage / (1.0 + dynamics.series * dynamics.conductance), &u)) {
+        u = (double)NAN;
+    }
+    dea_dynamics_close(&dynamics);
+    return u;
+}
+
+size_t dea_measure_edges(const dea_scene *scene, const dea_sample *samples, size_t count, const dea_summary *summary,
+                         dea_edge_answer answers[DEA_EDGES])
 {
     const dea_waveform *wave = &scene->drive.waveform;
     const double until = scene->transient.until;
-    size_t found = 0;
-    if (wave->kind != DEA_WAVE_STEP || count == 0) {
+    if (wave->kind != DEA_WAVE_STEP) {
         return 0;
     }
     const double next = isnan(wave->period) ? until : fmin(wave->period + wave->step.on, until);
     const double off = isnan(wave->step.off) ? fmin(wave->period, next) : fmin(wave->step.off, next);
-    if (edge_measure(samples, count, wave->step.on, isnan(off) ? next : off, &edges[found])) {
-        edges[found++].rising = true;
-    }
-    if (off < next && edge_measure(samples, count, off, next, &edges[found])) {
-        edges[found++].rising = false;
+    const bool falls = off < next;
+    const double omega = dea_measure_shows(scene, summary) ? 2.0 * DEA_PI * summary->resonance : 0.0;
+    dea_step_edge edge = {.from = wave->step.on, .to = falls ? off : next, .rise = wave->step.rise, .rising = true, .omega = omega};
+    edge.error = isnan(summary->error) ? 0.0 : fmin(summary->error, 0.5 * band);
+    edge.final = relaxed(scene, wave->step.voltage);
+    size_t found = dea_measure_edge(samples, count, &edge, &answers[0]) ? 1 : 0;
+    if (falls) {
+        edge = (dea_step_edge){.from = off, .to = next, .rise = edge.rise, .omega = omega, .error = edge.error, .final = relaxed(scene, 0.0)};
+        found += dea_measure_edge(samples, count, &edge, &answers[found]) ? 1 : 0;
     }
     return found;
+}
+
+bool dea_measure_lives(const dea_scene *scene, const dea_summary *summary)
+{
+    return summary->resonance > 0.0 && exp(-summary->decay * scene->transient.every) > band;
+}
+
+bool dea_measure_shows(const dea_scene *scene, const dea_summary *summary)
+{
+    return summary->resonance * scene->transient.every <= 1.0 / DEA_SAMPLES_A_SWING;
 }
 
 /* Vertex of the parabola through three points of ln(magnitude) over ln(frequency), the middle one being the largest. */

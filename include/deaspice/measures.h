@@ -44,11 +44,8 @@ typedef struct dea_edge_answer {
 enum { DEA_SAMPLES_A_SWING = 20 };
 enum { DEA_EDGES = 2 };
 
-/** What a frequency response tells. */
-typedef struct dea_band {
-    double resonance; /**< highest peak of the displacement per volt inside the range [Hz] */
-    double bandwidth; /**< where it first falls to 1/sqrt(2) of its value at the lowest frequency [Hz] */
-} dea_band;
+/** Magnitudes of the displacement per volt at @p count >= 2 frequencies evenly from @p from to @p to [Hz]; false: none. */
+typedef bool dea_magnitudes(void *user, double from, double to, size_t count, double *magnitudes);
 
 /** The answer to one edge; false where no sample lies behind it. */
 DEA_API bool dea_measure_edge(const dea_sample *samples, size_t count, const dea_step_edge *edge, dea_edge_answer *answer);
@@ -60,8 +57,10 @@ DEA_API size_t dea_measure_edges(const dea_scene *scene, const dea_sample *sampl
 DEA_API bool dea_measure_lives(const dea_scene *scene, const dea_summary *summary);
 /** True where the film swings and its samples show how: DEA_SAMPLES_A_SWING of them or more. */
 DEA_API bool dea_measure_shows(const dea_scene *scene, const dea_summary *summary);
-/** Resonance, by a parabola through the highest peak and its neighbours in logarithms, and bandwidth. */
-DEA_API dea_band dea_measure_band(const dea_response *rows, size_t count);
+/** Resonance and bandwidth: found among the rows, then between them by asking for more and more frequencies there. Where nobody
+ * answers (@p ask NULL), as far as the rows tell: by a parabola through the highest peak and its neighbours in logarithms, and by
+ * a straight line in logarithms. */
+DEA_API dea_band dea_measure_band(const dea_response *rows, size_t count, dea_magnitudes *ask, void *user);
 
 #ifdef __cplusplus
 }

@@ -106,7 +106,8 @@ static void take_transient(dea_findings *findings, size_t number, const void *po
 
 static void take_response(dea_findings *findings, const void *point)
 {
-    findings->band = dea_measure_band(point, findings->layout.rows);
+    const dea_layout *layout = &findings->layout;
+    memcpy(&findings->band, (const char *)point + layout->rows * layout->row_size, sizeof findings->band);
     findings->resonance[0] = fmin(findings->resonance[0], findings->band.resonance);
     findings->resonance[1] = fmax(findings->resonance[1], findings->band.resonance);
 }

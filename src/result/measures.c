@@ -271,8 +271,97 @@ static double lowest(const dea_response *rows, size_t from, size_t to)
     return least;
 }
 
+/* Frequencies of one question; rounds of them that shrink any interval to rounding. */
+enum { ASKED = 33, MOST_ROUNDS = 24 };
+
+/* Share of the top that five neighbours may differ by, so that the quartic through them has it to 1e-8 of the peak's width; and
+ * relative width of an interval that is a point. */
+static const double flat = 1e-4;
+static const double narrow = 1e-12;
+
+/* Place of the top of the quartic through five values around the middle one, in steps from there. */
+static double quartic_top(const double *y)
+{
+    const double c1 = (y[0] - 8.0 * y[1] + 8.0 * y[3] - y[4]) / 12.0;
+    const double c2 = (-y[0] + 16.0 * y[1] - 30.0 * y[2] + 16.0 * y[3] - y[4]) / 24.0;
+    const double c3 = (-y[0] + 2.0 * y[1] - 2.0 * y[3] + y[4]) / 12.0;
+    const double c4 = (y[0] - 4.0 * y[1] + 6.0 * y[2] - 4.0 * y[3] + y[4]) / 24.0;
+    double t = 0.0;
+    for (int i = 0; i < 20; i++) {
+        t -= (c1 + t * (2.0 * c2 + t * (3.0 * c3 + t * 4.0 * c4))) / (2.0 * c2 + t * (6.0 * c3 + t * 12.0 * c4));
+    }
+    return fabs(t) <= 1.0 ? t : 0.0;
+}
+
+static size_t largest_of(const double *m)
+{
+    size_t largest = 0;
+    for (size_t i = 1; i < ASKED; i++) {
+        largest = m[i] <= m[largest] ? largest : i; /* also one without a number: nothing damps it */
+    }
+    return largest;
+}
+
+/* The top between two frequencies; NAN where nobody answers. */
+static double refine_top(double from, double to, dea_magnitudes *ask, void *user)
+{
+    double m[ASKED];
+    for (int round = 0; round < MOST_ROUNDS && to - from > narrow * to; round++) {
+        const double step = (to - from) / (ASKED - 1);
+        if (!ask(user, from, to, ASKED, m)) {
+            return (double)NAN;
+        }
+        size_t k = largest_of(m);
+        if (!isfinite(m[k])) {
+            return from + (double)k * step;
+        }
+        if (k >= 2 && k + 2 < ASKED && fmin(m[k - 2], m[k + 2]) >= (1.0 - flat) * m[k]) {
+            return from + ((double)k + quartic_top(m + k - 2)) * step;
+        }
+        k = k == 0 ? 1 : k == ASKED - 1 ? ASKED - 2 : k;
+        from += (double)(k - 1) * step;
+        to = from + 2.0 * step;
+    }
+    return 0.5 * (from + to);
+}
+
+/* Where the magnitude falls to a level between two frequencies; NAN where nobody answers. */
+static double refine_fall(double from, double to, double level, dea_magnitudes *ask, void *user)
+{
+    double m[ASKED];
+    for (int round = 0; round < MOST_ROUNDS; round++) {
+        const double step = (to - from) / (ASKED - 1);
+        size_t k = 1;
+        if (!ask(user, from, to, ASKED, m)) {
+            return (double)NAN;
+        }
+        while (k + 1 < ASKED && !(m[k] <= level)) {
+            k++;
+        }
+        from += (double)(k - 1) * step;
+        if (step < flat * to) {
+            return from + step * (isfinite(m[k - 1]) ? (m[k - 1] - level) / (m[k - 1] - m[k]) : 0.5);
+        }
+        to = from + step;
+    }
+    return (double)NAN;
+}
+
+/* The resonance between the last two frequencies, where the response still rises from one to the other. */
+static double last_resonance(const dea_response *rows, size_t count, dea_magnitudes *ask, void *user)
+{
+    double m[ASKED];
+    const double from = rows[count - 2].frequency, to = rows[count - 1].frequency;
+    if (!ask(user, from, to, ASKED, m)) {
+        return (double)NAN;
+    }
+    const size_t k = largest_of(m);
+    const bool inside = k > 0 && k < ASKED - 1 && !(m[ASKED - 1] > (1.0 - prominent) * m[k]);
+    return inside ? refine_top(from, to, ask, user) : (double)NAN;
+}
+
 /* The largest peak; below it relaxation may let the response fall from a value that is larger still. */
-static double resonance_of(const dea_response *rows, size_t count)
+static double resonance_of(const dea_response *rows, size_t count, dea_magnitudes *ask, void *user)
 {
     size_t top = 0;
     double before = (double)INFINITY; /* the least magnitude so far */
@@ -284,18 +373,27 @@ static double resonance_of(const dea_response *rows, size_t count)
             top = i;
         }
     }
+    if (ask && top == 0 && count > 1 && rows[count - 1].displacement > rows[count - 2].displacement) {
+        return last_resonance(rows, count, ask, user);
+    }
     if (top == 0 || !(lowest(rows, top + 1, count) < (1.0 - prominent) * rows[top].displacement)) {
         return (double)NAN;
     }
-    return isfinite(rows[top].displacement) ? parabola_top(&rows[top - 1]) : rows[top].frequency;
+    if (!isfinite(rows[top].displacement)) {
+        return rows[top].frequency;
+    }
+    return ask ? refine_top(rows[top - 1].frequency, rows[top + 1].frequency, ask, user) : parabola_top(&rows[top - 1]);
 }
 
-static double bandwidth_of(const dea_response *rows, size_t count)
+static double bandwidth_of(const dea_response *rows, size_t count, dea_magnitudes *ask, void *user)
 {
     for (size_t i = 1; i < count; i++) {
         const double level = rows[0].displacement * sqrt(0.5);
         const double before = rows[i - 1].displacement, after = rows[i].displacement;
         if (before > level && after <= level) {
+            if (ask) {
+                return refine_fall(rows[i - 1].frequency, rows[i].frequency, level, ask, user);
+            }
             const double share = isfinite(before) ? log(level / before) / log(after / before) : 1.0;
             return rows[i - 1].frequency * exp(share * log(rows[i].frequency / rows[i - 1].frequency));
         }
@@ -303,7 +401,7 @@ static double bandwidth_of(const dea_response *rows, size_t count)
     return (double)NAN;
 }
 
-dea_band dea_measure_band(const dea_response *rows, size_t count)
+dea_band dea_measure_band(const dea_response *rows, size_t count, dea_magnitudes *ask, void *user)
 {
-    return (dea_band){resonance_of(rows, count), bandwidth_of(rows, count)};
+    return (dea_band){resonance_of(rows, count, ask, user), bandwidth_of(rows, count, ask, user)};
 }

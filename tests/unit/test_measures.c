@@ -261,9 +261,64 @@ static void resonance_and_bandwidth_are_those_of_a_second_order(void **state)
     for (size_t i = 0; i < 4; i++) {
         const double q = 1.0 - 2.0 * dampings[i] * dampings[i];
         band_make(713.0, dampings[i]);
-        const dea_band band = dea_measure_band(responses, RESPONSES);
+        const dea_band band = dea_measure_band(responses, RESPONSES, NULL, NULL);
         assert_relative(band.resonance, 713.0 * sqrt(q), 1e-5);
         assert_relative(band.bandwidth, 713.0 * sqrt(q + sqrt(q * q + 1.0)), 1e-5);
+    }
+}
+
+/* That response anywhere. */
+typedef struct second {
+    double natural, damping;
+    int asked;
+} second;
+
+static bool answer_second(void *user, double from, double to, size_t count, double *magnitudes)
+{
+    second *s = user;
+    s->asked++;
+    for (size_t i = 0; i < count; i++) {
+        const double x = (from + (to - from) * (double)i / (double)(count - 1)) / s->natural;
+        magnitudes[i] = 1e-9 / hypot(1.0 - x * x, 2.0 * s->damping * x);
+    }
+    return true;
+}
+
+static bool answer_nothing(void *user, double from, double to, size_t count, double *magnitudes)
+{
+    (void)user, (void)from, (void)to, (void)count, (void)magnitudes;
+    return false;
+}
+
+/* As many rows a decade as there may be; a resonance between the last two of them too. */
+static void figures_between_frequencies_are_asked_for(void **state)
+{
+    (void)state;
+    static const double dampings[] = {0.0, 1e-6, 1e-3, 0.05, 0.3, 0.6};
+    static const size_t rates[] = {1, 3, 7, 50, 1000};
+    static const double ends[] = {1e4, 1e4, 737.0};
+    for (size_t i = 0; i < sizeof dampings / sizeof *dampings * 5 * 3; i++) {
+        second s = {.natural = 713.0, .damping = dampings[i / 15]};
+        const size_t rate = rates[i % 5];
+        const double end = ends[i / 5 % 3];
+        size_t count = 0;
+        for (double f = 1.0; count == 0 || responses[count - 1].frequency < end; count++) {
+            f = fmin(pow(10.0, (double)count / (double)rate), end);
+            responses[count] = (dea_response){.frequency = f};
+            const double x = f / s.natural;
+            responses[count].displacement = 1e-9 / hypot(1.0 - x * x, 2.0 * s.damping * x);
+        }
+        const double q = 1.0 - 2.0 * s.damping * s.damping;
+        s.asked = 0;
+        const dea_band band = dea_measure_band(responses, count, answer_second, &s);
+        assert_relative(band.resonance, 713.0 * sqrt(q), 1e-8);
+        if (end > 2000.0) { /* y^2 - 2 q y + 1 = 2/first^2 with y = x^2 */
+            const double first = 1e9 * responses[0].displacement;
+            assert_relative(band.bandwidth, 713.0 * sqrt(q + sqrt(q * q - 1.0 + 2.0 / (first * first))), 1e-8);
+        }
+        assert_true(s.asked < 30);
+        const dea_band none = dea_measure_band(responses, count, answer_nothing, NULL);
+        assert_true(isnan(none.resonance) && isnan(none.bandwidth));
     }
 }
 
@@ -272,7 +327,7 @@ static void overdamped_film_has_a_bandwidth_and_no_resonance(void **state)
     (void)state;
     band_make(5000.0, 5.0);
     const double q = 1.0 - 2.0 * 25.0;
-    const dea_band band = dea_measure_band(responses, RESPONSES);
+    const dea_band band = dea_measure_band(responses, RESPONSES, NULL, NULL);
     assert_true(isnan(band.resonance));
     assert_relative(band.bandwidth, 5000.0 * sqrt(q + sqrt(q * q + 1.0)), 1e-5);
 }
@@ -285,7 +340,7 @@ static void peak_below_a_creeping_start_is_the_resonance(void **state)
         responses[i].displacement *= 1.0 + 20.0 / (1.0 + responses[i].frequency);
     }
     assert_true(responses[0].displacement > 4.0 * 1e-9 / (2.0 * 0.2)); /* far above the peak */
-    assert_relative(dea_measure_band(responses, RESPONSES).resonance, 713.0 * sqrt(1.0 - 0.08), 1e-2);
+    assert_relative(dea_measure_band(responses, RESPONSES, NULL, NULL).resonance, 713.0 * sqrt(1.0 - 0.08), 1e-2);
 }
 
 static void flat_or_broken_responses_have_no_figures(void **state)
@@ -295,14 +350,14 @@ static void flat_or_broken_responses_have_no_figures(void **state)
     for (size_t i = 0; i < RESPONSES; i++) {
         responses[i].displacement = 1e-9 * (1.0 + 1e-13 * (double)(i * 7919 % 13)); /* rounding */
     }
-    dea_band band = dea_measure_band(responses, RESPONSES);
+    dea_band band = dea_measure_band(responses, RESPONSES, NULL, NULL);
     assert_true(isnan(band.resonance) && isnan(band.bandwidth));
     for (size_t i = 0; i < RESPONSES; i++) {
         responses[i].displacement = (double)NAN;
     }
-    band = dea_measure_band(responses, RESPONSES);
+    band = dea_measure_band(responses, RESPONSES, NULL, NULL);
     assert_true(isnan(band.resonance) && isnan(band.bandwidth));
-    band = dea_measure_band(responses, 0);
+    band = dea_measure_band(responses, 0, NULL, NULL);
     assert_true(isnan(band.resonance) && isnan(band.bandwidth));
 }
 
@@ -318,6 +373,7 @@ int main(void)
         cmocka_unit_test(edges_that_a_run_does_not_show_have_no_figures),
         cmocka_unit_test(edges_are_those_of_the_first_period),
         cmocka_unit_test(resonance_and_bandwidth_are_those_of_a_second_order),
+        cmocka_unit_test(figures_between_frequencies_are_asked_for),
         cmocka_unit_test(overdamped_film_has_a_bandwidth_and_no_resonance),
         cmocka_unit_test(peak_below_a_creeping_start_is_the_resonance),
         cmocka_unit_test(flat_or_broken_responses_have_no_figures),

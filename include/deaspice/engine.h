@@ -45,8 +45,10 @@ typedef struct dea_engine {
      * says why. NULL: the engine has no time domain. */
     dea_status (*transient)(void *session, const dea_scene *scene, const dea_model *model, dea_sample *samples,
                             dea_summary *summary, dea_error *error);
-    /** Computes one frequency response: fills the rows of the layout. NULL: the engine has none. */
-    dea_status (*ac)(void *session, const dea_scene *scene, const dea_model *model, dea_response *rows, dea_error *error);
+    /** Computes one frequency response: fills the rows of the layout, and the band unless @p band is NULL. NULL: the engine has
+     * none. */
+    dea_status (*ac)(void *session, const dea_scene *scene, const dea_model *model, dea_response *rows, dea_band *band,
+                     dea_error *error);
     /** Ends a session; NULL is fine. */
     void (*end)(void *session);
 } dea_engine;

@@ -102,16 +102,22 @@ typedef struct dea_response {
     dea_state state;
 } dea_response;
 
+/** What a frequency response tells, between its frequencies too; a resonance and a bandwidth that the range does not hold are NAN. */
+typedef struct dea_band {
+    double resonance; /**< highest peak of the displacement per volt inside the range [Hz] */
+    double bandwidth; /**< where it first falls to 1/sqrt(2) of its value at the lowest frequency [Hz] */
+} dea_band;
+
 enum { DEA_LAYOUT_COLUMNS = 10 };
 
-/** How the result of one point of a study lies in memory: its rows, then its summary. */
+/** How the result of one point of a study lies in memory: its rows, then its summary or its band. */
 typedef struct dea_layout {
     dea_column columns[DEA_LAYOUT_COLUMNS]; /**< numeric columns, in order; the state column follows them */
     size_t column_count;
     size_t row_size;     /**< [bytes] */
     size_t state_offset; /**< of the dea_state in a row [bytes] */
     size_t rows;         /**< of one point, >= 1 */
-    size_t point_size;   /**< rows and summary [bytes] */
+    size_t point_size;   /**< rows and what stands behind them [bytes] */
 } dea_layout;
 
 /** Layout of the scene's study: which columns depends on what the scene has (electrical port, optics). */
@@ -126,6 +132,8 @@ DEA_API void dea_layout_fail(const dea_scene *scene, const dea_layout *layout, v
 DEA_API dea_summary dea_summary_failed(void);
 /** Summary of a transient's point. */
 DEA_API dea_summary *dea_layout_summary(const dea_layout *layout, void *point);
+/** Band of a frequency response's point. */
+DEA_API dea_band *dea_layout_band(const dea_layout *layout, void *point);
 
 #ifdef __cplusplus
 }

@@ -290,7 +290,7 @@ static dea_status run_point(const dea_plan *plan, void *session, const dea_model
     if (here.study == DEA_STUDY_TRANSIENT)
         status = run_transient(plan, session, &here, model, result, error);
     else
-        status = plan->engine->ac(session, &here, model, result, error);
+        status = plan->engine->ac(session, &here, model, result, dea_layout_band(&plan->layout, result), error);
     if (status == DEA_ERROR_USAGE && plan->cut.total > 1) {
         dea_layout_fail(plan->scene, &plan->layout, result);
         return DEA_OK;

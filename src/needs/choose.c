@@ -186,8 +186,8 @@ static dea_status small_error(const dea_scene *scene, const dea_model *model, co
     void *session = NULL;
     dea_status status = engine->begin(&session, error);
     if (status == DEA_OK) {
-        status = engine->ac(session, scene, model, responses, error);
-        status = status == DEA_OK ? engine->ac(session, scene, truth, responses + rows, error) : status;
+        status = engine->ac(session, scene, model, responses, NULL, error);
+        status = status == DEA_OK ? engine->ac(session, scene, truth, responses + rows, NULL, error) : status;
         engine->end(session);
     }
     *change = status == DEA_OK ? response_error(responses, responses + rows, rows) : (double)INFINITY;

@@ -537,7 +537,7 @@ dea_status dea_mobility_write_small(dea_dynamics *dynamics, const dea_mobility_b
     if (band->points_per_decade > 0) {
         fprintf(out, "dec %zu ", band->points_per_decade);
     } else {
-        fputs("lin 1 ", out);
+        fprintf(out, "lin %zu ", band->count > 1 ? band->count : 1);
     }
     dea_netlist_number(out, band->from);
     fputc(' ', out);

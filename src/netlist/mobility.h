@@ -45,10 +45,10 @@ typedef struct dea_mobility_bias {
     double voltage; /* of the film [V] */
 } dea_mobility_bias;
 
-/* Frequencies: points_per_decade of a decade from `from` on; or one alone where they are 0. */
+/* Frequencies: points_per_decade of a decade from `from` on; or, where they are 0, `count` evenly, or one alone. */
 typedef struct dea_mobility_band {
     double from, to; /* [Hz] */
-    size_t points_per_decade;
+    size_t points_per_decade, count;
 } dea_mobility_band;
 
 /* Most vectors of a run: time, displacement, velocity, charge, branches. */

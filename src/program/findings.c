@@ -8,8 +8,9 @@
 #include "program/omissions.h"
 #include "support/number.h"
 
-static const double resolved = 0.1;    /* periods of an oscillation from one sample to the next that still show it */
-static const double negligible = 1e-5; /* overshoot: below it is what an engine's error makes of none */
+static const double negligible = 1e-4; /* overshoot: below it is what samples and an engine's error make of none */
+static const double doubtful = 2e-3;   /* relative width of an interval that is told as such */
+static const double aliased = 0.5;     /* periods from one sample to the next that show another frequency */
 
 static void print_number(FILE *stream, double value)
 {
@@ -19,11 +20,16 @@ static void print_number(FILE *stream, double value)
 }
 
 /* "1.23 ms" */
-static void print_quantity(double value, const char *unit)
+static void print_digits(double value, const char *unit, int digits)
 {
     char text[DEA_NUMBER_LENGTH];
     const dea_scale scale = dea_scale_choose(fabs(value), unit);
-    fprintf(stderr, "%s %s", dea_number_text(text, value * scale.factor, 4), scale.unit);
+    fprintf(stderr, "%s %s", dea_number_text(text, value * scale.factor, digits), scale.unit);
+}
+
+static void print_quantity(double value, const char *unit)
+{
+    print_digits(value, unit, 4);
 }
 
 dea_findings dea_findings_begin(const dea_scene *scene, FILE *averages)
@@ -89,7 +95,9 @@ static void take_transient(dea_findings *findings, size_t number, const void *po
     findings->reduced += findings->summary.omitted > 0.0 ? 1 : 0;
     findings->omitted = fmax(findings->omitted, findings->summary.omitted);
     const dea_scene placed = dea_scene_of_run(findings->scene, number);
-    findings->edge_count = dea_measure_edges(&placed, samples, layout->rows, findings->edges);
+    if (dea_scene_point_count(findings->scene) * findings->scene->model_count == 1) { /* of several runs they are not told */
+        findings->edge_count = dea_measure_edges(&placed, samples, layout->rows, &findings->summary, findings->edges);
+    }
     for (size_t i = 0; i < layout->rows; i++) {
         if (samples[i].state == DEA_STATE_PULL_IN) {
             findings->pulled++;
@@ -102,7 +110,8 @@ static void take_transient(dea_findings *findings, size_t number, const void *po
 
 static void take_response(dea_findings *findings, const void *point)
 {
-    findings->band = dea_measure_band(point, findings->layout.rows);
+    const dea_layout *layout = &findings->layout;
+    memcpy(&findings->band, (const char *)point + layout->rows * layout->row_size, sizeof findings->band);
     findings->resonance[0] = fmin(findings->resonance[0], findings->band.resonance);
     findings->resonance[1] = fmax(findings->resonance[1], findings->band.resonance);
 }
@@ -150,42 +159,94 @@ static void print_amount(const dea_findings *findings)
     fprintf(stderr, "%zu %s%s", count, rows[findings->scene->study], ac ? count == 1 ? "y" : "ies" : count == 1 ? "" : "s");
 }
 
-/* A time that the samples may be too coarse for. */
-static void print_time(const dea_findings *findings, double time)
+/* Three digits, rounded outwards. */
+static double outwards(double value, bool up)
 {
-    const bool unseen = time < findings->scene->transient.every;
-    fputs(unseen ? "less than " : "", stderr);
-    print_quantity(unseen ? findings->scene->transient.every : time, "s");
+    const double unit = pow(10.0, floor(log10(value)) - 2.0), digits = value / unit;
+    return (up ? ceil(digits - 1e-9) : floor(digits + 1e-9)) * unit;
+}
+
+/* A time that samples or the engine's error may leave open. */
+static void print_interval(dea_interval time)
+{
+    if (time.late - time.early <= doubtful * time.late) {
+        fputs("in ", stderr);
+        print_digits(0.5 * (time.early + time.late), "s", 3);
+        return;
+    }
+    fputs(time.early > 0.0 ? "in " : "in less than ", stderr);
+    if (time.early > 0.0) {
+        print_digits(outwards(time.early, false), "s", 3);
+        fputs(" to ", stderr);
+    }
+    print_digits(outwards(time.late, true), "s", 3);
+}
+
+/* Digits behind the point of a percentage that may be off by that share. */
+static int decimals(double error)
+{
+    const double places = floor(-log10(200.0 * error));
+    return places >= 2.0 ? 2 : places > 0.0 ? (int)places : 0;
 }
 
 static void print_edge(const dea_findings *findings, const dea_edge_answer *edge)
 {
-    char text[DEA_NUMBER_LENGTH];
-    if (isnan(edge->overshoot)) {
+    if (isnan(edge->change) || !(fabs(edge->change) > 0.0)) {
         return;
     }
     fprintf(stderr, "%s at ", edge->rising ? "switched on" : "switched off");
     print_quantity(edge->time, "s");
-    fputs(": 10-90 % in ", stderr);
-    print_time(findings, edge->rise_time);
-    fputs(", settled to 2 % in ", stderr);
-    print_time(findings, edge->settling_time);
-    if (edge->overshoot < negligible) {
+    if (!edge->reached) {
+        fputs(": does not settle within the run\n", stderr);
+        return;
+    }
+    fputs(": 10-90 % ", stderr);
+    print_interval(edge->rise);
+    if (edge->settled) {
+        fputs(", settled to 2 % ", stderr);
+        print_interval(edge->settling);
+    } else {
+        fputs(", does not settle within the run", stderr);
+    }
+    if (edge->overshoot < fmax(negligible, 2.0 * findings->summary.error)) {
         fputs(", no overshoot\n", stderr);
         return;
     }
-    fprintf(stderr, ", overshoot %s %%\n", dea_number_text(text, 100.0 * edge->overshoot, 3));
+    const double error = fmax(findings->summary.error, 0.5 * negligible) * (1.0 + edge->overshoot);
+    fprintf(stderr, ", overshoot %.*f %%\n", decimals(error), 100.0 * edge->overshoot);
+}
+
+/* What samples are too coarse for. */
+static void print_aliases(const dea_findings *findings)
+{
+    const dea_scene placed = dea_scene_of_run(findings->scene, 0), *scene = &placed;
+    const double every = scene->transient.every, resonance = findings->summary.resonance;
+    const dea_waveform *wave = &scene->drive.waveform;
+    if (findings->edge_count == 0 && dea_measure_lives(scene, &findings->summary) && every * resonance > aliased) {
+        fputs("samples every ", stderr);
+        print_quantity(every, "s");
+        fputs(" alias the first resonance\n", stderr);
+    }
+    if (wave->kind == DEA_WAVE_SINE && wave->sine.amplitude != 0.0 && 2.0 * every * wave->sine.frequency > aliased) {
+        fputs("samples every ", stderr);
+        print_quantity(every, "s");
+        fputs(" alias the displacement, which follows the square of a sine of ", stderr);
+        print_quantity(wave->sine.frequency, "Hz");
+        fputs("; means do not rest on samples\n", stderr);
+    }
 }
 
 /* How the film answered a step, where the samples can tell. */
 static void print_edges(const dea_findings *findings)
 {
-    const double every = findings->scene->transient.every, resonance = findings->summary.resonance;
-    if (findings->edge_count > 0 && every * resonance > resolved) {
+    const dea_scene placed = dea_scene_of_run(findings->scene, 0), *scene = &placed;
+    const double resonance = findings->summary.resonance;
+    if (findings->edge_count > 0 && dea_measure_lives(scene, &findings->summary) &&
+        !dea_measure_shows(scene, &findings->summary)) {
         fputs("no rise and settling times: samples every ", stderr);
-        print_quantity(every, "s");
+        print_quantity(scene->transient.every, "s");
         fputs(" do not show the first resonance, those every ", stderr);
-        print_quantity(resolved / resonance, "s");
+        print_digits(outwards(1.0 / (DEA_SAMPLES_A_SWING * resonance), false), "s", 3);
         fputs(" would\n", stderr);
         return;
     }
@@ -243,9 +304,10 @@ static void print_transients(const dea_findings *findings, const dea_engine *eng
     if (findings->points == 1 && !isnan(findings->summary.resonance)) {
         fputs("first resonance ", stderr);
         print_quantity(findings->summary.resonance, "Hz");
-        fputc('\n', stderr);
+        fputs(findings->summary.decay > 0.0 ? "\n" : ", undamped: the material has no retardation and no branch\n", stderr);
     }
     if (findings->points == 1) {
+        print_aliases(findings);
         print_edges(findings);
     }
     if (findings->pulled > 0) {

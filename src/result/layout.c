@@ -43,7 +43,7 @@ static void lay_ac(const dea_scene *scene, dea_layout *layout)
     layout->rows = (size_t)ceil(log10(ac->to / ac->from) * (double)ac->points_per_decade * (1.0 - 1e-12)) + 1;
     layout->row_size = sizeof(dea_response);
     layout->state_offset = offsetof(dea_response, state);
-    layout->point_size = layout->rows * sizeof(dea_response);
+    layout->point_size = layout->rows * sizeof(dea_response) + sizeof(dea_band);
 }
 
 dea_layout dea_layout_of(const dea_scene *scene)
@@ -86,6 +86,11 @@ dea_summary *dea_layout_summary(const dea_layout *layout, void *point)
     return (dea_summary *)(void *)((char *)point + layout->rows * layout->row_size);
 }
 
+dea_band *dea_layout_band(const dea_layout *layout, void *point)
+{
+    return (dea_band *)(void *)((char *)point + layout->rows * layout->row_size);
+}
+
 dea_summary dea_summary_failed(void)
 {
     const double none = (double)NAN;
@@ -109,5 +114,7 @@ void dea_layout_fail(const dea_scene *scene, const dea_layout *layout, void *poi
     }
     if (scene->study == DEA_STUDY_TRANSIENT) {
         *dea_layout_summary(layout, point) = dea_summary_failed();
+    } else if (scene->study == DEA_STUDY_AC) {
+        *dea_layout_band(layout, point) = (dea_band){(double)NAN, (double)NAN};
     }
 }

@@ -849,7 +849,7 @@ static void respond(const dea_scene *scene, dea_response *rows, size_t count)
     dea_error error = {0};
     assert_int_equal(dea_layout_of(scene).rows, count);
     assert_null(dea_engine_refuses(dea_engine_find("direct"), scene, scene->models[0]));
-    assert_int_equal(dea_engine_find("direct")->ac(NULL, scene, scene->models[0], rows, &error), DEA_OK);
+    assert_int_equal(dea_engine_find("direct")->ac(NULL, scene, scene->models[0], rows, NULL, &error), DEA_OK);
 }
 
 static double complex phasor(double magnitude, double phase)

@@ -312,6 +312,53 @@ static void every_engine_names_the_same_swing(void **state)
     }
 }
 
+/* |1/(1 + 2 i zeta x - x^2)|: its top at x^2 = 1 - 2 zeta^2, and where it falls to 1/sqrt(2). Frequencies far apart. */
+static void resonance_and_bandwidth_are_right_between_frequencies(void **state)
+{
+    (void)state;
+    static const double dampings[] = {1e-4, 0.02, 0.3, 0.65};
+    static const char *const able[] = {"direct", "ngspice"};
+    for (size_t i = 0; i < 8; i++) {
+        dea_scene scene = moving_scene("lumped", (dea_step){0}, 1.0, 1.0);
+        scene.material.density = 1080.0;
+        const film c = film_of(&scene);
+        const double natural = sqrt(c.k / c.m), zeta = dampings[i / 2], q = 1.0 - 2.0 * zeta * zeta;
+        scene.material.retardation = 2.0 * zeta / natural;
+        scene.study = DEA_STUDY_AC;
+        scene.ac = (dea_ac){.from = 1.0, .to = 5000.0, .points_per_decade = i % 2 ? 3 : 40, .bias = 2000.0};
+        for (size_t e = 0; e < 2; e++) {
+            const outcome o = run(&scene, able[e]);
+            const dea_band band = *dea_layout_band(&o.layout, o.point);
+            const double first = 1.0 / hypot(1.0 - pow(2.0 * DEA_PI / natural, 2.0), 4.0 * DEA_PI * zeta / natural);
+            assert_relative(band.resonance, natural / (2.0 * DEA_PI) * sqrt(q), scene.accuracy);
+            /* falls to 1/sqrt(2) of that at 1 Hz: y^2 - 2 q y + 1 = 2/first^2 with y = x^2 */
+            const double y = q + sqrt(q * q - 1.0 + 2.0 / (first * first));
+            assert_relative(band.bandwidth, natural / (2.0 * DEA_PI) * sqrt(y), scene.accuracy);
+            free(o.point);
+        }
+    }
+}
+
+/* Past the fold nothing is there; without a bias nothing answers; below its resonance a film has none. */
+static void responses_without_a_peak_name_none(void **state)
+{
+    (void)state;
+    static const char *const able[] = {"direct", "ngspice"};
+    dea_scene scene = moving_scene("lame", (dea_step){0}, 1.0, 1.0);
+    scene.study = DEA_STUDY_AC;
+    scene.material.density = 1080.0;
+    const double biases[] = {1.2 * pull_in_voltage(&scene, "lame"), 0.0, 2000.0};
+    for (size_t i = 0; i < 3; i++) {
+        scene.ac = (dea_ac){.from = 1.0, .to = 300.0, .points_per_decade = 5, .bias = biases[i]};
+        for (size_t e = 0; e < 2; e++) {
+            const outcome o = run(&scene, able[e]);
+            const dea_band band = *dea_layout_band(&o.layout, o.point);
+            assert_true(isnan(band.resonance) && isnan(band.bandwidth));
+            free(o.point);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -323,6 +370,8 @@ int main(void)
         cmocka_unit_test(a_window_behind_an_edge_keeps_the_swing_that_samples_miss),
         cmocka_unit_test(a_film_that_pulls_in_has_means_up_to_there),
         cmocka_unit_test(every_engine_names_the_same_swing),
+        cmocka_unit_test(resonance_and_bandwidth_are_right_between_frequencies),
+        cmocka_unit_test(responses_without_a_peak_name_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -270,7 +270,7 @@ static void responses_are_those_of_the_linearised_equations(void **state)
         snprintf(current, sizeof current, "i(vi%d)", i);
         assert_int_equal(dea_layout_of(&scenes[i]).rows, run.points);
         assert_int_equal(engine->begin(&session, &error), DEA_OK);
-        assert_int_equal(engine->ac(session, &scenes[i], scenes[i].models[0], rows, &error), DEA_OK);
+        assert_int_equal(engine->ac(session, &scenes[i], scenes[i].models[0], rows, NULL, &error), DEA_OK);
         engine->end(session);
         for (size_t k = 0; k < run.points; k++) {
             const double complex response = 1e-6 * (child_value(&run, u, k) + I * child_imaginary(&run, u, k));

@@ -302,6 +302,53 @@ static void coarse_samples_tell_no_rise_time(void **state)
     assert_null(strstr(last.err, "10-90"));
 }
 
+#define SWINGING(more, drive, study)                                                                                             \
+    "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"                        \
+    "material: {yeoh: {C1: 178426 Pa, C2: -6023 Pa, C3: 4234 Pa}, permittivity: 2.8, density: 1080 kg/m^3" more "}\n"            \
+    "drive: {waveform: {" drive "}}\nmodel: lumped\nstudy: {transient: {" study "}}\n"
+
+/* What the summary of films says that swing, creep or do neither, by every engine. */
+static void figures_of_a_step_are_those_that_the_film_has(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *scene, *says[3], *hides;
+    } cases[] = {
+        {SWINGING("", "step: {on: 1 ms, voltage: 3 kV}", "until: 20 ms, every: 20 us"),
+         {"first resonance 716.1 Hz, undamped", "does not settle within the run, overshoot 100", "10-90 % in 227 "},
+         "settled"},
+        {SWINGING(", prony: [{g: 0.5, tau: 3 us}]", "step: {on: 2 ms, voltage: 3 kV}", "until: 20 ms, every: 20 us"),
+         {"first resonance 716.1 Hz\n", "does not settle within the run, overshoot 97.9", ""},
+         "undamped"},
+        {SWINGING(", retardation: 5 ms", "step: {on: 2 ms, voltage: 3 kV}", "until: 60 ms, every: 20 us"),
+         {"10-90 % in 11 ms", "settled to 2 % in 19.5 ms", "no overshoot"},
+         "resonance"},
+        {SWINGING(", retardation: 1 ms, prony: [{g: 0.5, tau: 60 s}]", "step: {on: 1 s, voltage: 3 kV}", "until: 11 s, every: 10 ms"),
+         {"switched on at 1 s: does not settle within the run\n", "", ""},
+         "overshoot"},
+        {SWINGING(", retardation: 20 us", "sine: {amplitude: 3 kV, frequency: 50 Hz}", "until: 0.1 s, every: 10 ms"),
+         {"samples every 10 ms alias the displacement, which follows the square of a sine of 50 Hz", "", ""},
+         "10-90"},
+        {SWINGING("", "points: [[0 s, 0 V], [1 ms, 3 kV]]", "until: 0.1 s, every: 1 ms"),
+         {"samples every 1 ms alias the first resonance", "", ""},
+         "10-90"},
+    };
+    static const char *const engines[] = {"direct", "ida", "ngspice"};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        write_file("film.yaml", cases[i].scene);
+        for (size_t e = 0; e < 3; e++) {
+            RUN("run", "film.yaml", "--engine", engines[e], "-o", "film.csv", "--set", "accuracy=1e-5");
+            assert_int_equal(last.status, 0);
+            for (size_t k = 0; k < 3; k++) {
+                if (!strstr(last.err, cases[i].says[k])) {
+                    fail_msg("%s, film %zu: no \"%s\" in: %s", engines[e], i, cases[i].says[k], last.err);
+                }
+            }
+            assert_null(strstr(last.err, cases[i].hides));
+        }
+    }
+}
+
 static void pull_in_of_a_transient_is_physics_and_named(void **state)
 {
     (void)state;
@@ -619,6 +666,7 @@ int main(void)
         cmocka_unit_test(averages_stand_beside_a_result_on_standard_output),
         cmocka_unit_test(runs_over_an_axis_carry_it_in_front),
         cmocka_unit_test(coarse_samples_tell_no_rise_time),
+        cmocka_unit_test(figures_of_a_step_are_those_that_the_film_has),
         cmocka_unit_test(pull_in_of_a_transient_is_physics_and_named),
         cmocka_unit_test(response_tells_resonance_and_bandwidth),
         cmocka_unit_test(runs_are_drawn),

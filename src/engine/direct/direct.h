@@ -9,6 +9,7 @@ const char *dea_direct_refuses_transient(const dea_scene *scene, const dea_model
 /* As the engine's transient() and ac(). */
 dea_status dea_direct_transient(void *session, const dea_scene *scene, const dea_model *model, dea_sample *samples,
                                 dea_summary *summary, dea_error *error);
-dea_status dea_direct_ac(void *session, const dea_scene *scene, const dea_model *model, dea_response *rows, dea_error *error);
+dea_status dea_direct_ac(void *session, const dea_scene *scene, const dea_model *model, dea_response *rows, dea_band *band,
+                         dea_error *error);
 
 #endif

@@ -2,6 +2,7 @@
 #include <complex.h>
 #include <math.h>
 
+#include "deaspice/measures.h"
 #include "engine/direct/direct.h"
 #include "network/dynamics.h"
 
@@ -42,30 +43,53 @@ static dea_response response_at(const dea_dynamics *d, const dea_edge *e, double
                           .impedance_phase = degrees(impedance)};
 }
 
-static void respond(dea_dynamics *d, const dea_scene *scene, dea_response *rows, size_t count)
+/* The film under its bias. */
+typedef struct biased {
+    const dea_dynamics *dynamics;
+    dea_edge edge;
+    double bias, relaxed; /* of the film [V], its stiffness [N/m] */
+} biased;
+
+static dea_response biased_response(const biased *b, double frequency)
+{
+    return response_at(b->dynamics, &b->edge, b->bias, b->relaxed, frequency);
+}
+
+static bool magnitudes(void *user, double from, double to, size_t count, double *out)
+{
+    for (size_t i = 0; i < count; i++) {
+        out[i] = biased_response(user, from + (to - from) * (double)i / (double)(count - 1)).displacement;
+    }
+    return true;
+}
+
+static void respond(dea_dynamics *d, const dea_scene *scene, dea_response *rows, size_t count, dea_band *band)
 {
     const double none = (double)NAN;
-    const double bias = scene->ac.bias / (1.0 + d->series * d->conductance);
+    biased b = {.dynamics = d, .bias = scene->ac.bias / (1.0 + d->series * d->conductance)};
     dea_sample rest = {.state = DEA_STATE_PULL_IN};
-    dea_moment moment = {.source = scene->ac.bias, .voltage = bias};
-    const bool held = dea_dynamics_equilibrium(d, bias, &moment.u) && dea_dynamics_sample(d, &moment, &rest);
-    const dea_edge e = dea_dynamics_edge(d, held ? moment.u : 0.0);
-    const double relaxed = held ? dea_dynamics_stiffness(d, moment.u, bias, true) : none;
+    dea_moment moment = {.source = scene->ac.bias, .voltage = b.bias};
+    const bool held = dea_dynamics_equilibrium(d, b.bias, &moment.u) && dea_dynamics_sample(d, &moment, &rest);
+    b.edge = dea_dynamics_edge(d, held ? moment.u : 0.0);
+    b.relaxed = held ? dea_dynamics_stiffness(d, moment.u, b.bias, true) : none;
     for (size_t i = 0; i < count; i++) {
         const double frequency = dea_layout_place(scene, i);
-        rows[i] =
-            held ? response_at(d, &e, bias, relaxed, frequency) : (dea_response){frequency, none, none, none, none, rest.state};
+        rows[i] = held ? biased_response(&b, frequency) : (dea_response){frequency, none, none, none, none, rest.state};
         rows[i].state = rest.state;
+    }
+    if (band) {
+        *band = dea_measure_band(rows, count, held ? magnitudes : NULL, &b);
     }
 }
 
-dea_status dea_direct_ac(void *session, const dea_scene *scene, const dea_model *model, dea_response *rows, dea_error *error)
+dea_status dea_direct_ac(void *session, const dea_scene *scene, const dea_model *model, dea_response *rows, dea_band *band,
+                         dea_error *error)
 {
     (void)session;
     dea_dynamics dynamics;
     const dea_status status = dea_dynamics_open(scene, model, &dynamics, error);
     if (status == DEA_OK) {
-        respond(&dynamics, scene, rows, dea_layout_of(scene).rows);
+        respond(&dynamics, scene, rows, dea_layout_of(scene).rows, band);
     }
     dea_dynamics_close(&dynamics);
     return status;

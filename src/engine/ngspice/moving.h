@@ -13,6 +13,6 @@ dea_status dea_ngspice_transient(dea_ngspice *library, const dea_scene *scene, c
                                  dea_summary *summary, dea_error *error);
 /* One frequency response, as dea_engine says. */
 dea_status dea_ngspice_ac(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_response *rows,
-                          dea_error *error);
+                          dea_band *band, dea_error *error);
 
 #endif

@@ -212,9 +212,10 @@ static dea_status transient(void *session, const dea_scene *scene, const dea_mod
     return dea_ngspice_transient(session, scene, model, samples, summary, error);
 }
 
-static dea_status ac(void *session, const dea_scene *scene, const dea_model *model, dea_response *rows, dea_error *error)
+static dea_status ac(void *session, const dea_scene *scene, const dea_model *model, dea_response *rows, dea_band *band,
+                     dea_error *error)
 {
-    return dea_ngspice_ac(session, scene, model, rows, error);
+    return dea_ngspice_ac(session, scene, model, rows, band, error);
 }
 
 const dea_engine dea_engine_ngspice = {

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "deaspice/measures.h"
 #include "engine/ngspice/moving.h"
 #include "netlist/mobility.h"
 
@@ -70,29 +71,53 @@ typedef struct response {
     dea_response *rows;
 } response;
 
+/* Spring and film of @p count frequencies; the caller frees the table, also after a failure. */
+static dea_status run_netlist(const response *r, const dea_mobility_band *band, size_t count, dea_ngspice_table *table,
+                              dea_error *error)
+{
+    const char *const names[] = {"lspring#branch", r->dynamics->series > 0.0 ? "film" : "vsource#branch"};
+    char *netlist = NULL;
+    dea_status status = dea_mobility_write_small(r->dynamics, &r->bias, band, &netlist, error);
+    if (status == DEA_OK) {
+        status = dea_ngspice_run_all(r->library, netlist, names, 2, table, error);
+    }
+    if (status == DEA_OK && table->count != count) {
+        status = dea_fail(error, DEA_ERROR_ENGINE, "ngspice gave %zu of %zu frequencies", table->count, count);
+    }
+    free(netlist);
+    return status;
+}
+
+/* Frequencies between the rows: the library counts them evenly from one to another. */
+static bool magnitudes(void *user, double from, double to, size_t count, double *out)
+{
+    const response *r = user;
+    const dea_mobility_band band = {.from = from, .to = to, .count = count};
+    const double stiffness = dea_dynamics_stiffness(r->dynamics, r->bias.u, r->bias.voltage, true);
+    dea_ngspice_table table = {0};
+    dea_error ignored = {0};
+    const bool answered = run_netlist(r, &band, count, &table, &ignored) == DEA_OK;
+    for (size_t i = 0; answered && i < count; i++) {
+        out[i] = hypot(table.columns[0][2 * i], table.columns[0][2 * i + 1]) / stiffness;
+    }
+    dea_ngspice_table_free(&table);
+    return answered;
+}
+
 /* Rows first ... first + count - 1, on one grid. */
 static dea_status run_band(const response *r, size_t first, size_t count, dea_error *error)
 {
     const film_port port = port_of(r->dynamics, &r->bias);
-    const char *const names[] = {"lspring#branch", port.series ? "film" : "vsource#branch"};
     const dea_mobility_band band = {.from = dea_layout_place(r->scene, first),
                                     .to = dea_layout_place(r->scene, first + count - 1) * (1.0 + grid),
                                     .points_per_decade = count > 1 ? r->scene->ac.points_per_decade : 0};
     const double stiffness = dea_dynamics_stiffness(r->dynamics, r->bias.u, r->bias.voltage, true);
-    char *netlist = NULL;
     dea_ngspice_table table = {0};
-    dea_status status = dea_mobility_write_small(r->dynamics, &r->bias, &band, &netlist, error);
-    if (status == DEA_OK) {
-        status = dea_ngspice_run_all(r->library, netlist, names, 2, &table, error);
-    }
-    if (status == DEA_OK && table.count != count) {
-        status = dea_fail(error, DEA_ERROR_ENGINE, "ngspice gave %zu of %zu frequencies", table.count, count);
-    }
+    const dea_status status = run_netlist(r, &band, count, &table, error);
     for (size_t i = 0; i < count && status == DEA_OK; i++) {
         fill_row(&port, &table, i, stiffness, dea_layout_place(r->scene, first + i), &r->rows[first + i]);
     }
     dea_ngspice_table_free(&table);
-    free(netlist);
     return status;
 }
 
@@ -119,7 +144,7 @@ static bool sample_at_bias(const response *r, dea_sample *sample)
 }
 
 /* The last frequency is the end of the band, which need not lie on the grid of the others. */
-static dea_status run_bands(response *r, dea_error *error)
+static dea_status run_bands(response *r, dea_band *band, dea_error *error)
 {
     const size_t count = dea_layout_of(r->scene).rows;
     dea_dynamics *d = r->dynamics;
@@ -137,18 +162,21 @@ static dea_status run_bands(response *r, dea_error *error)
     if (status == DEA_OK) {
         status = run_band(r, count - 1, 1, error);
     }
+    if (status == DEA_OK && band) {
+        *band = dea_measure_band(r->rows, count, magnitudes, r);
+    }
     name_states(r, count, at_bias.state);
     return status;
 }
 
 static dea_status run_inside(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_response *rows,
-                             dea_error *error)
+                             dea_band *band, dea_error *error)
 {
     dea_dynamics dynamics;
     dea_status status = dea_dynamics_open(scene, model, &dynamics, error);
     if (status == DEA_OK) {
         response r = {.library = library, .scene = scene, .dynamics = &dynamics, .rows = rows};
-        status = run_bands(&r, error);
+        status = run_bands(&r, band, error);
     }
     dea_dynamics_close(&dynamics);
     return status;
@@ -170,10 +198,11 @@ static dea_status find_units(const dea_scene *scene, const dea_model *model, dea
 }
 
 dea_status dea_ngspice_ac(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_response *rows,
-                          dea_error *error)
+                          dea_band *band, dea_error *error)
 {
     dea_units units;
     dea_scene inside;
+    dea_band found = {(double)NAN, (double)NAN};
     dea_status status = find_units(scene, model, &units, error);
     if (status == DEA_OK) {
         status = dea_units_enter(&units, scene, &inside, error);
@@ -181,10 +210,13 @@ dea_status dea_ngspice_ac(dea_ngspice *library, const dea_scene *scene, const de
     if (status != DEA_OK) {
         return status;
     }
-    status = run_inside(library, &inside, model, rows, error);
+    status = run_inside(library, &inside, model, rows, band ? &found : NULL, error);
     dea_units_leave(&inside);
     for (size_t i = 0; status == DEA_OK && i < dea_layout_of(scene).rows; i++) {
         dea_units_return_response(&units, &rows[i]);
+    }
+    if (band) {
+        *band = (dea_band){found.resonance * units.time, found.bandwidth * units.time};
     }
     return status;
 }

@@ -116,6 +116,10 @@ static bool place_points(dea_surrogate *s)
 
 /* ---- how soft and how stiff the film becomes on its way */
 
+/* Stiffness over the softest: 0.2 % below the voltage of a fold, or of a film that stiffens so much that its time constants on
+ * the way are not those of its ends. */
+static const double most_varied = 20.0;
+
 enum { STEPS = 16, FARTHEST = 4 }; /* steps from rest to the equilibrium; displacements of that to which a swing is followed */
 
 typedef struct way {
@@ -178,23 +182,21 @@ static bool find_way(dea_surrogate *s, way *w)
            swing_out(s, 0.0, -step, 0.0, jumps * strained, w);
 }
 
-/* A film that softens on its way is looked at where it is softest, too. */
+/* A film that softens on its way is looked at where it is softest, too; false where nothing linear stands for it. */
 static bool place_softest(dea_surrogate *s)
 {
-    way w;
+    const double rest = stiffness_at(s, 0.0, 0.0);
+    way w = {.softest = rest, .stiffest = rest};
     if (s->dynamics.linear || s->loaded == 0.0) {
-        const double softened = s->points[0].push_slope * s->source.largest * s->source.largest / s->points[0].passive;
-        s->variation = fabs(softened) / (1.0 - fmax(0.0, softened));
-        return true;
-    }
-    if (!find_way(s, &w)) {
+        pass(s, 0.0, s->source.largest * s->source.largest, &w);
+    } else if (!find_way(s, &w)) {
         return false;
     }
     s->variation = w.stiffest / w.softest - 1.0;
-    if (w.u != 0.0 && w.u != s->loaded) {
+    if (!s->dynamics.linear && w.u != 0.0 && w.u != s->loaded) {
         add_point(s, w.u, w.square);
     }
-    return true;
+    return w.softest > 0.0 && w.stiffest <= most_varied * w.softest;
 }
 
 /* The current dC/du U v through R takes R of itself off the voltage, and so a drag (dC/du U)^2 R/(1 + (w R C)^2) off a film that

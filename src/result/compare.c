@@ -5,7 +5,9 @@
 #include <string.h>
 
 #include "drive/signal.h"
+#include "engine/line.h"
 #include "network/dynamics.h"
+#include "result/state.h"
 
 /* Numbers below this share of a column's largest reference value are compared with that instead of with themselves. */
 static const double negligible = 1e-9;
@@ -135,8 +137,23 @@ static bool is_failed(const dea_comparison *comparison, const char *row)
     return dea_layout_state(&comparison->layout, row) == DEA_STATE_FAILED;
 }
 
+/* Samples whose states are right for their own numbers: a limit lies between these, which are compared as all others. */
+static bool are_at_limit(const dea_comparison *comparison, size_t number, const char *row, const char *wanted, double peak)
+{
+    dea_sample samples[2];
+    dea_scene placed = *comparison->scene;
+    if (placed.study != DEA_STUDY_TRANSIENT) {
+        return false;
+    }
+    memcpy(&samples[0], row, sizeof *samples);
+    memcpy(&samples[1], wanted, sizeof *samples);
+    dea_axes_place(&placed, number);
+    return dea_state_follows(&placed, &samples[0], negligible * peak) &&
+           dea_state_follows(&placed, &samples[1], negligible * peak);
+}
+
 /* Rows that one of the two did not solve are counted elsewhere: they are no disagreement. */
-static void compare_rows(dea_comparison *comparison, const char *point, const char *reference,
+static void compare_rows(dea_comparison *comparison, size_t number, const char *point, const char *reference,
                          const double peaks[DEA_COMPARED_COLUMNS])
 {
     const dea_layout *layout = &comparison->layout;
@@ -145,7 +162,8 @@ static void compare_rows(dea_comparison *comparison, const char *point, const ch
         if (is_failed(comparison, row) || is_failed(comparison, wanted)) {
             continue;
         }
-        if (dea_layout_state(layout, row) != dea_layout_state(layout, wanted)) {
+        if (dea_layout_state(layout, row) != dea_layout_state(layout, wanted) &&
+            !are_at_limit(comparison, number, row, wanted, peaks[0])) {
             comparison->states++;
             continue;
         }
@@ -213,7 +231,7 @@ static void take_point(dea_comparison *comparison, size_t number, const char *po
         comparison->scale[c] = fmax(comparison->scale[c], peaks[c]);
     }
     if (!comparison->filling) {
-        compare_rows(comparison, point, reference, peaks);
+        compare_rows(comparison, number, point, reference, peaks);
         if (comparison->scene->study == DEA_STUDY_TRANSIENT) {
             compare_summaries(comparison, point, reference, peaks[0]); /* of the displacement */
         }

@@ -1,5 +1,6 @@
 #include "needs/surrogate.h"
 
+#include <float.h>
 #include <stdlib.h>
 
 enum { ALL_BEHIND_A_CORNER = 32 };
@@ -86,11 +87,22 @@ static void add_point(dea_surrogate *s, double u, double square)
                                    .viscous = e.area * e.stress_slope,
                                    .push = e.push,
                                    .push_slope = e.push_slope,
-                                   .square = s->dynamics.linear ? 0.0 : square,
+                                   .square = square,
                                    .excess = 1.0};
-    if (!s->dynamics.linear && s->loaded != 0.0) {
+    if (s->loaded != 0.0) {
         point->excess = fmax(1.0, fabs(e.push * largest / (stiffness_at(s, u, square) * s->loaded)));
     }
+}
+
+/* True where a voltage that softens the film changes on the way. */
+static bool softens_on_the_way(const dea_surrogate *s)
+{
+    bool flat = true;
+    for (size_t i = 0; i < s->source.count; i++) {
+        const dea_segment *segment = &s->source.segments[i];
+        flat = flat && !segment->sine && segment->start == segment->end;
+    }
+    return s->points[0].push_slope != 0.0 && !flat;
 }
 
 /* False where the film would pull in, or already is unstable at rest. */
@@ -108,7 +120,12 @@ static bool place_points(dea_surrogate *s)
         return false;
     }
     add_point(s, 0.0, 0.0);
-    if (!s->dynamics.linear && largest > 0.0) {
+    if (s->dynamics.linear) {
+        s->points[0].excess = 1.0;
+        if (softens_on_the_way(s)) { /* the walk takes the largest voltage of a segment for all of it: here, none */
+            add_point(s, 0.0, DBL_MIN);
+        }
+    } else if (largest > 0.0) {
         add_point(s, s->loaded, largest * largest);
     }
     return true;

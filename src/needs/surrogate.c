@@ -141,8 +141,11 @@ enum { STEPS = 16, FARTHEST = 4 }; /* steps from rest to the equilibrium; displa
 
 typedef struct way {
     double softest, stiffest; /* [N/m] */
+    double least, most;       /* slope of the displacement over U^2, phi/K [m/V^2] */
     double u, square;         /* where it is softest */
 } way;
+
+static const way nowhere = {.softest = (double)INFINITY, .least = (double)INFINITY};
 
 static void pass(dea_surrogate *s, double u, double square, way *w)
 {
@@ -152,7 +155,10 @@ static void pass(dea_surrogate *s, double u, double square, way *w)
         w->u = u;
         w->square = square;
     }
+    const double slope = fabs(dea_dynamics_edge(&s->dynamics, u).push / stiffness);
     w->stiffest = fmax(w->stiffest, stiffness);
+    w->least = fmin(w->least, slope);
+    w->most = fmax(w->most, slope);
 }
 
 /* Goes on from u under a constant voltage until the springs have taken up that energy: as far as a swing gets that starts there
@@ -185,7 +191,6 @@ static bool find_way(dea_surrogate *s, way *w)
     const double square = s->source.largest * s->source.largest;
     const double step = s->loaded / STEPS;
     double pushed = 0.0, strained = 0.0; /* energy of the jump up, and down [J] */
-    *w = (way){.softest = (double)INFINITY};
     for (int i = 0; i <= STEPS; i++) {
         const double u = i < STEPS ? i * step : s->loaded;
         const dea_edge e = dea_dynamics_edge(&s->dynamics, u);
@@ -202,14 +207,14 @@ static bool find_way(dea_surrogate *s, way *w)
 /* A film that softens on its way is looked at where it is softest, too; false where nothing linear stands for it. */
 static bool place_softest(dea_surrogate *s)
 {
-    const double rest = stiffness_at(s, 0.0, 0.0);
-    way w = {.softest = rest, .stiffest = rest};
+    way w = nowhere;
+    pass(s, 0.0, 0.0, &w);
     if (s->dynamics.linear || s->loaded == 0.0) {
         pass(s, 0.0, s->source.largest * s->source.largest, &w);
     } else if (!find_way(s, &w)) {
         return false;
     }
-    s->variation = w.stiffest / w.softest - 1.0;
+    s->variation = fmax(w.stiffest / w.softest, w.most / w.least) - 1.0;
     if (!s->dynamics.linear && w.u != 0.0 && w.u != s->loaded) {
         add_point(s, w.u, w.square);
     }

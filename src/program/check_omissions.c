@@ -158,6 +158,7 @@ static dea_measured measure_choice(const dea_arguments *arguments, const dea_sce
     const double wanted = choice_fine * bound;
     dea_measured m = {.error = run_model(arguments, scene, dea_needs_truth(scene->study), wanted, comparison)};
     comparison->filling = false;
+    comparison->at_limit = bound;
     dea_comparison_forget(comparison);
     m.error += isnan(m.error) ? 0.0 : run_model(arguments, scene, scene->models[0], wanted, comparison);
     m.change = change_of(comparison);

@@ -120,8 +120,8 @@ static double difference(dea_measure measure, double a, double b, double scale, 
     return isfinite(gap) ? gap / over : (double)INFINITY;
 }
 
-/* How much the phase of a number counts: that of one that is negligible beside the largest means nothing, that of a zero is any. Its
- * magnitude is the column before. */
+/* How much the phase of a number counts: that of one that is negligible beside the largest means nothing, that of a zero is any.
+ * Its magnitude is the column before. */
 static double weight_of(const dea_comparison *comparison, const char *row, size_t number)
 {
     if (comparison->columns[number].measure != DEA_OVER_RADIAN) {
@@ -148,8 +148,8 @@ static bool are_at_limit(const dea_comparison *comparison, size_t number, const 
     memcpy(&samples[0], row, sizeof *samples);
     memcpy(&samples[1], wanted, sizeof *samples);
     dea_axes_place(&placed, number);
-    return dea_state_follows(&placed, &samples[0], negligible * peak) &&
-           dea_state_follows(&placed, &samples[1], negligible * peak);
+    return dea_state_follows(&placed, &samples[0], comparison->at_limit * peak) &&
+           dea_state_follows(&placed, &samples[1], comparison->at_limit * peak);
 }
 
 /* Rows that one of the two did not solve are counted elsewhere: they are no disagreement. */
@@ -203,8 +203,7 @@ static void compare_summaries(dea_comparison *comparison, const char *point, con
     }
     for (size_t i = 0; i < comparison->scene->transient.average_count; i++) {
         const double found = a.averages[i].displacement, wanted = b.averages[i].displacement;
-        comparison->mean =
-            fmax(comparison->mean, difference(DEA_OVER_PEAK, found, wanted, 0.0, fmax(peak, fabs(wanted))));
+        comparison->mean = fmax(comparison->mean, difference(DEA_OVER_PEAK, found, wanted, 0.0, fmax(peak, fabs(wanted))));
     }
     comparison->swing = fmax(comparison->swing, swing_gap(&a, &b));
 }
@@ -240,8 +239,11 @@ static void take_point(dea_comparison *comparison, size_t number, const char *po
 
 dea_status dea_comparison_open(dea_comparison *comparison, const dea_scene *scene, dea_error *error)
 {
-    *comparison =
-        (dea_comparison){.scene = scene, .layout = dea_layout_of(scene), .points = dea_scene_point_count(scene), .filling = true};
+    *comparison = (dea_comparison){.scene = scene,
+                                   .layout = dea_layout_of(scene),
+                                   .points = dea_scene_point_count(scene),
+                                   .filling = true,
+                                   .at_limit = negligible};
     choose_columns(comparison);
     if (scene->study == DEA_STUDY_TRANSIENT) {
         set_least(comparison);

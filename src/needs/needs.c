@@ -190,10 +190,9 @@ static double mark_of(const planner *p, const dea_omission *omission)
 
 /* A mass acts by u'', and a damper differs from its branch by c tau^2 S'': where the film follows a slow voltage, u'' = u_P P'' +
  * u_PP P'^2 with P = U^2, and u_PP grows with one more power of the softening than u_P does, which the stand-ins have. */
-static double curvature_of(const planner *p, const dea_omission *omission)
+static double curvature_of(const planner *p, dea_part part, dea_branch_form form)
 {
-    const bool second =
-        omission->part == DEA_PART_MASS || (omission->part == DEA_PART_BRANCH && omission->form == DEA_BRANCH_DAMPER);
+    const bool second = part == DEA_PART_MASS || part == DEA_PART_RING || form == DEA_BRANCH_DAMPER;
     return second ? (1.0 + p->surrogate.variation) * excess_of(&p->surrogate) : 1.0;
 }
 
@@ -203,7 +202,7 @@ static bool try(planner *p, dea_omission omission)
     if (!pays(p, omission.part) || !solve_with(p, &omission)) {
         return false;
     }
-    omission.bound += curvature_of(p, &omission) * change_of(p) + rounding;
+    omission.bound += curvature_of(p, omission.part, omission.form) * change_of(p) + rounding;
     if (omission.bound <= one_share * p->left) {
         omission.bound += mark_of(p, &omission);
     }
@@ -228,7 +227,7 @@ static double ring_at(const planner *p, double omega, size_t probe)
         const double here = fmax(swing / p->peaks[i], rate);
         ring = here <= ring ? ring : isnan(here) ? (double)INFINITY : here;
     }
-    return p->safety * ring;
+    return curvature_of(p, DEA_PART_RING, DEA_BRANCH_WHOLE) * p->safety * ring;
 }
 
 /* Angular frequency of the film at rest, its branches held [rad/s]. */

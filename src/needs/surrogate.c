@@ -1,5 +1,6 @@
 #include "needs/surrogate.h"
 
+#include <float.h>
 #include <stdlib.h>
 
 enum { ALL_BEHIND_A_CORNER = 32 };
@@ -86,11 +87,22 @@ static void add_point(dea_surrogate *s, double u, double square)
                                    .viscous = e.area * e.stress_slope,
                                    .push = e.push,
                                    .push_slope = e.push_slope,
-                                   .square = s->dynamics.linear ? 0.0 : square,
+                                   .square = square,
                                    .excess = 1.0};
-    if (!s->dynamics.linear && s->loaded != 0.0) {
+    if (s->loaded != 0.0) {
         point->excess = fmax(1.0, fabs(e.push * largest / (stiffness_at(s, u, square) * s->loaded)));
     }
+}
+
+/* True where a voltage that softens the film changes on the way. */
+static bool softens_on_the_way(const dea_surrogate *s)
+{
+    bool flat = true;
+    for (size_t i = 0; i < s->source.count; i++) {
+        const dea_segment *segment = &s->source.segments[i];
+        flat = flat && !segment->sine && segment->start == segment->end;
+    }
+    return s->points[0].push_slope != 0.0 && !flat;
 }
 
 /* False where the film would pull in, or already is unstable at rest. */
@@ -108,7 +120,12 @@ static bool place_points(dea_surrogate *s)
         return false;
     }
     add_point(s, 0.0, 0.0);
-    if (!s->dynamics.linear && largest > 0.0) {
+    if (s->dynamics.linear) {
+        s->points[0].excess = 1.0;
+        if (softens_on_the_way(s)) { /* the walk takes the largest voltage of a segment for all of it: here, none */
+            add_point(s, 0.0, DBL_MIN);
+        }
+    } else if (largest > 0.0) {
         add_point(s, s->loaded, largest * largest);
     }
     return true;
@@ -116,12 +133,19 @@ static bool place_points(dea_surrogate *s)
 
 /* ---- how soft and how stiff the film becomes on its way */
 
+/* Stiffness over the softest: 0.2 % below the voltage of a fold, or of a film that stiffens so much that its time constants on
+ * the way are not those of its ends. */
+static const double most_varied = 20.0;
+
 enum { STEPS = 16, FARTHEST = 4 }; /* steps from rest to the equilibrium; displacements of that to which a swing is followed */
 
 typedef struct way {
     double softest, stiffest; /* [N/m] */
+    double least, most;       /* slope of the displacement over U^2, phi/K [m/V^2] */
     double u, square;         /* where it is softest */
 } way;
+
+static const way nowhere = {.softest = (double)INFINITY, .least = (double)INFINITY};
 
 static void pass(dea_surrogate *s, double u, double square, way *w)
 {
@@ -131,7 +155,10 @@ static void pass(dea_surrogate *s, double u, double square, way *w)
         w->u = u;
         w->square = square;
     }
+    const double slope = fabs(dea_dynamics_edge(&s->dynamics, u).push / stiffness);
     w->stiffest = fmax(w->stiffest, stiffness);
+    w->least = fmin(w->least, slope);
+    w->most = fmax(w->most, slope);
 }
 
 /* Goes on from u under a constant voltage until the springs have taken up that energy: as far as a swing gets that starts there
@@ -164,7 +191,6 @@ static bool find_way(dea_surrogate *s, way *w)
     const double square = s->source.largest * s->source.largest;
     const double step = s->loaded / STEPS;
     double pushed = 0.0, strained = 0.0; /* energy of the jump up, and down [J] */
-    *w = (way){.softest = (double)INFINITY};
     for (int i = 0; i <= STEPS; i++) {
         const double u = i < STEPS ? i * step : s->loaded;
         const dea_edge e = dea_dynamics_edge(&s->dynamics, u);
@@ -178,23 +204,21 @@ static bool find_way(dea_surrogate *s, way *w)
            swing_out(s, 0.0, -step, 0.0, jumps * strained, w);
 }
 
-/* A film that softens on its way is looked at where it is softest, too. */
+/* A film that softens on its way is looked at where it is softest, too; false where nothing linear stands for it. */
 static bool place_softest(dea_surrogate *s)
 {
-    way w;
+    way w = nowhere;
+    pass(s, 0.0, 0.0, &w);
     if (s->dynamics.linear || s->loaded == 0.0) {
-        const double softened = s->points[0].push_slope * s->source.largest * s->source.largest / s->points[0].passive;
-        s->variation = fabs(softened) / (1.0 - fmax(0.0, softened));
-        return true;
-    }
-    if (!find_way(s, &w)) {
+        pass(s, 0.0, s->source.largest * s->source.largest, &w);
+    } else if (!find_way(s, &w)) {
         return false;
     }
-    s->variation = w.stiffest / w.softest - 1.0;
-    if (w.u != 0.0 && w.u != s->loaded) {
+    s->variation = fmax(w.stiffest / w.softest, w.most / w.least) - 1.0;
+    if (!s->dynamics.linear && w.u != 0.0 && w.u != s->loaded) {
         add_point(s, w.u, w.square);
     }
-    return true;
+    return w.softest > 0.0 && w.stiffest <= most_varied * w.softest;
 }
 
 /* The current dC/du U v through R takes R of itself off the voltage, and so a drag (dC/du U)^2 R/(1 + (w R C)^2) off a film that

@@ -34,7 +34,7 @@ typedef struct dea_surrogate {
     double largest;           /* |U| that the film sees over the run [V] */
     double capacitance;       /* larger one of rest and of the loaded film [F] */
     double least_capacitance; /* the smaller one */
-    double variation; /* of the film's stiffness on its way: largest over smallest - 1; 0: the stand-in is the film itself */
+    double variation; /* of the film's stiffness on its way, or of du/d(U^2): largest over smallest - 1; 0: it is the film */
     double coupling;  /* relative change of the force at constant charge that the change of the capacitance makes [1] */
     double swing;     /* largest amplitude of a swing about the equilibrium, over that under the largest voltage [1] */
     double fading;    /* time in which what the mass does dies away [s], 0 without mass */

@@ -64,11 +64,23 @@ static void check_run(const dea_arguments *arguments, const dea_scene *scene, co
     const dea_scene placed = dea_scene_of_run(scene, number);
     if (dea_needs_find(&placed, placed.models[0], engine, &needs, NULL) != DEA_OK ||
         dea_needs_measure(&placed, placed.models[0], &needs, measured, NULL) != DEA_OK) {
+        sum->bounds.unjudged++;
         return;
     }
     sum->runs += needs.count > 0 ? 1 : 0;
     for (size_t i = 0; i < needs.count; i++) {
         judge(arguments, scene, &needs.omissions[i], &measured[i], sum);
+    }
+}
+
+static void print_sum(const dea_engine *engine, const dea_sum *sum)
+{
+    printf("  %-10s leaves out %zu part%s in %zu run%s, ", engine->name, sum->omissions, sum->omissions == 1 ? "" : "s",
+           sum->runs, sum->runs == 1 ? "" : "s");
+    if (sum->bounds.unjudged < sum->omissions) {
+        printf("measured change over bound at most %.2g\n", sum->closest);
+    } else {
+        puts("none judged");
     }
 }
 
@@ -88,8 +100,7 @@ dea_bounds dea_check_omissions(const dea_arguments *arguments, const dea_scene *
             check_run(arguments, scene, engine, i, &sum);
         }
         if (!arguments->quiet && sum.omissions > 0) {
-            printf("  %-10s leaves out %zu part%s in %zu run%s, measured change over bound at most %.2g\n", engine->name,
-                   sum.omissions, sum.omissions == 1 ? "" : "s", sum.runs, sum.runs == 1 ? "" : "s", sum.closest);
+            print_sum(engine, &sum);
         }
         all.broken += sum.bounds.broken;
         all.unjudged += sum.bounds.unjudged;
@@ -147,6 +158,7 @@ static dea_measured measure_choice(const dea_arguments *arguments, const dea_sce
     const double wanted = choice_fine * bound;
     dea_measured m = {.error = run_model(arguments, scene, dea_needs_truth(scene->study), wanted, comparison)};
     comparison->filling = false;
+    comparison->at_limit = bound;
     dea_comparison_forget(comparison);
     m.error += isnan(m.error) ? 0.0 : run_model(arguments, scene, scene->models[0], wanted, comparison);
     m.change = change_of(comparison);

@@ -111,7 +111,8 @@ static void complain_choice(const dea_scene *scene, const dea_engine *engine, co
     if (!choice->next) {
         dea_complain("model auto: %s can do none of the models for this study", name);
     } else if (isinf(choice->bound)) {
-        dea_complain("model auto: %s can do no model whose states are those of %s; name one with --model", name, truth);
+        dea_complain("model auto: %s can do no model that could be held against %s, its states included; name one with --model",
+                     name, truth);
     } else {
         dea_complain("model auto: %s can do no model that is within half the accuracy, %g, of %s; the best, %s, is within %s",
                      name, scene->accuracy, truth, choice->next->name, dea_bound_text(choice->bound, bound));

@@ -4,9 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "drive/signal.h"
 #include "engine/line.h"
 #include "network/dynamics.h"
 #include "result/scales.h"
+#include "result/state.h"
 
 /* Numbers below this share of a column's largest reference value are compared with that instead of with themselves. */
 static const double negligible = 1e-9;
@@ -117,8 +119,8 @@ static double difference(dea_measure measure, double a, double b, double scale, 
     return isfinite(gap) ? gap / over : (double)INFINITY;
 }
 
-/* How much the phase of a number counts: that of one that is negligible beside the largest means nothing, that of a zero is any. Its
- * magnitude is the column before. */
+/* How much the phase of a number counts: that of one that is negligible beside the largest means nothing, that of a zero is any.
+ * Its magnitude is the column before. */
 static double weight_of(const dea_comparison *comparison, const char *row, size_t number)
 {
     if (comparison->columns[number].measure != DEA_OVER_RADIAN) {
@@ -134,8 +136,23 @@ static bool is_failed(const dea_comparison *comparison, const char *row)
     return dea_layout_state(&comparison->layout, row) == DEA_STATE_FAILED;
 }
 
+/* Samples whose states are right for their own numbers: a limit lies between these, which are compared as all others. */
+static bool are_at_limit(const dea_comparison *comparison, size_t number, const char *row, const char *wanted, double peak)
+{
+    dea_sample samples[2];
+    dea_scene placed = *comparison->scene;
+    if (placed.study != DEA_STUDY_TRANSIENT) {
+        return false;
+    }
+    memcpy(&samples[0], row, sizeof *samples);
+    memcpy(&samples[1], wanted, sizeof *samples);
+    dea_axes_place(&placed, number);
+    return dea_state_follows(&placed, &samples[0], comparison->at_limit * peak) &&
+           dea_state_follows(&placed, &samples[1], comparison->at_limit * peak);
+}
+
 /* Rows that one of the two did not solve are counted elsewhere: they are no disagreement. */
-static void compare_rows(dea_comparison *comparison, const char *point, const char *reference,
+static void compare_rows(dea_comparison *comparison, size_t number, const char *point, const char *reference,
                          const double peaks[DEA_COMPARED_COLUMNS])
 {
     const dea_layout *layout = &comparison->layout;
@@ -144,7 +161,8 @@ static void compare_rows(dea_comparison *comparison, const char *point, const ch
         if (is_failed(comparison, row) || is_failed(comparison, wanted)) {
             continue;
         }
-        if (dea_layout_state(layout, row) != dea_layout_state(layout, wanted)) {
+        if (dea_layout_state(layout, row) != dea_layout_state(layout, wanted) &&
+            !are_at_limit(comparison, number, row, wanted, peaks[0])) {
             comparison->states++;
             continue;
         }
@@ -184,8 +202,7 @@ static void compare_summaries(dea_comparison *comparison, const char *point, con
     }
     for (size_t i = 0; i < comparison->scene->transient.average_count; i++) {
         const double found = a.averages[i].displacement, wanted = b.averages[i].displacement;
-        comparison->mean =
-            fmax(comparison->mean, difference(DEA_OVER_PEAK, found, wanted, 0.0, fmax(peak, fabs(wanted))));
+        comparison->mean = fmax(comparison->mean, difference(DEA_OVER_PEAK, found, wanted, 0.0, fmax(peak, fabs(wanted))));
     }
     comparison->swing = fmax(comparison->swing, swing_gap(&a, &b));
 }
@@ -212,7 +229,7 @@ static void take_point(dea_comparison *comparison, size_t number, const char *po
         comparison->scale[c] = fmax(comparison->scale[c], peaks[c]);
     }
     if (!comparison->filling) {
-        compare_rows(comparison, point, reference, peaks);
+        compare_rows(comparison, number, point, reference, peaks);
         if (comparison->scene->study == DEA_STUDY_TRANSIENT) {
             compare_summaries(comparison, point, reference, peaks[0]); /* of the displacement */
         }
@@ -221,8 +238,11 @@ static void take_point(dea_comparison *comparison, size_t number, const char *po
 
 dea_status dea_comparison_open(dea_comparison *comparison, const dea_scene *scene, dea_error *error)
 {
-    *comparison =
-        (dea_comparison){.scene = scene, .layout = dea_layout_of(scene), .points = dea_scene_point_count(scene), .filling = true};
+    *comparison = (dea_comparison){.scene = scene,
+                                   .layout = dea_layout_of(scene),
+                                   .points = dea_scene_point_count(scene),
+                                   .filling = true,
+                                   .at_limit = negligible};
     choose_columns(comparison);
     if (scene->study == DEA_STUDY_AC) {
         set_least_response(comparison);

@@ -30,7 +30,8 @@ typedef struct dea_comparison {
     size_t column_count;
     char *reference; /* points as the layout has them; owned */
     size_t points;
-    bool filling; /* points are the reference itself; the caller ends this */
+    bool filling;    /* points are the reference itself; the caller ends this */
+    double at_limit; /* states may differ where a limit is that near, over the peak of the displacement; rounding unless set */
     /* magnitude that samples of a transient can miss altogether, where they fall between pulses */
     double least[DEA_COMPARED_COLUMNS];
     double scale[DEA_COMPARED_COLUMNS]; /* largest magnitude in the reference */

@@ -53,14 +53,76 @@ static void phase_of_a_zero_is_any(void **state)
 static void engines_agree_about_a_film_without_bias(void **state)
 {
     (void)state;
-    static const char scene[] = "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
-                                "material: {base: elastosil-2030, retardation: 10 us}\n"
-                                "drive: {series_resistance: 100 kOhm}\n"
-                                "model: [lumped, lame, coverage]\n"
-                                "study: {ac: {from: 20 Hz, to: 10 kHz, points_per_decade: 5, bias: 0 V}}\n";
+    static const char scene[] =
+        "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+        "material: {base: elastosil-2030, retardation: 10 us}\n"
+        "drive: {series_resistance: 100 kOhm}\n"
+        "model: [lumped, lame, coverage]\n"
+        "study: {ac: {from: 20 Hz, to: 10 kHz, points_per_decade: 5, bias: 0 V}}\n";
     file_write("zero.yaml", scene, strlen(scene));
     RUN("check", "zero.yaml");
     assert_status(0);
+}
+
+/* Rows whose states differ, of two runs that are alike but for one displacement and state. */
+static size_t states_that_differ(double wanted, dea_state wanted_state, double found, dea_state found_state)
+{
+    dea_scene scene = paper_scene(DEA_DOT, 1.0, 0.5, (double)NAN);
+    struct {
+        dea_sample samples[3];
+        dea_summary summary;
+    } run = {.summary = dea_summary_failed()};
+    dea_comparison comparison;
+    scene.models[0] = dea_model_find("coverage");
+    scene.study = DEA_STUDY_TRANSIENT;
+    scene.transient = (dea_transient){.until = 2.0, .every = 1.0};
+    scene.drive.waveform = (dea_waveform){.kind = DEA_WAVE_STEP, .step = {0.0, (double)NAN, 3000.0, 0.0}, .period = (double)NAN};
+    assert_int_equal(dea_comparison_open(&comparison, &scene, NULL), DEA_OK);
+    assert_int_equal(comparison.layout.point_size, sizeof run);
+    for (int i = 0; i < 3; i++) {
+        const double none = (double)NAN;
+        run.samples[i] = (dea_sample){i, 3000.0, 1e-4, 1e-4 / 0.015, 0.0, 0.1, none, none, none, DEA_STATE_SLACK};
+    }
+    run.samples[1].displacement = wanted;
+    run.samples[1].state = wanted_state;
+    assert_int_equal(dea_comparison_take(&comparison, 0, &run, 1, NULL), DEA_OK);
+    comparison.filling = false;
+    run.samples[1].displacement = found;
+    run.samples[1].state = found_state;
+    assert_int_equal(dea_comparison_take(&comparison, 0, &run, 1, NULL), DEA_OK);
+    dea_comparison_close(&comparison);
+    return comparison.states;
+}
+
+/* Without pre-stretch the passive ring is slack as soon as the disc grows. */
+static void states_on_two_sides_of_a_limit_are_no_disagreement(void **state)
+{
+    (void)state;
+    assert_int_equal(states_that_differ(1e-9, DEA_STATE_SLACK, -2e-9, DEA_STATE_OK), 0);
+    assert_int_equal(states_that_differ(1e-9, DEA_STATE_SLACK, 2e-9, DEA_STATE_OK), 1);
+    assert_int_equal(states_that_differ(1e-9, DEA_STATE_SLACK, -2e-9, DEA_STATE_BREAKDOWN), 1);
+    assert_int_equal(states_that_differ(1e-9, DEA_STATE_SLACK, (double)NAN, DEA_STATE_PULL_IN), 1);
+}
+
+/* Undamped and without pre-stretch: at 3 kV a linear film gets out of step, at 100 V it does not, and check measures that. A film
+ * that comes back to rest passes its limit there. */
+static void check_measures_the_model_that_auto_chose(void **state)
+{
+    (void)state;
+    static const char scene[] =
+        "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1}\n"
+        "material: {base: elastosil-2030, density: 1080 kg/m^3}\n"
+        "drive: {waveform: {step: {on: 1 ms, voltage: 3 kV, rise: 1 us}}}\n"
+        "model: auto\naccuracy: 0.1\n"
+        "study: {transient: {until: 50 ms, every: 0.1 ms}}\n";
+    file_write("swing.yaml", scene, strlen(scene));
+    RUN("check", "swing.yaml");
+    assert_status(0);
+    assert_says("model auto: coverage, nothing cheaper is good enough");
+    RUN("check", "--set", "voltage=100 V", "swing.yaml");
+    assert_status(0);
+    assert_non_null(strstr(child_out, "lumped instead of coverage (<= "));
+    assert_non_null(strstr(child_out, ", measured "));
 }
 
 int main(void)
@@ -68,6 +130,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(phase_of_a_zero_is_any),
         cmocka_unit_test(engines_agree_about_a_film_without_bias),
+        cmocka_unit_test(check_measures_the_model_that_auto_chose),
+        cmocka_unit_test(states_on_two_sides_of_a_limit_are_no_disagreement),
     };
     return cmocka_run_group_tests(tests, child_enter, child_leave);
 }

@@ -4,6 +4,7 @@
 #define DEA_TEST_FAULTS_H
 
 #include <errno.h>
+#include <dlfcn.h>
 #include <execinfo.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -206,24 +207,7 @@ FAULT_CALL(ngSpice_Command, int, (char *command), (command), 1, ENOMEM)
 FAULT_CALL(ngSpice_CurPlot, char *, (void), (), NULL, ENOMEM)
 FAULT_CALL(ngSpice_AllVecs, char **, (char *plot), (plot), NULL, ENOMEM)
 FAULT_CALL(ngGet_Vec_Info, pvector_info, (char *name), (name), NULL, ENOMEM)
-FAULT_CALL(N_VNew_Serial, N_Vector, (sunindextype length, SUNContext context), (length, context), NULL, ENOMEM)
-FAULT_CALL(N_VClone, N_Vector, (N_Vector vector), (vector), NULL, ENOMEM)
-FAULT_CALL(SUNDenseMatrix, SUNMatrix, (sunindextype rows, sunindextype columns, SUNContext context), (rows, columns, context), NULL,
-           ENOMEM)
-FAULT_CALL(SUNLinSol_Dense, SUNLinearSolver, (N_Vector vector, SUNMatrix matrix, SUNContext context), (vector, matrix, context),
-           NULL, ENOMEM)
-FAULT_CALL(IDACreate, void *, (SUNContext context), (context), NULL, ENOMEM)
-FAULT_CALL(IDASetUserData, int, (void *memory, void *user), (memory, user), -1, ENOMEM)
-FAULT_CALL(IDASetLinearSolver, int, (void *memory, SUNLinearSolver solver, SUNMatrix matrix), (memory, solver, matrix), -1, ENOMEM)
-FAULT_CALL(IDASolve, int, (void *memory, double until, double *at, N_Vector y, N_Vector slope, int task),
-           (memory, until, at, y, slope, task), -1, ENOMEM)
-FAULT_CALL(IDACalcIC, int, (void *memory, int kind, double until), (memory, kind, until), -1, ENOMEM)
-FAULT_CALL(IDAGetDky, int, (void *memory, double at, int k, N_Vector y), (memory, at, k, y), -1, ENOMEM)
-FAULT_CALL(ARKStepEvolve, int, (void *memory, double until, N_Vector y, double *at, int task), (memory, until, y, at, task), -1,
-           ENOMEM)
-FAULT_CALL(KINCreate, void *, (SUNContext context), (context), NULL, ENOMEM)
-FAULT_CALL(KINSol, int, (void *memory, N_Vector u, int strategy, N_Vector scale, N_Vector weight),
-           (memory, u, strategy, scale, weight), -1, ENOMEM)
+FAULT_CALL(dlopen, void *, (const char *name, int flags), (name, flags), NULL, ENOENT)
 FAULT_CALL(ut_new_system, ut_system *, (void), (), NULL, ENOMEM)
 FAULT_CALL(ut_read_xml, ut_system *, (const char *path), (path), NULL, ENOMEM)
 FAULT_CALL(ut_new_base_unit, ut_unit *, (ut_system * system), (system), NULL, ENOMEM)
@@ -236,5 +220,57 @@ FAULT_CALL(fy_parser_create, struct fy_parser *, (const struct fy_parse_cfg *set
 FAULT_CALL(fy_parser_set_string, int, (struct fy_parser * parser, const char *text, size_t size), (parser, text, size), -1, ENOMEM)
 FAULT_CALL(fy_parser_parse, struct fy_event *, (struct fy_parser * parser), (parser), NULL, ENOMEM)
 FAULT_CALL(fy_token_get_text, const char *, (struct fy_token * token, size_t *size), (token, size), NULL, ENOMEM)
+
+/* Functions of libraries that are loaded while the program runs get their substitutes from dlsym(). */
+#define FAULT_LOADED(name, type, parameters, arguments, value, number)      \
+    static type(*loaded_##name) parameters;                                 \
+    static type failing_##name parameters                                   \
+    {                                                                       \
+        return fault_due(#name, number) ? value : loaded_##name arguments;  \
+    }
+
+FAULT_LOADED(N_VNew_Serial, N_Vector, (sunindextype length, SUNContext context), (length, context), NULL, ENOMEM)
+FAULT_LOADED(N_VClone, N_Vector, (N_Vector vector), (vector), NULL, ENOMEM)
+FAULT_LOADED(SUNDenseMatrix, SUNMatrix, (sunindextype rows, sunindextype columns, SUNContext context), (rows, columns, context), NULL,
+           ENOMEM)
+FAULT_LOADED(SUNLinSol_Dense, SUNLinearSolver, (N_Vector vector, SUNMatrix matrix, SUNContext context), (vector, matrix, context),
+           NULL, ENOMEM)
+FAULT_LOADED(IDACreate, void *, (SUNContext context), (context), NULL, ENOMEM)
+FAULT_LOADED(IDASetUserData, int, (void *memory, void *user), (memory, user), -1, ENOMEM)
+FAULT_LOADED(IDASetLinearSolver, int, (void *memory, SUNLinearSolver solver, SUNMatrix matrix), (memory, solver, matrix), -1, ENOMEM)
+FAULT_LOADED(IDASolve, int, (void *memory, double until, double *at, N_Vector y, N_Vector slope, int task),
+           (memory, until, at, y, slope, task), -1, ENOMEM)
+FAULT_LOADED(IDACalcIC, int, (void *memory, int kind, double until), (memory, kind, until), -1, ENOMEM)
+FAULT_LOADED(ARKStepEvolve, int, (void *memory, double until, N_Vector y, double *at, int task), (memory, until, y, at, task), -1,
+           ENOMEM)
+FAULT_LOADED(KINCreate, void *, (SUNContext context), (context), NULL, ENOMEM)
+FAULT_LOADED(KINSol, int, (void *memory, N_Vector u, int strategy, N_Vector scale, N_Vector weight),
+           (memory, u, strategy, scale, weight), -1, ENOMEM)
+
+#define FAULT_LOADED_LIST(X) \
+    X(N_VNew_Serial) X(N_VClone) X(SUNDenseMatrix) X(SUNLinSol_Dense) X(IDACreate) X(IDASetUserData) \
+    X(IDASetLinearSolver) X(IDASolve) X(IDACalcIC) X(ARKStepEvolve) X(KINCreate) X(KINSol)
+
+void *__real_dlsym(void *library, const char *name);
+void *__wrap_dlsym(void *library, const char *name);
+void *__wrap_dlsym(void *library, const char *name)
+{
+#define X(known) {#known, (void **)&loaded_##known, (void *)(uintptr_t)failing_##known},
+    static const struct {
+        const char *name;
+        void **loaded, *failing;
+    } list[] = {
+        FAULT_LOADED_LIST(X)
+    };
+#undef X
+    void *found = fault_due("dlsym", ENOENT) ? NULL : __real_dlsym(library, name);
+    for (size_t i = 0; i < sizeof list / sizeof *list && found; i++) {
+        if (strcmp(list[i].name, name) == 0) {
+            *list[i].loaded = found;
+            return list[i].failing;
+        }
+    }
+    return found;
+}
 
 #endif

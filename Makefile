@@ -215,6 +215,14 @@ $(BUILD)/tests/%: tests/unit/%.c $(BUILD)/libdeaspice.a Makefile
 	@echo "CC $@"
 	@$(CC) $(ALL_CFLAGS) -Itests/unit $< $(filter %.o,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) -lcmocka $(LIBS)
 
+# The whole program with calls that can be made to fail.
+FAULTS := $(shell awk -F '[^A-Za-z0-9_]+' '$$1 == "FAULT_CALL" {print $$2} $$2 ~ /^__wrap_/ {print substr($$2, 8)}' tests/unit/faults.h)
+$(BUILD)/tests/program.o: src/program/main.c Makefile
+	@mkdir -p $(@D)
+	@echo "CC $@"
+	@$(CC) $(ALL_CFLAGS) -Dmain=deaspice_main -c $< -o $@
+$(BUILD)/tests/test_faults: $(filter-out %/main.o,$(PROGRAM_OBJECTS)) $(BUILD)/tests/program.o
+$(BUILD)/tests/test_faults: private LDFLAGS += $(FAULTS:%=-Wl,--wrap=%)
 $(BUILD)/tests/test_stability: $(STABILITY_PARTS)
 $(BUILD)/tests/test_promises: $(filter-out %/main.o,$(PROMISES))
 

@@ -64,22 +64,30 @@ typedef struct unit_symbol {
 } unit_symbol;
 
 /* Maps a symbol and its prefixed forms. Prefixes are not told to UDUNITS, which would keep them for ever. */
-static void symbol_map(ut_system *system, const unit_symbol *symbol)
+static bool is_mapped(const char *name, ut_unit *unit)
+{
+    const ut_status status = unit ? ut_map_symbol_to_unit(name, UT_ASCII, unit) : UT_OS;
+    return status == UT_SUCCESS || status == UT_EXISTS; /* a prefix can make a name that is there: kg */
+}
+
+static bool symbol_map(ut_system *system, const unit_symbol *symbol)
 {
     static const prefix prefixes[] = {{'T', 1e12}, {'G', 1e9},  {'M', 1e6},  {'k', 1e3},   {'c', 1e-2},
                                       {'m', 1e-3}, {'u', 1e-6}, {'n', 1e-9}, {'p', 1e-12}, {'f', 1e-15}};
     ut_unit *unit = symbol->definition ? ut_parse(system, symbol->definition, UT_ASCII) : ut_new_base_unit(system);
-    ut_map_symbol_to_unit(symbol->name, UT_ASCII, unit);
-    for (size_t i = 0; symbol->prefixed && i < sizeof prefixes / sizeof *prefixes; i++) {
+    bool whole = is_mapped(symbol->name, unit);
+    for (size_t i = 0; whole && symbol->prefixed && i < sizeof prefixes / sizeof *prefixes; i++) {
         char name[8];
         ut_unit *scaled = ut_scale(prefixes[i].factor, unit);
         snprintf(name, sizeof name, "%c%s", prefixes[i].letter, symbol->name);
-        ut_map_symbol_to_unit(name, UT_ASCII, scaled);
+        whole = is_mapped(name, scaled);
         ut_free(scaled);
     }
     ut_free(unit);
+    return whole;
 }
 
+/* NULL where memory runs out on the way: a system without some of its units would deny that they exist. */
 static ut_system *small_build(void)
 {
     static const unit_symbol symbols[] = {
@@ -92,7 +100,10 @@ static ut_system *small_build(void)
     };
     ut_system *system = ut_new_system();
     for (size_t i = 0; system && i < sizeof symbols / sizeof *symbols; i++) {
-        symbol_map(system, &symbols[i]);
+        if (!symbol_map(system, &symbols[i])) {
+            ut_free_system(system);
+            system = NULL;
+        }
     }
     return system;
 }

@@ -101,12 +101,15 @@ static dea_status enter_private_folder(char *folder, size_t size, dea_error *err
     return DEA_OK;
 }
 
+/* By its whole name: where the process could not enter it, other files of these names are somebody's own. */
 static void leave_private_folder(const char *folder)
 {
-    (void)unlink("scripts/spinit");
-    (void)unlink(".spiceinit");
-    (void)rmdir("scripts");
-    (void)rmdir(folder);
+    static const char *const names[] = {"/scripts/spinit", "/.spiceinit", "/scripts", ""};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char path[4352];
+        snprintf(path, sizeof path, "%s%s", folder, names[i]);
+        (void)remove(path);
+    }
 }
 
 static void command(const char *text)
@@ -201,15 +204,17 @@ static dea_status load(dea_ngspice *library, const char *netlist, dea_error *err
     }
     char *text = strdup(netlist);
     char **cards = calloc(lines + 1, sizeof *cards);
-    int code = 1;
-    if (text && cards) {
-        size_t count = 0;
-        char *rest = text;
-        for (char *card = strsep(&rest, "\n"); card && count < lines; card = strsep(&rest, "\n")) {
-            cards[count++] = card;
-        }
-        code = ngSpice_Circ(cards);
+    if (!text || !cards) {
+        free(cards);
+        free(text);
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for a netlist of %zu lines", lines);
     }
+    size_t count = 0;
+    char *rest = text;
+    for (char *card = strsep(&rest, "\n"); card && count < lines; card = strsep(&rest, "\n")) {
+        cards[count++] = card;
+    }
+    const int code = ngSpice_Circ(cards);
     free(cards);
     free(text);
     library->loaded = true;

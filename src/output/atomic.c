@@ -1,10 +1,14 @@
 #include "output/atomic.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -33,6 +37,40 @@ static char *target_resolve(const char *path)
     return strdup(path);
 }
 
+/* Process that a file in a folder of targets was made by, 0 where it is none of ours. */
+static pid_t maker_of(const char *name)
+{
+    long pid, moment;
+    int number, length = 0;
+    const bool ours = sscanf(name, ".deaspice-%ld-%ld-%d.part%n", &pid, &moment, &number, &length) == 3 && length > 0;
+    return ours && name[length] == '\0' && pid > 0 && pid <= INT_MAX ? (pid_t)pid : 0;
+}
+
+/* Removes what killed runs left in a folder: files of this user whose maker is gone, here and, as nobody has them locked, on any
+ * other machine. */
+static void leftovers_remove(const char *path)
+{
+    DIR *folder = opendir(path);
+    for (struct dirent *entry; folder && (entry = readdir(folder));) {
+        struct stat about;
+        const pid_t maker = maker_of(entry->d_name);
+        if (maker == 0 || kill(maker, 0) == 0 || errno != ESRCH) {
+            continue;
+        }
+        const int fd = openat(dirfd(folder), entry->d_name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+        if (fd >= 0 && fstat(fd, &about) == 0 && S_ISREG(about.st_mode) && about.st_uid == geteuid() &&
+            flock(fd, LOCK_EX | LOCK_NB) == 0) {
+            unlinkat(dirfd(folder), entry->d_name, 0);
+        }
+        if (fd >= 0) {
+            close(fd);
+        }
+    }
+    if (folder) {
+        closedir(folder);
+    }
+}
+
 /* Creates a new file in the folder of the target. */
 static dea_status beside_open(dea_atomic *file, dea_error *error)
 {
@@ -43,12 +81,15 @@ static dea_status beside_open(dea_atomic *file, dea_error *error)
     if (!file->temporary) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
+    snprintf(file->temporary, room, "%.*s", folder, file->target);
+    leftovers_remove(folder > 0 ? file->temporary : ".");
     for (int i = 0; i < NAME_TRIES; i++) {
         struct timespec now = {0};
         clock_gettime(CLOCK_REALTIME, &now);
         snprintf(file->temporary, room, "%.*s.deaspice-%ld-%ld-%d.part", folder, file->target, (long)getpid(), now.tv_nsec, i);
         file->fd = open(file->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (file->fd >= 0) {
+            (void)flock(file->fd, LOCK_EX | LOCK_NB); /* tells other machines that its maker is there */
             return DEA_OK;
         }
         if (errno != EEXIST) {

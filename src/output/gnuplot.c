@@ -1,10 +1,12 @@
 #include "output/gnuplot.h"
 
+#include "output/image.h"
 #include "support/number.h"
+#include "support/scratch.h"
+#include "support/text.h"
 
 #include <ctype.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <spawn.h>
 #include <stdlib.h>
@@ -15,7 +17,7 @@
 
 extern char **environ;
 
-enum { TEXT_MAX = 110, WORDS_MAX = 1000, COPY_BLOCK = 1 << 15 };
+enum { TEXT_MAX = 110, WORDS_MAX = 1000, CHARACTER_MOST = 4 };
 
 static dea_status gnuplot_missing(dea_error *error)
 {
@@ -39,17 +41,6 @@ static bool gnuplot_found(void)
     return false;
 }
 
-/* A file without a name that children do not inherit. */
-static FILE *scratch_open(void)
-{
-    FILE *file = tmpfile();
-    if (file && fcntl(fileno(file), F_SETFD, FD_CLOEXEC) != 0) {
-        fclose(file);
-        file = NULL;
-    }
-    return file;
-}
-
 dea_status dea_gnuplot_begin(dea_gnuplot *picture, const char *path, dea_error *error)
 {
     *picture = (dea_gnuplot){.file.fd = -1};
@@ -66,7 +57,7 @@ dea_status dea_gnuplot_begin(dea_gnuplot *picture, const char *path, dea_error *
     if (status != DEA_OK) {
         return status;
     }
-    picture->script = scratch_open();
+    picture->script = dea_scratch_open();
     if (!picture->script) {
         const int number = errno;
         dea_gnuplot_finish(picture, false, NULL);
@@ -88,21 +79,12 @@ void dea_gnuplot_size(dea_gnuplot *picture, int width, int height)
     }
 }
 
-/* Length of the UTF-8 character at @p text, 0 where it is none that may be shown. */
+/* Length of the UTF-8 character at @p text, 0 where it is none that may be shown: controls, and what XML has not. */
 static size_t character_length(const unsigned char *text)
 {
-    const unsigned char lead = text[0];
-    if (lead < 0x80) {
-        return lead >= 0x20 && lead != 0x7f ? 1 : 0;
-    }
-    const size_t length = lead >= 0xf0 && lead < 0xf5 ? 4 : lead >= 0xe0 && lead < 0xf0 ? 3 : lead >= 0xc2 && lead < 0xe0 ? 2 : 0;
-    for (size_t i = 1; i < length; i++) {
-        if ((text[i] & 0xc0) != 0x80) {
-            return 0;
-        }
-    }
-    const bool control = length == 2 && lead == 0xc2 && text[1] < 0xa0;
-    return control ? 0 : length;
+    unsigned code = 0;
+    const size_t length = dea_text_character((const char *)text, strnlen((const char *)text, CHARACTER_MOST), &code);
+    return code < 0x20 || (code >= 0x7f && code < 0xa0) || code == 0xfffe || code == 0xffff ? 0 : length;
 }
 
 /* Letters and blanks stand for themselves; every other byte is written as an octal escape, so that quotes, backticks, macros and
@@ -110,6 +92,7 @@ static size_t character_length(const unsigned char *text)
 void dea_gnuplot_text(FILE *script, const char *text)
 {
     const unsigned char *next = (const unsigned char *)text;
+    int brackets = 0;
     fputc('"', script);
     for (int shown = 0; *next; shown++) {
         if (shown == TEXT_MAX) {
@@ -117,9 +100,13 @@ void dea_gnuplot_text(FILE *script, const char *text)
             break;
         }
         const size_t length = character_length(next);
+        if (*next == '>' && brackets > 1) {
+            fputs("\\342\\201\\240", script); /* a word joiner, which has no width: XML keeps "]]>" for itself */
+        }
         for (size_t i = 0; i < length; i++) {
             fprintf(script, (next[i] < 0x80 && isalpha(next[i])) || next[i] == ' ' ? "%c" : "\\%03o", next[i]);
         }
+        brackets = *next == ']' ? brackets + 1 : length > 0 ? 0 : brackets;
         next += length > 0 ? length : 1;
     }
     fputc('"', script);
@@ -159,28 +146,18 @@ static dea_status gnuplot_spawn(FILE *script, FILE *image, FILE *words, int *end
     return DEA_OK;
 }
 
-/* Did the image end as its format ends? A full disk or a crash leaves it without. */
-static bool image_whole(FILE *image, bool png)
+/* All of the image, malloc'd; NULL with errno. */
+static char *image_read(FILE *image, size_t *size)
 {
-    char tail[13] = "";
-    if (fseek(image, -12, SEEK_END) != 0 || fread(tail, 1, 12, image) != 12) {
-        return false;
-    }
-    return png ? memcmp(tail + 4, "IEND\xae\x42\x60\x82", 8) == 0 : strstr(tail, "</svg>") != NULL;
-}
-
-static dea_status image_copy(FILE *image, dea_atomic *file, dea_error *error)
-{
-    char block[COPY_BLOCK];
+    const long length = fseek(image, 0, SEEK_END) == 0 ? ftell(image) : -1;
+    char *bytes = length >= 0 ? malloc((size_t)length + 1) : NULL;
     rewind(image);
-    size_t length;
-    while ((length = fread(block, 1, sizeof block, image)) > 0) {
-        const dea_status status = dea_atomic_write(file, block, length, error);
-        if (status != DEA_OK) {
-            return status;
-        }
+    *size = bytes ? fread(bytes, 1, (size_t)length, image) : 0;
+    if (bytes && *size != (size_t)length) {
+        free(bytes);
+        bytes = NULL;
     }
-    return ferror(image) ? dea_fail(error, DEA_ERROR_IO, "cannot read the picture back") : DEA_OK;
+    return bytes;
 }
 
 /* What gnuplot said, as an error. */
@@ -202,36 +179,89 @@ static dea_status gnuplot_complain(FILE *words, int ended, dea_error *error)
     return dea_fail(error, DEA_ERROR_ENGINE, "gnuplot failed (exit status %d)\n%s", WEXITSTATUS(ended), said);
 }
 
-static dea_status gnuplot_draw(dea_gnuplot *picture, FILE *image, FILE *words, dea_error *error)
+/* Draws the script into malloc'd bytes. */
+static dea_status script_draw(FILE *script, char **bytes, size_t *size, dea_error *error)
 {
-    if (!image || !words || fflush(picture->script) != 0 || ferror(picture->script)) {
+    FILE *image = dea_scratch_open();
+    FILE *words = dea_scratch_open();
+    int ended = 0;
+    dea_status status = DEA_OK;
+    if (!image || !words || fflush(script) != 0 || ferror(script)) {
+        status = dea_fail(error, DEA_ERROR_IO, "cannot write a temporary file for gnuplot: %s", strerror(errno));
+    } else {
+        rewind(script);
+        status = gnuplot_spawn(script, image, words, &ended, error);
+    }
+    if (status == DEA_OK && (!WIFEXITED(ended) || WEXITSTATUS(ended) != 0)) {
+        status = gnuplot_complain(words, ended, error);
+    }
+    if (status == DEA_OK && !(*bytes = image_read(image, size))) {
+        status = dea_fail(error, DEA_ERROR_IO, "cannot read the picture back: %s", strerror(errno));
+    }
+    if (image) {
+        fclose(image);
+    }
+    if (words) {
+        fclose(words);
+    }
+    return status;
+}
+
+/* The same script behind a word to standard error, which makes one write more of it. */
+static FILE *script_again(FILE *script)
+{
+    FILE *again = dea_scratch_open();
+    rewind(script);
+    if (again) {
+        fputs("print 'again'\n", again);
+        for (int letter; (letter = getc(script)) != EOF;) {
+            putc(letter, again);
+        }
+    }
+    return again;
+}
+
+/* Is the same drawn again? gnuplot looks at none of its writes and goes on behind one that failed. A line that an SVG lacks can
+ * be anything, and seldom breaks its form; to be lost twice it would have to be another line, since the second time has one
+ * write more before it. */
+static dea_status svg_compare(FILE *script, const char *bytes, size_t size, bool *same, dea_error *error)
+{
+    char *others = NULL;
+    size_t other_size = 0;
+    FILE *again = script_again(script);
+    if (!again) {
         return dea_fail(error, DEA_ERROR_IO, "cannot write a temporary file for gnuplot: %s", strerror(errno));
     }
-    rewind(picture->script);
-    int ended = 0;
-    const dea_status status = gnuplot_spawn(picture->script, image, words, &ended, error);
-    if (status != DEA_OK) {
-        return status;
+    const dea_status status = script_draw(again, &others, &other_size, error);
+    *same = status == DEA_OK && other_size == size && memcmp(bytes, others, size) == 0;
+    free(others);
+    fclose(again);
+    return status;
+}
+
+static dea_status gnuplot_draw(dea_gnuplot *picture, dea_error *error)
+{
+    char *bytes = NULL;
+    size_t size = 0;
+    dea_status status = script_draw(picture->script, &bytes, &size, error);
+    bool whole =
+        status == DEA_OK && (picture->png ? dea_image_png_whole((unsigned char *)bytes, size) : dea_image_svg_whole(bytes, size));
+    if (whole && !picture->png) {
+        status = svg_compare(picture->script, bytes, size, &whole, error);
     }
-    if (!WIFEXITED(ended) || WEXITSTATUS(ended) != 0 || !image_whole(image, picture->png)) {
-        return gnuplot_complain(words, ended, error);
+    if (status == DEA_OK) {
+        status = whole ? dea_atomic_write(&picture->file, bytes, size, error)
+                       : dea_fail(error, DEA_ERROR_ENGINE, "gnuplot could not write the whole picture");
     }
-    return image_copy(image, &picture->file, error);
+    free(bytes);
+    return status;
 }
 
 dea_status dea_gnuplot_finish(dea_gnuplot *picture, bool keep, dea_error *error)
 {
     dea_status status = DEA_OK;
     if (keep && picture->script) {
-        FILE *image = scratch_open();
-        FILE *words = scratch_open();
-        status = gnuplot_draw(picture, image, words, error);
-        if (image) {
-            fclose(image);
-        }
-        if (words) {
-            fclose(words);
-        }
+        status = gnuplot_draw(picture, error);
     }
     if (picture->script) {
         fclose(picture->script);

@@ -17,7 +17,7 @@
 
 enum { IDENTITY_MOST = 1 << 20, LOCK_TRIES = 50, LOCK_WAIT_MS = 20, ROW_MOST = DEA_LAYOUT_COLUMNS * sizeof(double) + 1 };
 
-static const char journal_magic[16] = "deaspice part 1\n";
+static const char journal_magic[] = "deaspice part 1\n"; /* its NUL is not written */
 static const uint64_t byte_order = UINT64_C(0x0102030405060708);
 static const uint64_t other_byte_order = UINT64_C(0x0807060504030201);
 static const uint64_t record_mark = UINT64_C(0x6b636f6c62616564); /* "deablock" */

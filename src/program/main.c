@@ -1,4 +1,5 @@
 #include <errno.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sundials/sundials_config.h>
@@ -103,6 +104,7 @@ static dea_exit dispatch(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
+    signal(SIGXFSZ, SIG_IGN); /* a limit of file size is an error of the write, which can be told */
     dea_exit outcome = dispatch(argc, argv);
     bool failed = ferror(stdout) != 0;
     if ((fflush(stdout) != 0 || failed) && dea_signals_caught() == 0) {

@@ -1,6 +1,10 @@
 /* No result takes the place of a file that it was made from; scenes of strangers. */
 #include "child_program.h"
 
+#include <sys/file.h>
+
+#include "output/image.h"
+
 #define FILM "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
 
 static const char wave_scene[] = FILM "material: film.mat\n"
@@ -191,6 +195,161 @@ static void a_message_tells_nothing_of_a_foreign_file(void **state)
     }
 }
 
+static int parts_there(void)
+{
+    return system("exit $(ls -A | grep -c '^[.]deaspice-.*[.]part$')") / 256;
+}
+
+/* A file that a run of process @p pid, which may be gone, left. */
+static void part_leave(long pid, char name[64])
+{
+    snprintf(name, 64, ".deaspice-%ld-1-0.part", pid);
+    file_write(name, "half", 4);
+}
+
+static void what_killed_runs_left_goes_with_the_next_one(void **state)
+{
+    char dead[64], locked[64], alive[64];
+    (void)state;
+    inputs_write();
+    part_leave(999999999, dead); /* no process has such a number */
+    part_leave(999999998, locked);
+    part_leave((long)getpid(), alive);
+    const int fd = open(locked, O_RDWR);
+    assert_int_equal(flock(fd, LOCK_EX), 0);
+    RUN("run", "sweep.yaml", "-o", "here/res.csv");
+    assert_status(0);
+    assert_false(file_exists(dead));
+    assert_true(file_exists(locked) && file_exists(alive));
+    assert_int_equal(parts_there(), 2);
+    close(fd);
+    unlink(locked);
+    unlink(alive);
+}
+
+/* As users meet it: by the shell's ulimit, the signal not ignored. */
+static void a_limit_of_file_size_is_told(void **state)
+{
+    char command[CHILD_TEXT];
+    static const char *const targets[] = {"-o big.csv", "-o big.nc", "-o big.raw", "--plot big.svg"};
+    (void)state;
+    inputs_write();
+    for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
+        snprintf(command, sizeof command,
+                 "ulimit -f 8; exec '%s' run sweep.yaml --engine direct --set 'study.sweep.coverage={from: 0.1, to: 0.9, points: "
+                 "2000}' %s 2>err.txt",
+                 child_path, targets[i]);
+        const int status = system(command);
+        text_of("err.txt", child_err);
+        assert_true(WIFEXITED(status));
+        assert_int_equal(WEXITSTATUS(status), 1);
+        assert_true(strstr(child_err, "too large") || strstr(child_err, "whole picture"));
+        assert_false(file_exists("big.csv") || file_exists("big.nc") || file_exists("big.raw") || file_exists("big.svg"));
+        assert_int_equal(parts_there(), 0);
+    }
+}
+
+static void a_folder_for_temporary_files_that_is_not_there_does_no_harm(void **state)
+{
+    static const char *const folders[] = {"/nowhere/at/all", "relative", "/etc/passwd", ""};
+    (void)state;
+    inputs_write();
+    for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) {
+        setenv("TMPDIR", folders[i], 1);
+        RUN("run", "sweep.yaml", "--engine", "ngspice", "--plot", "res.svg");
+        unsetenv("TMPDIR");
+        assert_status(0);
+    }
+}
+
+static bool is_xml(const char *path)
+{
+    size_t size;
+    char *text = file_read(path, &size);
+    const bool whole =
+        dea_image_svg_whole(text, size) && !strstr(text, "]]>") && !strstr(text, "\xef\xbf\xbe") && !strstr(text, "\xef\xbf\xbf");
+    free(text);
+    return whole;
+}
+
+static void a_title_never_breaks_the_picture(void **state)
+{
+    static const char *const titles[] = {"title=\"a ]]> b\"", "title=\"a ]]]]>>> b\"", "title=\"<![CDATA[ & ]]>\"",
+                                         "title=\"x\\uFFFEy\\uFFFFz\"", "title=\"]]> </text>\""};
+    (void)state;
+    inputs_write();
+    for (size_t i = 0; i < sizeof titles / sizeof *titles; i++) {
+        RUN("run", "sweep.yaml", "--set", titles[i], "--plot", "res.svg");
+        assert_status(0);
+        assert_true(is_xml("res.svg"));
+    }
+}
+
+/* Every piece that a write could lose is missed. */
+static void a_picture_with_a_hole_is_none(void **state)
+{
+    enum { PIECE = 4096 };
+    size_t sizes[2], holes = 0;
+    (void)state;
+    inputs_write();
+    RUN("run", "sweep.yaml", "--plot", "res.svg");
+    assert_status(0);
+    RUN("run", "sweep.yaml", "--plot", "res.png");
+    assert_status(0);
+    char *svg = file_read("res.svg", &sizes[0]), *png = file_read("res.png", &sizes[1]);
+    assert_true(dea_image_svg_whole(svg, sizes[0]) && dea_image_png_whole((unsigned char *)png, sizes[1]));
+    for (size_t length = 0; length < sizes[1]; length += 97) {
+        assert_false(dea_image_png_whole((unsigned char *)png, length));
+    }
+    for (size_t at = 0; at + PIECE < sizes[1]; at += PIECE, holes++) {
+        png[at + 7] ^= 1;
+        assert_false(dea_image_png_whole((unsigned char *)png, sizes[1]));
+        png[at + 7] ^= 1;
+    }
+    for (size_t length = 0; length + 7 < sizes[0]; length += 97) {
+        assert_false(dea_image_svg_whole(svg, length));
+    }
+    assert_true(holes > 3);
+    assert_true(dea_image_svg_whole("<svg><!-- <a> --><b c='>'/>x</svg>\n", 35));
+    assert_false(dea_image_svg_whole("<svg><b></svg></b>", 18));
+    assert_false(dea_image_svg_whole("<svg><b c='</svg>", 17));
+    free(svg);
+    free(png);
+}
+
+/* gnuplot writes line by line and goes on behind a write that failed: here the first drawing lacks a line of a curve. */
+static void a_picture_that_lost_a_line_is_refused(void **state)
+{
+    static const char lossy[] = "#!/bin/sh\n"
+                                "PATH=${PATH#*:} gnuplot \"$@\" >drawn || exit\n"
+                                "if test -e once; then cat drawn; else touch once; sed \"$LOST\" drawn; fi\n";
+    static const char *const lost[] = {"/gridline/d", "100d", "$d", "3d"};
+    char path[4096];
+    (void)state;
+    inputs_write();
+    assert_int_equal(mkdir("lossy", 0700), 0);
+    file_write("lossy/gnuplot", lossy, sizeof lossy - 1);
+    assert_int_equal(chmod("lossy/gnuplot", 0700), 0);
+    const char *before = getenv("PATH");
+    snprintf(path, sizeof path, "%s/lossy:%s", child_folder, before);
+    char *kept = strdup(before);
+    assert_non_null(kept);
+    setenv("PATH", path, 1);
+    for (size_t i = 0; i < sizeof lost / sizeof *lost; i++) {
+        unlink("once");
+        unlink("res.svg");
+        setenv("LOST", lost[i], 1);
+        RUN("run", "sweep.yaml", "--engine", "direct", "--plot", "res.svg");
+        assert_status(1);
+        assert_says("whole picture");
+        assert_false(file_exists("res.svg"));
+    }
+    RUN("run", "sweep.yaml", "--engine", "direct", "--plot", "res.svg");
+    setenv("PATH", kept, 1);
+    free(kept);
+    assert_status(0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -199,6 +358,12 @@ int main(void)
         cmocka_unit_test(a_result_may_be_written_again),
         cmocka_unit_test(a_scene_of_a_stranger_names_no_files),
         cmocka_unit_test(a_message_tells_nothing_of_a_foreign_file),
+        cmocka_unit_test(what_killed_runs_left_goes_with_the_next_one),
+        cmocka_unit_test(a_limit_of_file_size_is_told),
+        cmocka_unit_test(a_folder_for_temporary_files_that_is_not_there_does_no_harm),
+        cmocka_unit_test(a_title_never_breaks_the_picture),
+        cmocka_unit_test(a_picture_with_a_hole_is_none),
+        cmocka_unit_test(a_picture_that_lost_a_line_is_refused),
     };
     return cmocka_run_group_tests_name("files", tests, child_enter, child_leave);
 }

@@ -528,18 +528,18 @@ static void start_up_folder_is_gone_at_once(void **state)
 
 static void start_without_a_place(verdict *found, const char *folder)
 {
-    static const char *const places[] = {"/nowhere/at/all", "/dev/null", "/proc"};
+    static const char *const places[] = {"/nowhere/at/all", "/dev/null", "relative", ""};
     (void)folder;
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
         dea_error error = {0};
         dea_ngspice *library;
         setenv("TMPDIR", places[i], 1);
-        CHECK(dea_ngspice_open(&library, &error) == DEA_ERROR_IO, "%s is taken for a folder", places[i]);
-        CHECK(!library && strstr(error.message, places[i]), "the message does not name %s: %s", places[i], error.message);
+        CHECK(dea_ngspice_open(&library, &error) == DEA_OK, "no start with TMPDIR=%s: %s", places[i], error.message);
+        dea_ngspice_close(library);
     }
 }
 
-static void folder_that_cannot_be_written_is_named(void **state)
+static void folder_for_temporary_files_that_is_none_does_no_harm(void **state)
 {
     (void)state;
     pass_in_child(start_without_a_place);
@@ -556,7 +556,7 @@ static dea_status count_rows(void *user, size_t first, const void *points, size_
     return DEA_OK;
 }
 
-static void study_without_a_place(verdict *found, const char *folder)
+static void study_away_from_home(verdict *found, const char *folder)
 {
     dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.4, 3000.0);
     dea_error error = {0};
@@ -565,20 +565,18 @@ static void study_without_a_place(verdict *found, const char *folder)
     char before[256];
     (void)folder;
     scene.models[0] = dea_model_find("coverage");
+    setenv("SPICE_LIB_DIR", "/somewhere", 1);
     CHECK(getcwd(before, sizeof before), "no folder");
     CHECK(dea_study_run(&scene, dea_engine_find("ngspice"), &options, &error) == DEA_OK && good == 1, "%s", error.message);
     char after[256];
     CHECK(getcwd(after, sizeof after) && strcmp(before, after) == 0, "the study left its folder");
-    CHECK(!getenv("SPICE_LIB_DIR"), "the study changed the environment");
-    setenv("TMPDIR", "/nowhere/at/all", 1);
-    CHECK(dea_study_run(&scene, dea_engine_find("ngspice"), &options, &error) != DEA_OK, "a study without a folder for ngspice");
-    CHECK(strstr(error.message, "/nowhere/at/all"), "%s", error.message);
+    CHECK(strcmp(getenv("SPICE_LIB_DIR"), "/somewhere") == 0, "the study changed the environment");
 }
 
-static void study_keeps_its_own_process_and_tells_what_is_missing(void **state)
+static void study_keeps_its_own_process(void **state)
 {
     (void)state;
-    pass_in_child(study_without_a_place);
+    pass_in_child(study_away_from_home);
 }
 
 static void times_of_a_study_enter_its_units_together(void **state)
@@ -612,8 +610,8 @@ int main(void)
         cmocka_unit_test(nothing_is_printed),
         cmocka_unit_test(memory_stays_flat_over_two_thousand_circuits),
         cmocka_unit_test(start_up_folder_is_gone_at_once),
-        cmocka_unit_test(folder_that_cannot_be_written_is_named),
-        cmocka_unit_test(study_keeps_its_own_process_and_tells_what_is_missing),
+        cmocka_unit_test(folder_for_temporary_files_that_is_none_does_no_harm),
+        cmocka_unit_test(study_keeps_its_own_process),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

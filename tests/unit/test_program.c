@@ -589,6 +589,12 @@ static void sleep_ms(long ms)
     nanosleep(&nap, NULL);
 }
 
+/* Has the run opened its output? Its handlers are there by then. */
+static bool is_writing(void)
+{
+    return system("ls -A | grep -q '[.]part$'") == 0;
+}
+
 static void signal_ends_the_run_and_leaves_nothing(void **state)
 {
     (void)state;
@@ -597,7 +603,9 @@ static void signal_ends_the_run_and_leaves_nothing(void **state)
         const char *jobs = i < 3 ? "1" : "2";
         pid_t pid =
             start("out.txt", (const char *const[]){"run", "long.yaml", "--engine", "direct", "-o", "long.csv", "-j", jobs, NULL});
-        sleep_ms(300);
+        while (!is_writing() && waitpid(pid, NULL, WNOHANG) == 0) {
+            sleep_ms(10);
+        }
         kill(pid, signals[i % 3]);
         assert_int_equal(ended(pid), -signals[i % 3]);
         read_file("err.txt", last.err);

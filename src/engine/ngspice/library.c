@@ -15,6 +15,8 @@
 
 #include <ngspice/sharedspice.h>
 
+#include "support/scratch.h"
+
 enum { LOG_SIZE = 3000, LINE_SIZE = 160 };
 
 struct dea_ngspice {
@@ -81,11 +83,10 @@ static int on_detach(int code, bool immediate, bool quit, int id, void *user)
  * start-up. */
 static dea_status enter_private_folder(char *folder, size_t size, dea_error *error)
 {
-    const char *base = getenv("TMPDIR");
-    snprintf(folder, size, "%s/deaspice-XXXXXX", base && base[0] == '/' ? base : "/tmp");
+    const char *base = dea_scratch_folder();
+    snprintf(folder, size, "%s/deaspice-XXXXXX", base);
     if (!mkdtemp(folder) || chdir(folder) != 0) {
-        return dea_fail(error, DEA_ERROR_IO, "no private start-up folder for ngspice under %s",
-                        base && base[0] == '/' ? base : "/tmp");
+        return dea_fail(error, DEA_ERROR_IO, "no private start-up folder for ngspice under %s", base);
     }
     static const char *const files[] = {".spiceinit", "scripts/spinit"};
     bool written = mkdir("scripts", 0700) == 0;

@@ -206,49 +206,89 @@ static void engines_keep_their_promises_on_random_scenes(void **state)
     assert_true(counted.unjudged < SCENES / 10);
 }
 
-/* A promise that was broken, each: a lens so deep in slack that its force follows the strain twenty times; one whose narrow
- * annulus loses its ellipticity at a small strain of the disc, behind which there are other roots; a linear film whose
- * capacitance ends before its frame, as it swings back. */
-static const char *const hard_to_keep[] = {
-    "actuator: {kind: lens, frame_radius: 0.037987516999655614 m, coverage: 0.34203059175942685,\n"
-    "  film_thickness: 0.00026563453542893762 m, prestretch: 3.9298411033839291}\n"
-    "material: {yeoh: {C1: 630479.30409754871 Pa, C2: 12070.152719188161 Pa, C3: 0 Pa}, permittivity: 8.1616038585472808}\n"
-    "drive: {voltage: 23059.238763455531 V}\nmodel: field\n"
-    "study: {sweep: {voltage: [28452.971753026566 V, 30078.865302443734 V]}}\n",
-    "actuator: {kind: lens, frame_radius: 0.0018328892777835966 m, coverage: 0.97152469858042112,\n"
-    "  film_thickness: 4.610956161882364e-05 m, prestretch: 1.2203506766512637}\n"
-    "material: {yeoh: {C1: 46935.6 Pa, C2: -4125.2 Pa, C3: 307.04 Pa}, permittivity: 3.1188}\n"
-    "drive: {voltage: 1000 V}\nmodel: field\n"
-    "study: {sweep: {voltage: [1000 V, 1140 V, 1300 V, 1758 V]}}\n",
-    "actuator: {kind: lens, frame_radius: 0.0012503066153113683 m, coverage: 0.91267207652003479,\n"
-    "  film_thickness: 1.0637744766120891e-05 m, prestretch: 1.14282342573808}\n"
-    "material:\n  yeoh: {C1: 146417.69094899992 Pa, C2: 9831.3958373059559 Pa, C3: 5160.5324552135135 Pa}\n"
-    "  permittivity: 2.1605610409197071\n  density: 1070.5397186158177 kg/m^3\n"
-    "  prony: [{g: 0.68572190881189177, tau: 93801 s}]\n"
-    "drive:\n  series_resistance: 234948 Ohm\n"
-    "  waveform: {step: {on: 1.183843372887906e-05 s, voltage: 2764.1531721514734 V, rise: 0 s, off: 5.5196211716137397e-05 s}}\n"
-    "model: lame\nstudy: {transient: {until: 0.000139 s, every: 7.0202743331343512e-07 s}}\n",
+/* Promises that were broken. */
+static const struct {
+    dea_state last; /* of the last row */
+    size_t engines; /* that deliver */
+    const char *text;
+} hard_to_keep[] = {
+    /* a lens so deep in slack that its force follows the strain twenty times */
+    {DEA_STATE_SLACK, 2,
+     "actuator: {kind: lens, frame_radius: 0.037987516999655614 m, coverage: 0.34203059175942685,\n"
+     "  film_thickness: 0.00026563453542893762 m, prestretch: 3.9298411033839291}\n"
+     "material: {yeoh: {C1: 630479.30409754871 Pa, C2: 12070.152719188161 Pa, C3: 0 Pa}, permittivity: 8.1616038585472808}\n"
+     "drive: {voltage: 23059.238763455531 V}\nmodel: field\n"
+     "study: {sweep: {voltage: [28452.971753026566 V, 30078.865302443734 V]}}\n"},
+    /* a narrow annulus that loses its ellipticity at a small strain of the disc, behind which there are other roots */
+    {DEA_STATE_PULL_IN, 2,
+     "actuator: {kind: lens, frame_radius: 0.0018328892777835966 m, coverage: 0.97152469858042112,\n"
+     "  film_thickness: 4.610956161882364e-05 m, prestretch: 1.2203506766512637}\n"
+     "material: {yeoh: {C1: 46935.6 Pa, C2: -4125.2 Pa, C3: 307.04 Pa}, permittivity: 3.1188}\n"
+     "drive: {voltage: 1000 V}\nmodel: field\n"
+     "study: {sweep: {voltage: [1000 V, 1140 V, 1300 V, 1758 V]}}\n"},
+    /* a linear film whose capacitance ends before its frame, as it swings back */
+    {DEA_STATE_PULL_IN, 2,
+     "actuator: {kind: lens, frame_radius: 0.0012503066153113683 m, coverage: 0.91267207652003479,\n"
+     "  film_thickness: 1.0637744766120891e-05 m, prestretch: 1.14282342573808}\n"
+     "material:\n  yeoh: {C1: 146417.69094899992 Pa, C2: 9831.3958373059559 Pa, C3: 5160.5324552135135 Pa}\n"
+     "  permittivity: 2.1605610409197071\n  density: 1070.5397186158177 kg/m^3\n"
+     "  prony: [{g: 0.68572190881189177, tau: 93801 s}]\n"
+     "drive:\n  series_resistance: 234948 Ohm\n"
+     "  waveform: {step: {on: 1.183843372887906e-05 s, voltage: 2764.1531721514734 V, rise: 0 s, off: 5.5196211716137397e-05 "
+     "s}}\n"
+     "model: lame\nstudy: {transient: {until: 0.000139 s, every: 7.0202743331343512e-07 s}}\n"},
+    /* a film without mass and damper whose stiffness at rest is a tenth of its stresses */
+    {DEA_STATE_OK, 2,
+     "actuator: {kind: lens, frame_radius: 0.0024503558280604978 m, coverage: 0.54205249700484692,\n"
+     "  film_thickness: 2.6067456848292821e-05 m, prestretch: 1.341461099136938}\n"
+     "material: {yeoh: {C1: 139376.02 Pa, C2: -27342.778 Pa, C3: 1185.2416 Pa}, permittivity: 9.0414943}\n"
+     "drive:\n  series_resistance: 1063.3546105022385 Ohm\n"
+     "  waveform: {sine: {offset: 0.88471525877214285 V, amplitude: 2.2059382841203776 V, frequency: 95643.075387818753 Hz,\n"
+     "    phase: 4.3585337066108316 rad, delay: 4.064242338169842e-06 s}}\n"
+     "model: coverage\nstudy: {transient: {until: 2e-05 s, every: 1.5e-07 s, start: bias}}\n"},
+    /* a jump at the first sample, which shows the velocity of a branch too fast and too weak to be seen otherwise */
+    {DEA_STATE_OK, 3,
+     "actuator: {kind: dot, frame_radius: 10 mm, coverage: 0.4, film_thickness: 3.1366820384274669e-06 m, prestretch: 1.327}\n"
+     "material:\n  yeoh: {C1: 37829 Pa, C2: -2643 Pa, C3: 1408 Pa}\n  permittivity: 7.73\n"
+     "  prony: [{g: 0.0083354617685569028, tau: 0.00064 s}, {g: 0.112, tau: 11093 s}, {g: 0.0121, tau: 6.2368944137494644 s}]\n"
+     "drive: {waveform: {points: [[1968 s, 3.9 V], [12460 s, -18.9 V], [27511 s, -40 V], [60000 s, 29 V]]}}\n"
+     "model: lumped\nstudy: {transient: {until: 60263 s, every: 251.09749029167287 s}}\n"},
 };
+
+/* A rise that repetition squeezes below the shortest edge. */
+static void a_draw_is_a_valid_scene(void **state)
+{
+    (void)state;
+    char *text = draw_scene(77, 36);
+    dea_scene scene;
+    dea_error error = {0};
+    assert_non_null(text);
+    assert_int_equal(dea_scene_parse(text, strlen(text), "draw", ".", NULL, 0, NULL, &scene, &error), DEA_OK);
+    assert_true(scene.drive.waveform.step.rise == 0.0);
+    dea_scene_free(&scene);
+    free(text);
+}
 
 static void engines_keep_the_promises_that_were_broken(void **state)
 {
     (void)state;
-    const dea_state last[] = {DEA_STATE_SLACK, DEA_STATE_PULL_IN, DEA_STATE_PULL_IN};
     for (size_t i = 0; i < sizeof hard_to_keep / sizeof *hard_to_keep; i++) {
         tally counted = {0};
         char line[LINE];
         judged j;
-        assert_true(judge_open(&j, hard_to_keep[i], i));
+        assert_true(judge_open(&j, hard_to_keep[i].text, i));
         const char *end = (const char *)j.truth + (j.points - 1) * j.layout.point_size + (j.layout.rows - 1) * j.layout.row_size;
-        assert_int_equal(dea_layout_state(&j.layout, end), last[i]);
+        assert_int_equal(dea_layout_state(&j.layout, end), hard_to_keep[i].last);
         for (size_t e = 0; e < dea_engine_count(); e++) {
-            const dea_engine *engine = dea_engine_at(e);
-            const bool slow = j.scene.study == DEA_STUDY_TRANSIENT && strcmp(engine->name, "ngspice") == 0;
-            if (judge_engine(&j, engine, slow ? 1e-4 : best_accuracy(engine, &j.scene), &counted, line, sizeof line)) {
-                fail_msg("%s", line);
+            for (int turn = 0; turn < 2; turn++) {
+                const double accuracy = turn == 0 ? 1e-3 : accuracy_of(dea_engine_at(e), &j.scene, turn);
+                if (judge_engine(&j, dea_engine_at(e), accuracy, &counted, line, sizeof line)) {
+                    fail_msg("%s", line);
+                }
             }
         }
-        assert_int_equal(counted.delivered, 2);
+        assert_int_equal(counted.delivered + counted.unjudged, 2 * hard_to_keep[i].engines);
+        assert_true(counted.unjudged <= 1); /* the truth of a run may be too coarse for the best accuracy */
         assert_int_equal(counted.failed, 0);
         judge_close(&j);
     }
@@ -263,6 +303,7 @@ int main(void)
         cmocka_unit_test(a_branch_without_fold_is_slack_and_not_pulled_in),
         cmocka_unit_test(a_branch_folds_at_its_critical_voltage),
         cmocka_unit_test(an_engine_that_is_off_by_three_times_the_accuracy_is_found),
+        cmocka_unit_test(a_draw_is_a_valid_scene),
         cmocka_unit_test(engines_keep_the_promises_that_were_broken),
         cmocka_unit_test(engines_keep_their_promises_on_random_scenes),
     };

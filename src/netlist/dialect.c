@@ -53,10 +53,12 @@ static const dea_dialect dialects[] = {
         .right = "",
         .ln = "ln",
         .inside = ":",
-        .solver = ".options nonlin-tran",
-        .stepping = ".options timeint",
+        .solver = NULL,
         .inductor = "",
-        .transient = "",
+        /* steps up to tmax as long as Newton converges: its control of the error stops at edges, and tighter tolerances of its
+         * Newton at rounding */
+        .transient = "* every step as long as tmax, no control of the error: it falls with the square of tmax\n"
+                     ".options timeint erroption=1\n",
         .ac = "",
         .sweep = "",
     },

@@ -17,8 +17,7 @@ typedef struct dea_dialect {
     const char *left, *right; /* round a parameter inside such an expression; brackets where it is put in as text */
     const char *ln;           /* natural logarithm */
     const char *inside;       /* between the name of an instance and a node of it: v(x1.u) */
-    const char *solver;       /* card of solver options that reltol, abstol and vntol follow */
-    const char *stepping;     /* card of options of the time steps, before method=; NULL: the same card */
+    const char *solver;       /* card of solver options that reltol, abstol and vntol follow, NULL: none */
     const char *inductor;     /* what stands behind every inductor */
     const char *transient;    /* lines before a transient of a whole study, */
     const char *ac;           /* its frequency response, */

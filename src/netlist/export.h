@@ -29,6 +29,7 @@ typedef struct dea_export {
     const dea_dialect *dialect;
     const dea_analogy *analogy;
     bool analogy_given; /* the user has chosen it */
+    const char *name;   /* of a part, NULL: its own */
     FILE *out;
     char note[DEA_EXPORT_NOTE]; /* computed by dea_export_netlist(): what a user must know of the file, empty: nothing */
 } dea_export;

@@ -413,6 +413,9 @@ static dea_status write_nodes(writer *w, dea_error *error)
 /* Tolerances of Newton from the sizes of displacement, velocity and force. */
 static void write_tolerances(writer *w)
 {
+    if (!w->dialect->solver) {
+        return;
+    }
     dea_dynamics *d = &w->dynamics;
     const double scale = dea_dynamics_scale(d, w->signal.largest);
     const double force = scale * fabs(dea_dynamics_stiffness(d, 0.0, 0.0, false));
@@ -422,19 +425,17 @@ static void write_tolerances(writer *w)
     const double voltage = w->analogy->loop ? least : fmin(velocity, 1e-11 * scale + 2e-12 * speed);
     const double current = w->analogy->loop ? 1e-11 * speed : 1e-10 * force;
     fprintf(w->out, "* tolerances of one time step\n%s reltol=1e-7 abstol=", w->dialect->solver);
-    dea_export_number(w->out, w->dialect->stepping ? fmin(voltage, current) : current);
-    if (!w->dialect->stepping) {
-        fputs(" vntol=", w->out);
-        dea_export_number(w->out, voltage);
-    }
+    dea_export_number(w->out, current);
+    fputs(" vntol=", w->out);
+    dea_export_number(w->out, voltage);
     fputc('\n', w->out);
-    fputs(w->export->dialect->transient, w->out);
 }
 
 static void write_analysis(writer *w)
 {
     const dea_transient *transient = &w->export->scene->transient;
     write_tolerances(w);
+    fputs(w->dialect->transient, w->out);
     fputs(
         "* results: displacement v(disp) [m], velocity v(edge) [m/s], film voltage v(film) [V], source current -i(vsource) [A]\n"
         ".print tran v(disp) v(edge) v(film) i(vsource)\n",

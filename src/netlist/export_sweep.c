@@ -286,20 +286,24 @@ static dea_status visit_line(void *user, const dea_scene *scene, const dea_line 
     return status;
 }
 
+static void write_tolerances(const writer *w)
+{
+    if (w->dialect->solver) {
+        fprintf(w->out, "* tolerances of one point\n%s reltol=", w->dialect->solver);
+        dea_export_number(w->out, fmin(1e-8, 0.1 * w->export->scene->accuracy));
+        fputs(" abstol=", w->out);
+        dea_export_number(w->out, 1e-18 * w->force);
+        fputs(" vntol=", w->out);
+        dea_export_number(w->out, 1e-18 * w->length);
+        fputc('\n', w->out);
+    }
+}
+
 static void write_analysis(const writer *w, const char *names)
 {
     FILE *out = w->out;
-    const double tolerance = fmin(1e-8, 0.1 * w->export->scene->accuracy);
-    fprintf(out, "* tolerances of one point\n%s reltol=", w->dialect->solver);
-    dea_export_number(out, tolerance);
-    fputs(" abstol=", out);
-    dea_export_number(out, 1e-18 * (w->dialect->stepping ? fmin(w->force, w->length) : w->force));
-    if (!w->dialect->stepping) {
-        fputs(" vntol=", out);
-        dea_export_number(out, 1e-18 * w->length);
-    }
-    fputc('\n', out);
-    fputs(w->export->dialect->sweep, out);
+    write_tolerances(w);
+    fputs(w->dialect->sweep, out);
     fputs("* the sweep over the index of the points\nvindex k 0 0\n", out);
     if (w->export->dialect->save) {
         fprintf(out, "%s%s\n", w->export->dialect->save, names);

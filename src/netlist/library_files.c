@@ -86,12 +86,12 @@ static bool symbol_at(size_t index, dea_symbol *symbol)
     for (size_t i = 0; i < dea_model_count(); i++) {
         for (int kind = DEA_DOT; kind <= DEA_LENS; kind++) {
             const dea_scene scene = dea_part_paper((dea_kind)kind);
-            if (dea_symbol_of_part(&scene, dea_model_at(i), symbol) && count++ == index) {
+            if (dea_symbol_of_part(&scene, dea_model_at(i), NULL, symbol) && count++ == index) {
                 return true;
             }
         }
     }
-    *symbol = index == count ? dea_symbol_spring() : dea_symbol_lever();
+    *symbol = index == count ? dea_symbol_spring(DEA_PART_PREFIX) : dea_symbol_lever(DEA_PART_PREFIX);
     return index < count + 2;
 }
 

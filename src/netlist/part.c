@@ -28,7 +28,7 @@ enum {
     SYMBOLS
 };
 
-static const char *const symbol_names[SYMBOLS] = {"radius", "cover",   "thick",  "stretch", "yeoh1", "c2", "c3",
+static const char *const symbol_names[SYMBOLS] = {"radius", "cover",   "thick",  "stretch", "yeoh1", "yeoh2", "yeoh3",
                                                   "eps_r",  "y_given", "y_free", "rho",     "areal", ""};
 
 typedef struct part {
@@ -40,7 +40,7 @@ typedef struct part {
     dea_network network; /* owned */
     dea_part_text text;  /* owned */
     /* expressions of the displacement and the symbols, the voltage taken out */
-    dea_expr area, stress;                 /* A, S */
+    dea_expr area, stress, stress_slope;   /* A, S, dS/du */
     dea_expr push, push_slope;             /* phi = (1/2) dC/du [N/V^2] and its slope */
     dea_expr capacitance, c_rest;          /* C(u), C(0) */
     dea_expr k_rest;                       /* d(A S)/du at rest [N/m] */
@@ -56,15 +56,17 @@ typedef struct form {
     const char *model;
     const char *ending; /* of the name of the part */
     const char *meaning;
-    bool modulus; /* takes an operating modulus */
+    bool modulus;   /* takes an operating modulus */
+    double stress;  /* unit in which the part counts stresses and moduli [Pa] */
+    double tension; /* what makes its tensions numbers of size 1: they are stretches, or stresses [Pa] */
 } form;
 
 static const form *form_of(const dea_model *model)
 {
     static const form forms[] = {
-        {"lumped", "", "two linear springs and a force, Eqs. 19-23", true},
-        {"lame", "_lame", "Lame's disc and annulus with electrostatic softening", false},
-        {"coverage", "_hyper", "hyperelastic disc and annulus, Eq. 18, quasi-linear relaxation", false},
+        {"lumped", "", "two linear springs and a force, Eqs. 19-23", true, 1.0, 1.0},
+        {"lame", "_lame", "Lame's disc and annulus with electrostatic softening", false, 1.0, 1e-6},
+        {"coverage", "_hyper", "hyperelastic disc and annulus, Eq. 18, quasi-linear relaxation", false, 1e6, 1.0},
     };
     for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
         if (strcmp(model->name, forms[i].model) == 0) {
@@ -172,7 +174,8 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
     p->push_slope = dea_expr_slope(pool, p->push);
     p->area = dea_network_area(network);
     p->stress = dea_network_stress(network);
-    p->k_rest = at_rest(pool, MUL(p->area, dea_expr_slope(pool, p->stress)));
+    p->stress_slope = dea_expr_slope(pool, p->stress);
+    p->k_rest = SCALE(form_of(model)->stress, at_rest(pool, MUL(p->area, p->stress_slope)));
     p->capacitance = network->capacitance;
     p->c_rest = at_rest(pool, p->capacitance);
     p->field = at_volts(pool, network->field, 1.0);
@@ -180,8 +183,9 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
     p->divide = MUL(symbols.frame_radius, symbols.coverage);
     p->width = dea_symbols_annulus_width(&symbols);
     for (int i = 0; i < network->tension_count; i++) {
-        p->taut[i] = at_volts(pool, network->tension[i], 0.0);
-        const dea_expr loaded = at_volts(pool, network->tension[i], 1.0);
+        const dea_expr tension = SCALE(form_of(model)->tension, network->tension[i]);
+        p->taut[i] = at_volts(pool, tension, 0.0);
+        const dea_expr loaded = at_volts(pool, tension, 1.0);
         p->loosen[i] = loaded == p->taut[i] ? NUM(0.0) : SUB(loaded, p->taut[i]);
     }
     return pool->exhausted ? dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is made") : DEA_OK;
@@ -272,19 +276,20 @@ static void check_optics(const part *p, int *count)
 }
 
 /* Every number that the network uses is in its range; ok tells whether all were. */
-static void write_checks(const part *p, bool modulus)
+static void write_checks(const part *p, const form *of)
 {
     static const range ranges[] = {
         {"frame_radius", "radius", "1e-6", "1e3"},
         {"coverage", "cover", "1e-6", "0.999999"},
         {"film_thickness", "thick", "1e-9", "1"},
         {"prestretch", "stretch", "1", "100"},
-        {"c1", "yeoh1", "1", "1e12"},
+        {"c1", "film1", "1", "1e12"},
         {"permittivity+permittivity_per_stretch*prestretch", "eps_r", "1e-3", "1e9"},
         {"density", "rho", "0", "1e6"},
         {"electrode_mass", "areal", "0", "1e6"},
         {"retardation", "retard", "0", "1e9"},
         {"leakage_resistance", "r_leak", "0", "1e30"},
+        {"m", "many", "1e-9", "1e9"},
     };
     int count = 1;
     line(p, "* parameters put into their ranges; ok is 1 where all were there already, else 0");
@@ -292,7 +297,9 @@ static void write_checks(const part *p, bool modulus)
     for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++) {
         check(p, &ranges[i], &count);
     }
-    if (modulus) {
+    line(p, "* Yeoh constants in units of %.0f Pa", of->stress);
+    line(p, ".param yeoh1={film1/%.0f}\n.param yeoh2={c2/%.0f}\n.param yeoh3={c3/%.0f}", of->stress, of->stress, of->stress);
+    if (of->modulus) {
         check(p, &(range){"modulus", "y_given", "0", "1e15"}, &count);
         line(p, ".param y_free={1-min(y_given*1e30,1)}");
     }
@@ -315,6 +322,9 @@ static void declare(part *p)
     for (int i = 0; i < network->tension_count; i++) {
         dea_part_text_use(text, p->taut[i]);
         dea_part_text_use(text, p->loosen[i]);
+    }
+    if (!p->linear) {
+        dea_part_text_use_as_factor(text, p->stress_slope);
     }
 }
 
@@ -353,34 +363,51 @@ static void write_numbers(const part *p)
     line(p, ".param still={max(1-m_film*1e30,0)*max(1-retard*1e30,0)}");
     line(p, ".param damp={retard+1e-9*still}");
     line(p, ".param inertia={m_film+1e-24*%s}", dea_part_text_parameter(&p->text, p->k_rest, name));
-    line(p, "* conductance of the leakage [S], 0 without a resistance");
-    line(p, ".param leak={r_leak/(r_leak*r_leak+1e-30)}");
 }
 
+/* The current of the film is that of a capacitor, without a gain: what a simulator adds to nodes and pivots (gmin, rshunt, cshunt)
+ * stays what it is. v(plate) makes it a voltage, whose tolerance, 1e-6, is one of 1 nA, which the digits of kilovolts can keep in
+ * short steps; fed back into v(q), it leaves the capacitor its whole voltage. A conductance has no noise, as a resistor would. */
 static void write_port(const part *p)
 {
-    line(p, "* film: v(q) = charge/c_rest; the current of a capacitor of c_rest/1000 is a thousandth of d(C U)/dt, so that the");
-    line(p, "* tolerance of currents is one of 1 nA, which the digits of kilovolts can keep in short steps");
-    line(p, ".param c_sense={1e-3*c_rest}");
-    source(p, DEA_VOLTAGE, "charge", "q", "0", "[ok]*v(p,n)*[]/[c_rest]", p->capacitance);
-    line(p, "vsense q plate 0\ncfilm plate 0 {c_sense}\nffilm p n vsense 1e3\ngleak p n p n {leak}");
+    line(p, "* film: v(q) = charge/c_rest on a capacitor of c_rest, whose current is d(C U)/dt; v(plate) is this current [mA]");
+    source(p, DEA_VOLTAGE, "charge", "q", "0", "v(plate)+[ok]*v(p,n)*[]/[c_rest]", p->capacitance);
+    line(p, ".param i_film={1e-3*many}\ncfilm q plate {c_rest}\ngsense plate 0 plate 0 1e-3\ngfilm p n plate 0 {i_film}");
+    line(p, "* conductance of the leakage [S], 0 without a resistance");
+    line(p, ".param leak={many*r_leak/(r_leak*r_leak+1e-30)}\ngleak p n p n {leak}");
     line(p, "* electrostatic force [N] onto the edge, (1/2) U^2 dC/du");
     source(p, DEA_VOLTAGE, "force", "force", "0", "[ok]*[]*v(p,n)*v(p,n)", p->push);
-    line(p, "gforce 0 edge force 0 1");
+    line(p, "gforce 0 edge force 0 {many}");
+}
+
+/* The velocity enters with a large factor, so that pivoting finds it from the integrator and not from a difference of forces: only
+ * so do springs in parallel share right at the operating point. */
+static void write_integrator(FILE *out, const char *from, const char *to)
+{
+    fprintf(out,
+            "* u = displacement [um], the integral of the velocity; it leaks 1e-9 of itself a second, so that springs in parallel\n"
+            "* have an operating point\n"
+            "gdisp 0 u %s %s 1e6\ncdisp u 0 1\ngdrift u 0 u 0 1e-9\n",
+            from, to);
 }
 
 static void write_displacement(const part *p)
 {
-    line(p,
-         "* u = displacement of the edge [um], the integral of its velocity; it leaks 1e-9 of itself a second, so that springs");
-    line(p, "* in parallel have an operating point");
-    line(p, "gdisp 0 u edge 0 1e6\ncdisp u 0 1\ngdrift u 0 u 0 1e-9");
+    write_integrator(p->out, "edge", "0");
     line(p, "* holds the edge where a parameter is out of its range [N/um]");
     line(p, ".param hold={1-ok}\ngsafe edge 0 u 0 {hold}");
     line(p,
          "* mass that moves with the edge [kg]; a capacitor of a millionth of it, so that the tolerance of currents, 1e-12, is");
     line(p, "* one of 1e-6 N: the force of inertia is 0 at rest, where a kink of the voltage would ask for steps without end");
-    line(p, "emass m1 0 edge 0 1e-6\nvmass m1 m2 0\ncmass m2 0 {inertia}\nfmass edge 0 vmass 1e6");
+    line(p, ".param f_mass={1e6*many}\nemass m1 0 edge 0 1e-6\ncmass m1 m2 {inertia}\nvmass m2 0 0\nfmass edge 0 vmass {f_mass}");
+}
+
+/* z relaxes to what the branch follows with its time. A branch without a share follows at once: its state would only be one more
+ * pole. */
+static void write_relaxation(const part *p, size_t i, const char *follows)
+{
+    line(p, ".param c_relax%zu={relax%zu*min(part%zu*1e30,1)+1e-30}", i, i, i);
+    line(p, "grelax%zu 0 z%zu %s z%zu 1\ncrelax%zu z%zu 0 {c_relax%zu}", i, i, follows, i, i, i, i);
 }
 
 static void write_linear_springs(const part *p)
@@ -388,30 +415,30 @@ static void write_linear_springs(const part *p)
     char name[DEA_PART_NAME];
     const char *k = dea_part_text_parameter(&p->text, p->k_rest, name);
     line(p, "* springs [N/um], damper [N s/m], branches: z relaxes to u with the time of the branch");
-    line(p, ".param k_um={1e-6*%s}\n.param r_damp={damp*%s}", k, k);
+    line(p, ".param k_um={1e-6*many*%s}\n.param r_damp={many*damp*%s}", k, k);
     line(p, "gspring edge 0 u 0 {k_um}\ngdamp edge 0 edge 0 {r_damp}");
     for (size_t i = 1; i <= p->branches; i++) {
         line(p, ".param k_um%zu={share%zu*k_um}", i, i);
-        line(p, "grelax%zu 0 z%zu u z%zu 1\ncrelax%zu z%zu 0 {relax%zu}\ngbranch%zu edge 0 u z%zu {k_um%zu}", i, i, i, i, i, i, i,
-             i, i);
+        write_relaxation(p, i, "u");
+        line(p, "gbranch%zu edge 0 u z%zu {k_um%zu}", i, i, i);
     }
 }
 
 static void write_hyperelastic_springs(const part *p)
 {
-    line(p, "* s = stress of the springs [Pa] on the area A(u); branches: z relaxes to s with the time of the branch");
+    line(p, "* s = stress of the springs [MPa] on the area A(u); branches: z relaxes to s with the time of the branch");
     source(p, DEA_VOLTAGE, "stress", "s", "0", "[]", p->stress);
-    line(p, "* damper: v(rate) = tau ds/dt [1e10 Pa], the current of a capacitor of its time");
-    line(p, ".param c_damp={damp+1e-18}\nedamp d 0 s 0 1e-10\nvdamp d follow 0\ncdamp follow 0 {c_damp}\nhdamp rate 0 vdamp 1");
-    fputs("* force of springs, damper and branches [N]\n", p->out);
     for (size_t i = 1; i <= p->branches; i++) {
-        line(p, "grelax%zu 0 z%zu s z%zu 1\ncrelax%zu z%zu 0 {relax%zu}", i, i, i, i, i, i);
+        write_relaxation(p, i, "s");
         line(p, "ebranch%zu b%zu b%zu s z%zu {share%zu}", i, i, i - 1, i, i);
     }
-    line(p, "ebranch0 b0 0 s 0 1");
+    line(p, "ebranch0 b0 0 s 0 1\n* force of springs and branches, and of the damper, tau A dS/du times the velocity [N]");
+    line(p, ".param a_um={1e6*many}\n.param r_damp={damp*a_um}");
     char text[64];
-    snprintf(text, sizeof text, "[]*(v(b%zu)+1e10*v(rate))", p->branches);
+    snprintf(text, sizeof text, "[a_um]*[]*v(b%zu)", p->branches);
     source(p, DEA_CURRENT, "spring", "edge", "0", text, p->area);
+    /* an iterate whose velocity runs away would overflow the product, which ends a run instead of shortening its step */
+    source(p, DEA_CURRENT, "damper", "edge", "0", "[r_damp]*[]*[]*min(max(v(edge),-1e3),1e3)", p->area, p->stress_slope);
 }
 
 /* v(bad) and v(slack) rise from 0 to 1 within a millionth of what they watch. */
@@ -453,18 +480,18 @@ static void write_optics(const part *p)
            "[f_height]*((1+v(strain))*(1+v(strain))+[flat]*v(eta)*v(eta))/max(v(eta),1e-3)");
 }
 
-static void write_body(part *p, bool modulus)
+static void write_body(part *p, const form *of)
 {
     declare(p);
     give_names(p);
-    write_checks(p, modulus);
+    write_checks(p, of);
     dea_part_text_parameters(&p->text);
     write_numbers(p);
     write_displacement(p);
     if (!p->linear) {
         line(p, "* w = u between stops short of the centre and of the frame [um]: past them is no film");
         source(p, DEA_VOLTAGE, "clip", "w", "0", "min(max(v(u),[u_low]),[u_high])");
-        line(p, ".param k_stop={1e-3*k_rest}\ngstop edge 0 u w {k_stop}");
+        line(p, ".param k_stop={1e-3*many*k_rest}\ngstop edge 0 u w {k_stop}");
     }
     dea_part_text_nodes(&p->text);
     if (p->linear) {
@@ -536,6 +563,7 @@ size_t dea_part_parameters(const dea_scene *scene, const dea_model *model, dea_p
             share * or_zero(scene->material.modulus));
     }
     add(list, &count, "leakage_resistance", "ohm", "of the film, 0: none", or_zero(scene->drive.leakage_resistance));
+    add(list, &count, "m", "1", "how many of it act side by side on the same pins", 1.0);
     if (!dot) {
         const double refractive = actuator->refractive_index;
         add(list, &count, "focal_length", "m", "of the lens at rest, 0: no optics", or_zero(actuator->focal_length));
@@ -555,9 +583,9 @@ static void write_header(const part *p, const char *name, const dea_part_paramet
     fputc('\n', p->out);
 }
 
-static dea_status write_part(part *p, const dea_scene *defaults, const dea_model *model, dea_error *error)
+static dea_status write_part(part *p, const dea_scene *defaults, const dea_model *model, const char *name, dea_error *error)
 {
-    char name[DEA_PART_TITLE];
+    char own[DEA_PART_TITLE];
     dea_part_parameter list[DEA_PART_PARAMETERS];
     const dea_status status = derive(p, model, error);
     if (status != DEA_OK) {
@@ -566,16 +594,17 @@ static dea_status write_part(part *p, const dea_scene *defaults, const dea_model
     if (!dea_part_text_open(&p->text, &p->network.pool, p->dialect, p->out)) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is written");
     }
-    dea_part_name_of(p->kind, model, name);
+    dea_part_name_of(p->kind, model, own);
+    name = name ? name : own;
     line(p, "* %s: %s", name, form_of(model)->meaning);
     write_header(p, name, list, dea_part_parameters(defaults, model, list));
-    write_body(p, form_of(model)->modulus);
+    write_body(p, form_of(model));
     line(p, ".ends %s", name);
     return DEA_OK;
 }
 
-dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, const dea_dialect *dialect, FILE *out,
-                          dea_error *error)
+dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, const char *name, const dea_dialect *dialect,
+                          FILE *out, dea_error *error)
 {
     if (!form_of(model)) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is no circuit part: lumped, lame and coverage are",
@@ -592,7 +621,7 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
     if (!p.out) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is written");
     }
-    dea_status status = write_part(&p, defaults, model, error);
+    dea_status status = write_part(&p, defaults, model, name, error);
     const bool whole = !ferror(p.out) && fclose(p.out) == 0;
     if (status == DEA_OK && !whole) {
         status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is written");
@@ -606,49 +635,58 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
     return status;
 }
 
-void dea_part_write_mechanics(FILE *out)
+void dea_part_write_mechanics(const char *prefix, FILE *out)
 {
-    fputs("* dea_spring: a spring between a and b that has an operating point beside the parts; v(x.u) = its stretch [um]\n"
-          ".subckt dea_spring a b\n"
-          "+ params: stiffness=100\n"
-          ".param k_um={1e-6*stiffness}\n"
-          "gdisp 0 u a b 1e6\n"
-          "cdisp u 0 1\n"
-          "gdrift u 0 u 0 1e-9\n"
-          "gspring a b u 0 {k_um}\n"
-          ".ends dea_spring\n"
-          "* dea_lever: v(b) = ratio v(a), force on a = ratio times force on b; ratio = -1 turns the sense of an edge\n"
-          ".subckt dea_lever a b\n"
-          "+ params: ratio=-1\n"
-          "elever turned 0 a 0 {ratio}\n"
-          "vsense turned b 0\n"
-          "flever a 0 vsense {ratio}\n"
-          ".ends dea_lever\n",
-          out);
+    fprintf(out,
+            "* %s_spring: a spring between a and b that has an operating point beside the parts; v(x.u) = its stretch [um]\n"
+            ".subckt %s_spring a b\n"
+            "+ params: stiffness=100 m=1\n"
+            ".param k_um={1e-6*stiffness*m}\n",
+            prefix, prefix);
+    write_integrator(out, "a", "b");
+    fprintf(out, "gspring a b u 0 {k_um}\n.ends %s_spring\n", prefix);
+    fprintf(out,
+            "* %s_lever: v(b) = ratio v(a), force on a = ratio times force on b; ratio = -1 turns the sense of an edge; m levers\n"
+            "* side by side are one\n"
+            ".subckt %s_lever a b\n"
+            "+ params: ratio=-1 m=1\n"
+            "elever turned 0 a 0 {ratio}\n"
+            "vsense turned b 0\n"
+            "flever a 0 vsense {ratio}\n"
+            ".ends %s_lever\n",
+            prefix, prefix, prefix);
 }
 
-static void write_preamble(const dea_dialect *dialect, const char *title, FILE *out)
+static void write_preamble(const dea_dialect *dialect, const char *title, const char *prefix, FILE *out)
 {
     dea_dialect_comment(out, title);
     fprintf(out, "* dielectric elastomer actuators for %s\n", dialect->title);
     fprintf(
         out,
         "* p, n: film. edge: v(edge) = velocity of the disc edge, outward [m/s], current = force [N]; the frame is node 0.\n"
-        "* mass m [kg]: capacitor of m to 0. damper r [N s/m]: resistor of 1/r. spring: dea_spring. all parameters in SI units.\n"
+        "* mass m [kg]: capacitor of m to 0. damper r [N s/m]: resistor of 1/r. spring: %s_spring. all parameters in SI units.\n"
         "* to be read inside an instance x1, as v(x1%su): u [um], strain [1], force [N], field [V/um], bad, slack [0 or 1]\n",
-        dialect->inside);
+        prefix, dialect->inside);
 }
 
-dea_status dea_part_of_scene(const dea_scene *scene, const dea_model *model, const dea_dialect *dialect, FILE *out,
-                             dea_error *error)
+bool dea_part_name_valid(const char *name)
 {
-    char name[DEA_PART_TITLE];
-    if (dea_part_name_of(scene->actuator.kind, model, name)) { /* else nothing is written */
-        write_preamble(dialect, scene->title, out);
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
+    static const char marks[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+    return *name && strchr(letters, *name) && strspn(name, marks) == strlen(name) && strlen(name) <= DEA_PART_NAME_LENGTH;
+}
+
+dea_status dea_part_of_scene(const dea_scene *scene, const dea_model *model, const char *name, const dea_dialect *dialect,
+                             FILE *out, dea_error *error)
+{
+    char own[DEA_PART_TITLE];
+    const char *prefix = name ? name : DEA_PART_PREFIX;
+    if (dea_part_name_of(scene->actuator.kind, model, own)) { /* else nothing is written */
+        write_preamble(dialect, scene->title, prefix, out);
     }
-    const dea_status status = dea_part_write(scene, model, dialect, out, error);
+    const dea_status status = dea_part_write(scene, model, name, dialect, out, error);
     if (status == DEA_OK) {
-        dea_part_write_mechanics(out);
+        dea_part_write_mechanics(prefix, out);
     }
     return status;
 }
@@ -678,16 +716,16 @@ dea_scene dea_part_paper(dea_kind kind)
 dea_status dea_part_library(const dea_dialect *dialect, FILE *out, dea_error *error)
 {
     write_preamble(dialect, "library of deaspice parts; the defaults are the film of 100 um in a frame of 30 mm, Elastosil 2030",
-                   out);
+                   DEA_PART_PREFIX, out);
     for (size_t i = 0; i < dea_model_count(); i++) {
         for (int kind = DEA_DOT; form_of(dea_model_at(i)) && kind <= DEA_LENS; kind++) {
             const dea_scene scene = dea_part_paper((dea_kind)kind);
-            const dea_status status = dea_part_write(&scene, dea_model_at(i), dialect, out, error);
+            const dea_status status = dea_part_write(&scene, dea_model_at(i), NULL, dialect, out, error);
             if (status != DEA_OK) {
                 return status;
             }
         }
     }
-    dea_part_write_mechanics(out);
+    dea_part_write_mechanics(DEA_PART_PREFIX, out);
     return DEA_OK;
 }

@@ -13,22 +13,28 @@
 #include "deaspice/model.h"
 #include "netlist/dialect.h"
 
-enum { DEA_PART_TITLE = 32 };
+/* Room for a name with its ending; longest name that a user gives; what the names of the library's helpers begin with. */
+enum { DEA_PART_TITLE = 48, DEA_PART_NAME_LENGTH = 32 };
+#define DEA_PART_PREFIX "dea"
 
 /* Name of the subcircuit: dea_dot, dea_lens of lumped; ..._lame; ..._hyper of coverage. NULL where the model is no part. */
 const char *dea_part_name_of(dea_kind kind, const dea_model *model, char name[DEA_PART_TITLE]);
 
-/* Writes one subcircuit; its defaults are the numbers of the scene, an axis at its first value. As many Prony branches as the
+/* A name that every simulator takes: a letter, then letters, digits and underscores, at most DEA_PART_NAME_LENGTH in all. */
+bool dea_part_name_valid(const char *name);
+
+/* Writes one subcircuit called @p name, NULL: as dea_part_name_of() says. Its defaults are the numbers of the scene, an axis at its first value. As many Prony branches as the
  * scene has, but three at least. DEA_ERROR_UNSUPPORTED for a model that is no part. */
-dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, const dea_dialect *dialect, FILE *out,
-                          dea_error *error);
+dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, const char *name, const dea_dialect *dialect,
+                          FILE *out, dea_error *error);
 
-/* Writes the mechanical helpers: dea_spring a b params: stiffness, and dea_lever a b params: ratio. */
-void dea_part_write_mechanics(FILE *out);
+/* Writes the mechanical helpers: PREFIX_spring a b params: stiffness, and PREFIX_lever a b params: ratio. */
+void dea_part_write_mechanics(const char *prefix, FILE *out);
 
-/* Writes the part of a scene and the helpers as a library file with the scene's title as a comment. */
-dea_status dea_part_of_scene(const dea_scene *scene, const dea_model *model, const dea_dialect *dialect, FILE *out,
-                             dea_error *error);
+/* Writes the part of a scene and the helpers as a library file with the scene's title as a comment. A @p name is that of the part
+ * and the prefix of the helpers, so that files of different names go into one circuit; NULL: the names of the library. */
+dea_status dea_part_of_scene(const dea_scene *scene, const dea_model *model, const char *name, const dea_dialect *dialect,
+                             FILE *out, dea_error *error);
 
 /* Writes the library of all parts, with the film of the base paper as defaults. */
 dea_status dea_part_library(const dea_dialect *dialect, FILE *out, dea_error *error);

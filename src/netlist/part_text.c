@@ -15,18 +15,28 @@ void dea_part_number(FILE *out, double value)
     fputs(dea_number_text(text, value, digits), out);
 }
 
+/* Places of the displacement in a term, up to MANY: what is worth a node. */
+enum { WORTH = 2, MANY = 100 };
+
 /* Which terms move, and which of those may become nodes. Newton starts with every node at 0, so a node must be 0 at rest, as
- * products of the displacement are: 0.37 stands for every symbol. Only terms behind a division are worth one. */
+ * products of the displacement are: 0.37 stands for every symbol. */
 static void mark_moving(const dea_pool *pool, dea_part_text *text, double *rest)
 {
     dea_pool_values(pool, 0.37, 0.0, rest);
     for (int i = 0; i < pool->count; i++) {
         const dea_term *term = &pool->terms[i];
         const bool made = term->operation >= DEA_ADD;
-        text->moves[i] = term->operation == DEA_NODE || (made && (text->moves[term->a] || text->moves[term->b]));
-        const bool divides = term->operation == DEA_DIV && text->moves[term->b];
-        text->divides[i] = divides || (made && (text->divides[term->a] || text->divides[term->b]));
-        text->nodal[i] = made && text->moves[i] && text->divides[i] && rest[i] == 0.0;
+        const int places = made ? text->places[term->a] + text->places[term->b] : term->operation == DEA_NODE;
+        text->places[i] = places < MANY ? places : MANY;
+        text->moves[i] = places > 0;
+        text->nodal[i] = places >= WORTH && rest[i] == 0.0;
+    }
+    for (int i = pool->count - 1; i >= 0; i--) { /* terms stand behind those that they are made of */
+        const dea_term *term = &pool->terms[i];
+        if (term->operation >= DEA_ADD) {
+            text->divides[term->a] = text->divides[term->a] || text->divides[i] || term->operation == DEA_LN;
+            text->divides[term->b] = text->divides[term->b] || text->divides[i] || term->operation == DEA_DIV;
+        }
     }
 }
 
@@ -37,12 +47,14 @@ bool dea_part_text_open(dea_part_text *text, const dea_pool *pool, const dea_dia
     text->uses = calloc(size, sizeof *text->uses);
     text->carded = calloc(size, sizeof *text->carded);
     text->moves = calloc(size, sizeof *text->moves);
+    text->places = calloc(size, sizeof *text->places);
     text->divides = calloc(size, sizeof *text->divides);
     text->nodal = calloc(size, sizeof *text->nodal);
     text->written = calloc(size, sizeof *text->written);
     double *rest = calloc(size, sizeof *rest);
     const bool ready =
-        !pool->exhausted && text->uses && text->carded && text->moves && text->divides && text->nodal && text->written && rest;
+        !pool->exhausted && text->uses && text->carded && text->moves && text->places && text->divides && text->nodal &&
+        text->written && rest;
     if (ready) {
         mark_moving(pool, text, rest);
     }
@@ -55,6 +67,7 @@ void dea_part_text_close(dea_part_text *text)
     free(text->uses);
     free(text->carded);
     free(text->moves);
+    free(text->places);
     free(text->divides);
     free(text->nodal);
     free(text->written);
@@ -105,6 +118,23 @@ void dea_part_text_use(dea_part_text *text, dea_expr ref)
     use(text, ref, true);
 }
 
+/* Terms that are used already stay as they are, and so does all of a divisor: Newton starts with every node at 0. */
+static void allow_nodes(dea_part_text *text, dea_expr ref)
+{
+    const dea_term *term = &text->pool->terms[ref];
+    if (term->operation >= DEA_ADD && text->uses[ref] == 0) {
+        text->nodal[ref] = text->nodal[ref] || (text->places[ref] >= WORTH && !text->divides[ref]);
+        allow_nodes(text, term->a);
+        allow_nodes(text, term->b);
+    }
+}
+
+void dea_part_text_use_as_factor(dea_part_text *text, dea_expr ref)
+{
+    allow_nodes(text, ref);
+    use(text, ref, true);
+}
+
 const char *dea_part_text_parameter(const dea_part_text *text, dea_expr ref, char name[DEA_PART_NAME])
 {
     const dea_term *term = &text->pool->terms[ref];
@@ -128,10 +158,12 @@ static int precedence(const dea_term *term)
                                                                       : 3;
 }
 
-/* An expression on its way out: a behavioural source refers to parameters otherwise than a .param card. */
+/* An expression on its way out: a behavioural source refers to parameters otherwise than a .param card, and in a divisor nothing
+ * is a node of its own, since an iterate of a node can pass through 0 where its square of the displacement cannot. */
 typedef struct stream {
     const dea_part_text *text;
     bool source;
+    bool divisor;
 } stream;
 
 static void write_term(const stream *s, dea_expr ref);
@@ -141,7 +173,7 @@ static void write_operand(const stream *s, dea_expr ref, bool brackets)
     const dea_part_text *t = s->text;
     const dea_term *term = &t->pool->terms[ref];
     char name[DEA_PART_NAME];
-    if (t->moves[ref] && t->written[ref]) {
+    if (t->moves[ref] && t->written[ref] && !s->divisor) {
         fprintf(t->out, "v(x%d)", ref);
     } else if (term->operation == DEA_NODE) {
         fputs(t->node, t->out);
@@ -149,7 +181,7 @@ static void write_operand(const stream *s, dea_expr ref, bool brackets)
         fprintf(t->out, "%d", (int)term->number);
     } else if (s->source && !t->moves[ref]) {
         dea_dialect_parameter(t->dialect, t->out, dea_part_text_parameter(t, ref, name));
-    } else if (term->operation == DEA_SYMBOL || t->written[ref]) {
+    } else if (term->operation == DEA_SYMBOL || (t->written[ref] && !t->moves[ref])) {
         fputs(dea_part_text_parameter(t, ref, name), t->out);
     } else if (term->operation == DEA_NUMBER) {
         fputs(term->number < 0.0 ? "(" : "", t->out);
@@ -182,7 +214,8 @@ static void write_term(const stream *s, dea_expr ref)
         const int right = precedence(&t->pool->terms[term->b]);
         write_operand(s, term->a, precedence(&t->pool->terms[term->a]) < mine);
         fputc(signs[term->operation], t->out);
-        write_operand(s, term->b, right < mine || (right == mine && strict));
+        const stream behind = {t, s->source, s->divisor || term->operation == DEA_DIV};
+        write_operand(&behind, term->b, right < mine || (right == mine && strict));
     }
 }
 
@@ -198,7 +231,7 @@ static bool gets_card(const dea_part_text *text, dea_expr ref)
 
 void dea_part_text_parameters(dea_part_text *text)
 {
-    const stream s = {text, false};
+    const stream s = {text, false, false};
     for (int i = 0; i < text->pool->count; i++) {
         if (gets_card(text, i)) {
             char name[DEA_PART_NAME];
@@ -216,7 +249,7 @@ void dea_part_text_parameters(dea_part_text *text)
 
 void dea_part_text_nodes(dea_part_text *text)
 {
-    const stream s = {text, true};
+    const stream s = {text, true, false};
     for (int i = 0; i < text->pool->count; i++) {
         if (text->nodal[i] && text->uses[i] > 1) {
             char name[DEA_PART_NAME];
@@ -231,6 +264,6 @@ void dea_part_text_nodes(dea_part_text *text)
 
 void dea_part_text_write(const dea_part_text *text, dea_expr ref)
 {
-    const stream s = {text, true};
+    const stream s = {text, true, false};
     write_operand(&s, ref, precedence(&text->pool->terms[ref]) < 2);
 }

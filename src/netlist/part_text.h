@@ -26,7 +26,8 @@ typedef struct dea_part_text {
     int *uses;     /* owned: how often a term is written */
     bool *carded;  /* owned: a source refers to it, so that it needs a .param card */
     bool *moves;   /* owned: depends on the displacement */
-    bool *divides; /* owned: holds a quotient by something that moves */
+    int *places;   /* owned: how often the displacement stands in it, up to a bound */
+    bool *divides; /* owned: stands in a divisor or a logarithm */
     bool *nodal;   /* owned: becomes a node where it is shared */
     bool *written; /* owned: has its .param card or its node */
 } dea_part_text;
@@ -39,6 +40,9 @@ void dea_part_text_close(dea_part_text *text);
 void dea_part_text_name(dea_part_text *text, dea_expr ref, const char *name, const char *meaning);
 /* Declares that a source will write the expression, as a whole or as a number on a card of its own. */
 void dea_part_text_use(dea_part_text *text, dea_expr ref);
+/* The same of an expression that multiplies what is 0 at the start of Newton's iterations, the last to be declared: its shared terms
+ * become nodes whatever they are at rest, which keeps derivatives short. */
+void dea_part_text_use_as_factor(dea_part_text *text, dea_expr ref);
 
 /* The cards that the declared expressions need: .param, then nodes of shared moving terms. */
 void dea_part_text_parameters(dea_part_text *text);

@@ -18,11 +18,12 @@ typedef struct dea_symbol {
     size_t parameter_count;
 } dea_symbol;
 
-/* Symbol of the part of a scene; false where the model is no part. */
-bool dea_symbol_of_part(const dea_scene *scene, const dea_model *model, dea_symbol *symbol);
-/* Symbols of the mechanical helpers. */
-dea_symbol dea_symbol_spring(void);
-dea_symbol dea_symbol_lever(void);
+/* Symbol of the part of a scene, called @p name or, where that is NULL, as dea_part_name_of() says; false where the model is no
+ * part. */
+bool dea_symbol_of_part(const dea_scene *scene, const dea_model *model, const char *name, dea_symbol *symbol);
+/* Symbols of the mechanical helpers whose names begin with @p prefix. */
+dea_symbol dea_symbol_spring(const char *prefix);
+dea_symbol dea_symbol_lever(const char *prefix);
 
 /* A KiCad symbol library (version 7 and later read it): begin, symbols, end. @p library is the file that holds the subcircuits.
  */

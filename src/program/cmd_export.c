@@ -26,13 +26,13 @@ static dea_status write_netlist(dea_export *export, const char *library, dea_err
 static dea_status write_part(dea_export *export, const char *library, dea_error *error)
 {
     (void)library;
-    return dea_part_of_scene(export->scene, export->scene->models[0], export->dialect, export->out, error);
+    return dea_part_of_scene(export->scene, export->scene->models[0], export->name, export->dialect, export->out, error);
 }
 
 static dea_status part_symbol(const dea_export *export, dea_symbol *symbol, dea_error *error)
 {
     const dea_model *model = export->scene->models[0];
-    return dea_symbol_of_part(export->scene, model, symbol)
+    return dea_symbol_of_part(export->scene, model, export->name, symbol)
                ? DEA_OK
                : dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is no part", model->name);
 }
@@ -40,8 +40,9 @@ static dea_status part_symbol(const dea_export *export, dea_symbol *symbol, dea_
 static dea_status write_kicad(dea_export *export, const char *library, dea_error *error)
 {
     dea_symbol symbol;
-    const dea_symbol spring = dea_symbol_spring();
-    const dea_symbol lever = dea_symbol_lever();
+    const char *prefix = export->name ? export->name : DEA_PART_PREFIX;
+    const dea_symbol spring = dea_symbol_spring(prefix);
+    const dea_symbol lever = dea_symbol_lever(prefix);
     const dea_status status = part_symbol(export, &symbol, error);
     if (status == DEA_OK) {
         dea_symbol_kicad_begin(export->out);
@@ -196,7 +197,7 @@ static const dea_analogy *choose_analogy(const char *name)
     return analogy;
 }
 
-/* Parts know one analogy, symbols one dialect. */
+/* Parts know one analogy and have a name, symbols know one dialect. */
 static bool complain_mismatch(const dea_arguments *arguments, const kind *as)
 {
     if (as->dialect && arguments->dialect && strcmp(as->dialect, arguments->dialect) != 0) {
@@ -205,6 +206,15 @@ static bool complain_mismatch(const dea_arguments *arguments, const kind *as)
     }
     if (as->write != write_netlist && arguments->analogy && dea_analogy_find(arguments->analogy)->loop) {
         dea_complain("a part has a mechanical pin of the mobility analogy: --analogy goes with --as netlist");
+        return true;
+    }
+    if (as->write == write_netlist && arguments->name) {
+        dea_complain("a netlist has no name: --name goes with --as subckt, kicad and ltspice");
+        return true;
+    }
+    if (arguments->name && !dea_part_name_valid(arguments->name)) {
+        dea_complain("the name \"%s\" is none for a part: a letter, then letters, digits and \"_\", at most %d", arguments->name,
+                     DEA_PART_NAME_LENGTH);
         return true;
     }
     return false;
@@ -248,6 +258,7 @@ static dea_exit run(const dea_arguments *arguments)
         .dialect = as ? choose_dialect(dialect) : NULL,
         .analogy = as ? choose_analogy(arguments->analogy ? arguments->analogy : "mobility") : NULL,
         .analogy_given = arguments->analogy != NULL,
+        .name = arguments->name,
     };
     if (!as || !export.dialect || !export.analogy || complain_mismatch(arguments, as) ||
         !dea_scene_open(arguments, arguments->operands[0].path, &scene, &outcome)) {
@@ -277,6 +288,8 @@ const dea_command dea_command_export = {
             "      --dialect D       ngspice (default), ltspice, xyce or pspice\n"
             "      --analogy A       mobility (default): velocity is a voltage, force a current;\n"
             "                        impedance: force is a voltage, velocity a current\n"
+            "      --name NAME       name of the part and of its helpers, NAME_spring and NAME_lever,\n"
+            "                        for several parts in one circuit; else that of the library\n"
             "  -o, --output FILE     write to FILE, - is standard output (default)\n"
             "      --model M         model instead of the scene's\n"
             "      --set KEY=VALUE   change a value of the scene, e.g. actuator.prestretch=1.3;\n"

@@ -198,6 +198,11 @@ static bool set_analogy(dea_arguments *arguments, const char *value)
     return set_text(&arguments->analogy, "analogy", value);
 }
 
+static bool set_name(dea_arguments *arguments, const char *value)
+{
+    return set_text(&arguments->name, "name", value);
+}
+
 static bool set_runs(dea_arguments *arguments, const char *value)
 {
     const long runs = whole_number(value, MOST_RUNS);
@@ -286,6 +291,7 @@ static const option_entry entries[] = {
     {"as", 0, true, DEA_TAKES_EXPORT, set_as},
     {"dialect", 0, true, DEA_TAKES_EXPORT, set_dialect},
     {"analogy", 0, true, DEA_TAKES_EXPORT, set_analogy},
+    {"name", 0, true, DEA_TAKES_EXPORT, set_name},
     {"runs", 0, true, DEA_TAKES_BENCH, set_runs},
     {"budget", 0, true, DEA_TAKES_BENCH, set_budget},
     {"shard", 0, true, DEA_TAKES_JOURNAL, set_shard},

@@ -27,7 +27,7 @@ typedef enum dea_takes {
     DEA_TAKES_QUIET = 1 << 6,
     DEA_TAKES_TOLERANCE = 1 << 7,
     DEA_TAKES_FIT = 1 << 8,      /**< --uniaxial, --equibiaxial, --terms, --relaxation, --ramp, --branches, --relative */
-    DEA_TAKES_EXPORT = 1 << 9,   /**< --as, --dialect, --analogy */
+    DEA_TAKES_EXPORT = 1 << 9,   /**< --as, --dialect, --analogy, --name */
     DEA_TAKES_JOURNAL = 1 << 10, /**< --shard, --resume */
     DEA_TAKES_FULL = 1 << 11,    /**< --full */
     DEA_TAKES_BENCH = 1 << 12    /**< --runs, --budget */
@@ -65,6 +65,7 @@ typedef struct dea_arguments {
     const char *as;         /**< NULL: not given */
     const char *dialect;    /**< NULL: not given */
     const char *analogy;    /**< NULL: not given */
+    const char *name;       /**< of a part, NULL: not given */
     size_t runs;            /**< 0: not given */
     double budget;          /**< [s], NAN: not given */
     size_t shard, shards;   /**< --shard shard/shards, 1 <= shard <= shards; 0: not given */

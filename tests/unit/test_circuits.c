@@ -4,26 +4,47 @@
 
 #include <complex.h>
 
+#include "netlist/part.h"
 #include "network/dynamics.h"
 
 static char project[4096];
 
+static void copy_case(const char *name)
+{
+    char command[sizeof project + 2 * CHILD_PATH];
+    snprintf(command, sizeof command, "cp '%s/tests/cases/%s' '%s'", project, name, child_folder);
+    assert_int_equal(system(command), 0);
+}
+
 static int setup(void **state)
 {
-    return getcwd(project, sizeof project) ? child_setup(state) : -1;
+    dea_error error = {0};
+    if (!getcwd(project, sizeof project) || child_setup(state) != 0) {
+        return -1;
+    }
+    FILE *library = child_open("dea.lib", "w");
+    const dea_status status = dea_part_library(dea_dialect_find("ngspice"), library, &error);
+    return fclose(library) != 0 || status != DEA_OK ? -1 : 0;
+}
+
+/* Runs a circuit in the folder of the child as a user does, and reads what it says. */
+static void run_file(const char *path, child_run *run)
+{
+    char command[sizeof project + 4 * CHILD_PATH];
+    *run = (child_run){.width = 1};
+    snprintf(command, sizeof command, "cd '%s' && timeout 100 ngspice -b '%s' >log 2>&1", child_folder, path);
+    const int ended = system(command);
+    run->status = WIFEXITED(ended) ? WEXITSTATUS(ended) : -1;
+    child_read_log(run);
 }
 
 /* Runs an example where it lies, apart from the files that a run may leave; it must end well and without a warning. */
 static void run_example(const char *name, child_run *run)
 {
     static const char *const words[] = {"arning", "rror", "fail", "ignored", "oo small"};
-    char command[sizeof project + 4 * CHILD_PATH];
-    *run = (child_run){.width = 1};
-    snprintf(command, sizeof command, "cd '%s' && timeout 100 ngspice -b '%s/examples/circuits/%s.cir' >log 2>&1", child_folder,
-             project, name);
-    const int ended = system(command);
-    run->status = WIFEXITED(ended) ? WEXITSTATUS(ended) : -1;
-    child_read_log(run);
+    char path[sizeof project + 64];
+    snprintf(path, sizeof path, "%s/examples/circuits/%s.cir", project, name);
+    run_file(path, run);
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         const char *found = strstr(run->log, words[i]);
         if (found) {
@@ -192,9 +213,79 @@ static void a_response_through_the_supply_has_its_corner_and_resonance(void **st
     dea_dynamics_close(&d);
 }
 
+/* A circuit of tests/cases, and one of its results; a tolerance below 0 is absolute. */
+typedef struct expected {
+    const char *circuit, *result;
+    double value, tolerance;
+} expected;
+
+/* Circuits that went wrong in the hands of users: many parts by m=, charge on isolated films, shunts at every node, MOSFETs, lines
+ * and edges of an ideal source. */
+static void circuits_of_users_give_the_right_answers(void **state)
+{
+    (void)state;
+    static const expected all[] = {
+        {"mult_static", "v(x1.u)", 220.1642, 1e-5},
+        {"mult_static", "v(xm.u)", 220.1642, 1e-5},
+        {"mult_charging", "half1", 2.782e-3, 1e-3},
+        {"mult_charging", "halfm", 2.782e-3, 1e-3},
+        {"rshunt_hold", "film", 2978.0, 0.01}, /* the plain capacitor's voltage */
+        {"current_charge", "volts", 1553.4, 0.01},
+        {"op_rshunt1e12", "u0", 249.449, 1e-5},
+        {"op_rshunt1e12", "u1", 273.349, 1e-5},
+        {"op_rshunt1e12", "u2", 220.164, 1e-5},
+        {"readme_pulse", "um", 214.776, 1e-4},
+        {"hyper_stall", "um", 110.796, 1e-4}, /* of a run with a tenth of the step and of the tolerance */
+        {"hyper_stall_tline", "um", 220.164, 1e-4},
+        {"mos_bridge", "u0", 220.164, 5e-3},
+        {"mos_bridge", "uoff", 0.0, -1e-3},
+    };
+    const char *last = "";
+    child_run run;
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "%s.cir", all[i].circuit);
+        if (strcmp(last, all[i].circuit) != 0) {
+            copy_case(name);
+            run_file(name, &run);
+        }
+        const double value = measured(&run, all[i].result);
+        const double scale = all[i].tolerance < 0.0 ? -1.0 : fabs(all[i].value);
+        print_message("%s: %s = %g\n", name, all[i].result, value);
+        assert_near(value, all[i].value, scale * all[i].tolerance);
+        last = all[i].circuit;
+    }
+}
+
+/* m s^2 + tau k s + k = 0. */
+static void the_mechanical_poles_are_those_of_mass_damper_and_spring(void **state)
+{
+    (void)state;
+    child_run run;
+    dea_dynamics d;
+    dea_error error = {0};
+    double real, imaginary;
+    dea_scene scene = scene_of(DEA_DOT, "lumped", 3000.0);
+    scene.material.density = 1080.0;
+    scene.material.retardation = 1e-4;
+    assert_int_equal(dea_dynamics_open(&scene, scene.models[0], &d, &error), DEA_OK);
+    const double square = dea_dynamics_edge(&d, 0.0).stress_slope * dea_dynamics_edge(&d, 0.0).area / d.mass;
+    dea_dynamics_close(&d);
+    copy_case("pz.cir");
+    run_file("pz.cir", &run);
+    const char *first = strstr(run.log, "pole(1) = ");
+    assert_non_null(first);
+    assert_int_equal(sscanf(first, "pole(1) = %lf,%lf", &real, &imaginary), 2);
+    assert_relative(real, -0.5e-4 * square, 1e-5);
+    assert_relative(fabs(imaginary), sqrt(square - 0.25e-8 * square * square), 1e-5);
+    assert_true(strstr(run.log, "pole(2)") && !strstr(run.log, "pole(3)"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(circuits_of_users_give_the_right_answers),
+        cmocka_unit_test(the_mechanical_poles_are_those_of_mass_damper_and_spring),
         cmocka_unit_test(a_boost_supply_charges_the_dot_to_the_static_answer_and_the_bleed_lets_it_go),
         cmocka_unit_test(a_half_bridge_switches_a_lens_between_two_focal_lengths),
         cmocka_unit_test(antagonists_move_their_load_in_proportion_to_the_signal),

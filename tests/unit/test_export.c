@@ -828,6 +828,57 @@ static void film_without_memory_follows_the_voltage_in_both_analogies(void **sta
     }
 }
 
+/* Two scenes of different material as parts of one circuit. */
+static void named_parts_keep_their_material_in_one_circuit(void **state)
+{
+    (void)state;
+    char first[PATH_ROOM], second[PATH_ROOM], command[4 * PATH_ROOM], line[256];
+    double silicone = 0.0, soft = 0.0;
+    path_to("part_silicone.lib", first);
+    path_to("part_soft.lib", second);
+    assert_int_equal(PROGRAM("--as", "subckt", "--name", "silicone", "-o", first, "tests/cases/part_silicone.yaml"), 0);
+    assert_int_equal(PROGRAM("--as", "subckt", "--name", "soft", "-o", second, "tests/cases/part_soft.yaml"), 0);
+    snprintf(command, sizeof command, "cp tests/cases/two_parts.cir '%s/circuit.cir' && cd '%s' && ngspice -b circuit.cir 2>&1", folder,
+             folder);
+    FILE *answer = popen(command, "r");
+    assert_non_null(answer);
+    while (fgets(line, sizeof line, answer)) {
+        (void)sscanf(line, "v(xa.u) = %lf", &silicone);
+        (void)sscanf(line, "v(xb.u) = %lf", &soft);
+    }
+    pclose(answer);
+    assert_true(fabs(silicone - 94.73) < 0.01 && fabs(soft - 524.35) < 0.01);
+    unlink(first);
+    unlink(second);
+    assert_int_equal(PROGRAM("--as", "subckt", "--name", "2soft", "-o", first, "tests/cases/part_soft.yaml"), 2);
+    assert_int_equal(PROGRAM("--as", "netlist", "--name", "soft", "-o", first, "tests/cases/part_soft.yaml"), 2);
+    assert_int_equal(access(first, F_OK), -1);
+}
+
+/* Xyce's own control of the error stops at edges, and tolerances for one node cannot be given to it. */
+static void transients_for_xyce_step_by_tmax_alone(void **state)
+{
+    (void)state;
+    static const char *const analogies[] = {"mobility", "impedance"};
+    char netlist[PATH_ROOM], line[512];
+    path_to("x.cir", netlist);
+    for (size_t i = 0; i < 2; i++) {
+        int steps = 0;
+        assert_int_equal(PROGRAM("--as", "netlist", "--dialect", "xyce", "--analogy", analogies[i], "--model", "coverage", "-o", netlist,
+                                 "examples/sine-supply.yaml"),
+                         0);
+        FILE *file = fopen(netlist, "r");
+        assert_non_null(file);
+        while (fgets(line, sizeof line, file)) {
+            steps += strcmp(line, ".options timeint erroption=1\n") == 0;
+            assert_true(!strstr(line, "nonlin") && (strncmp(line, ".options", 8) != 0 || strstr(line, "erroption")));
+        }
+        fclose(file);
+        assert_int_equal(steps, 1);
+    }
+    unlink(netlist);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -843,6 +894,8 @@ int main(void)
         cmocka_unit_test(netlists_keep_to_the_rules_of_their_dialect),
         cmocka_unit_test(film_without_memory_follows_the_voltage_in_both_analogies),
         cmocka_unit_test(program_writes_whole_files_or_none),
+        cmocka_unit_test(named_parts_keep_their_material_in_one_circuit),
+        cmocka_unit_test(transients_for_xyce_step_by_tmax_alone),
     };
     if (!mkdtemp(folder)) {
         return 1;

@@ -445,6 +445,75 @@ static void compatibility_modes_change_no_number(void **state)
     fclose(child_open(".spiceinit", "w"));
 }
 
+#define FILM "density=1080 retardation=2e-4 g1=0.1 tau1=1e-3 leakage_resistance=1e9"
+
+/* Three circuits of one kind, each with a resistor and a load: one part by m=3, three parts, three by m=3 of a subcircuit round
+ * the part. */
+static void write_multiples(FILE *file, const char *part)
+{
+    fprintf(file, ".subckt stack p n edge\nxin p n edge %s " FILM "\n.ends stack\n", part);
+    fprintf(file, "x0 b0 0 e0 %s " FILM " m=3\nx1 b1 0 e1 %s " FILM "\nxp b1 0 e1 %s " FILM "\nxq b1 0 e1 %s " FILM "\n", part, part,
+            part, part);
+    fputs("x2 b2 0 e2 stack m=3\nxs0 e0 0 dea_spring stiffness=90 m=2\n.save v(x0.u) v(x1.u) v(x2.xin.u)\n", file);
+    for (int i = 0; i < 3; i++) {
+        fprintf(file, "r%d a b%d 5e5\nc%d e%d 0 3e-4\n.save v(b%d)\n", i, i, i, i, i);
+        fputs(i > 0 ? i > 1 ? "xs2 e2 0 dea_spring stiffness=180\n" : "xs1 e1 0 dea_spring stiffness=180\n" : "", file);
+    }
+}
+
+static void m_parts_in_one_are_as_many_side_by_side(void **state)
+{
+    (void)state;
+    static const char *const moves[] = {"v(x0.u)", "v(x1.u)", "v(x2.xin.u)"}, *const volts[] = {"v(b0)", "v(b1)", "v(b2)"};
+    for (int kind = 0; kind < KINDS; kind++) {
+        child_run run;
+        FILE *file = begin_circuit();
+        fputs("va a 0 pulse(500 3500 1e-3 1e-5 1e-5 1 2)\n.options reltol=1e-5 abstol=1e-9\n.tran 2e-5 1e-2 0 2e-5\n", file);
+        write_multiples(file, kinds[kind].name);
+        run_circuit(file, &run);
+        const double u = fabs(child_last(&run, moves[1]));
+        assert_true(u > 100.0);
+        for (size_t k = 0; k < run.points; k++) {
+            for (int i = 0; i < 3; i += 2) {
+                assert_near(child_value(&run, moves[i], k), child_value(&run, moves[1], k), 1e-4 * u);
+                assert_near(child_value(&run, volts[i], k), child_value(&run, volts[1], k), 1e-4 * 3500.0);
+            }
+        }
+        child_end(&run);
+    }
+}
+
+/* What a user sets for the whole circuit, with operating point first: the motion stays the same within its tolerance. */
+static void options_of_the_circuit_change_no_answer(void **state)
+{
+    (void)state;
+    static const char *const options[] = {"",           "rshunt=1e12",  "cshunt=1e-13", "gmin=1e-15",   "gmin=1e-9",
+                                          "method=gear", "abstol=1e-10", "vntol=1e-4",   "chgtol=1e-16", "pivrel=0.1",
+                                          "xmu=0.49",    "itl1=50",      "noopiter",     "trtol=1"};
+    double first[KINDS];
+    for (size_t o = 0; o < sizeof options / sizeof *options; o++) {
+        child_run run;
+        FILE *file = begin_circuit();
+        fprintf(file, "va a 0 pulse(1000 3000 1e-3 1e-6 1e-6 1 2)\n.options reltol=1e-4 %s\n", options[o]);
+        for (int i = 0; i < KINDS; i++) {
+            fprintf(file, ".save v(x%d.u)\nr%d a b%d 1e6\nx%d b%d 0 e%d %s density=1080 retardation=%g g1=0.2 tau1=0.1\n", i, i, i,
+                    i, i, i, kinds[i].name, i % 2 ? 1e-3 : 1e-4);
+        }
+        fputs(".tran 1e-4 2e-2 0 1e-4\n", file);
+        run_circuit(file, &run);
+        for (int i = 0; i < KINDS; i++) {
+            char name[32];
+            snprintf(name, sizeof name, "v(x%d.u)", i);
+            const double u = child_last(&run, name);
+            first[i] = o == 0 ? u : first[i];
+            if (fabs(u - first[i]) > 1e-3 * fabs(first[i])) {
+                fail_msg("%s, %s: %g instead of %g", options[o], kinds[i].name, u, first[i]);
+            }
+        }
+        child_end(&run);
+    }
+}
+
 static void parameters_out_of_range_are_flagged_and_move_nothing(void **state)
 {
     (void)state;
@@ -465,6 +534,8 @@ static void parameters_out_of_range_are_flagged_and_move_nothing(void **state)
                                         "g1=-0.1",
                                         "tau1=0",
                                         "leakage_resistance=-1",
+                                        "m=0",
+                                        "m=-2",
                                         "permittivity_per_stretch=-3"};
     enum { WRONG = sizeof wrong / sizeof *wrong };
     child_run run;
@@ -558,7 +629,7 @@ static void a_scene_becomes_a_part_with_its_numbers_and_a_harmless_title(void **
     scene.material = *dea_material_find("vhb-4910");
     scene.material.instantaneous = true;
     FILE *file = child_open("scene.lib", "w");
-    assert_int_equal(dea_part_of_scene(&scene, scene.models[0], dea_dialect_find("ngspice"), file, &error), DEA_OK);
+    assert_int_equal(dea_part_of_scene(&scene, scene.models[0], NULL, dea_dialect_find("ngspice"), file, &error), DEA_OK);
     fclose(file);
     file = child_open("scene.lib", "r");
     char line[256];
@@ -574,8 +645,53 @@ static void a_scene_becomes_a_part_with_its_numbers_and_a_harmless_title(void **
     child_end(&run);
     const dea_model *field = dea_model_find("field");
     file = child_open("none.lib", "w");
-    assert_int_equal(dea_part_of_scene(&scene, field, dea_dialect_find("ngspice"), file, &error), DEA_ERROR_UNSUPPORTED);
+    assert_int_equal(dea_part_of_scene(&scene, field, NULL, dea_dialect_find("ngspice"), file, &error), DEA_ERROR_UNSUPPORTED);
     fclose(file);
+}
+
+/* Two scenes of different material in one circuit, beside the library, each with its own helpers. */
+static void parts_of_different_names_share_a_circuit(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"silicone", "soft_2"};
+    child_run run;
+    double wanted[2];
+    FILE *file = child_open("circuit.cir", "w");
+    fputs("* two\n.include dea.lib\n.include silicone.lib\n.include soft_2.lib\nva a 0 2000\n.options reltol=1e-6\n.op\n", file);
+    for (int i = 0; i < 2; i++) {
+        char library[32];
+        dea_error error = {0};
+        dea_scene scene = scene_of(&kinds[4], 2000.0);
+        if (i == 1) {
+            scene.material.yeoh[0] = 60e3;
+            scene.material.yeoh[1] = scene.material.yeoh[2] = 0.0;
+            scene.material.permittivity = 4.8;
+        }
+        wanted[i] = solve_direct(&scene, "coverage").displacement;
+        snprintf(library, sizeof library, "%s.lib", names[i]);
+        FILE *part = child_open(library, "w");
+        assert_int_equal(dea_part_of_scene(&scene, scene.models[0], names[i], dea_dialect_find("ngspice"), part, &error), DEA_OK);
+        fclose(part);
+        fprintf(file, "x%d a 0 e%d %s\nxk%d k%d 0 %s_spring\nxl%d e%d k%d %s_lever\n.save v(x%d.u) v(xk%d.u)\n", i, i, names[i], i, i,
+                names[i], i, i, i, names[i], i, i);
+    }
+    fputs("xp a 0 ep dea_dot_hyper\n.save v(xp.u)\n", file);
+    run_circuit(file, &run);
+    assert_relative(1e-6 * child_last(&run, "v(xp.u)"), wanted[0], 1e-6);
+    assert_true(child_last(&run, "v(x0.u)") < child_last(&run, "v(xp.u)")); /* held by its spring of 100 N/m */
+    assert_true(child_last(&run, "v(x1.u)") > 2.0 * child_last(&run, "v(x0.u)"));
+    assert_relative(child_last(&run, "v(xk1.u)"), -child_last(&run, "v(x1.u)"), 1e-6);
+    assert_true(1e-6 * child_last(&run, "v(x1.u)") < wanted[1]);
+    child_end(&run);
+}
+
+static void names_of_parts_are_those_that_simulators_take(void **state)
+{
+    (void)state;
+    assert_true(dea_part_name_valid("a") && dea_part_name_valid("Soft_2") && dea_part_name_valid("abcdefghijklmnopqrstuvwxyz012345"));
+    assert_false(dea_part_name_valid("") || dea_part_name_valid("2soft") || dea_part_name_valid("_soft") ||
+                 dea_part_name_valid("so ft") || dea_part_name_valid("soft\n.control") || dea_part_name_valid("soft.lib") ||
+                 dea_part_name_valid("abcdefghijklmnopqrstuvwxyz0123456"));
 }
 
 /* Numbers with the suffixes of SPICE; returns how many there were. */
@@ -606,7 +722,7 @@ static void gnucap_gives_the_same_mechanics(void **state)
     }
     char command[512], line[256];
     FILE *file = child_open("mechanics.lib", "w");
-    dea_part_write_mechanics(file);
+    dea_part_write_mechanics("dea", file);
     fclose(file);
     file = child_open("gnucap.cir", "w");
     fputs("* mechanics\n.include mechanics.lib\ni1 0 a dc 0 ac 1\ncm a 0 0.001\nrd a 0 2\nx1 a 0 dea_spring stiffness=1000\n"
@@ -644,7 +760,7 @@ static bool is_reserved(const char *word, size_t length)
                                         "gmin", "vt",    "yes",   "no",  "true", "false", "kelvin", "boltz", "echarge", "planck",
                                         "x",    "y",     "z",     "min", "max",  "abs",   "sqrt",   "exp",   "ln",      "log",
                                         "sgn",  "sqr",   "gauss", "pow", "pwr",  "int",   "limit",  "table", "if",      "mc",
-                                        "ceil", "floor", "sin",   "cos", "tan",  "m"};
+                                        "ceil", "floor", "sin",   "cos", "tan"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         if (strlen(names[i]) == length && strncmp(names[i], word, length) == 0) {
             return true;
@@ -782,12 +898,12 @@ static bool pins_of(const char *part, char pins[64])
 static void symbols_name_the_pins_of_their_parts_in_order(void **state)
 {
     (void)state;
-    const dea_symbol helpers[] = {dea_symbol_spring(), dea_symbol_lever()};
+    const dea_symbol helpers[] = {dea_symbol_spring("dea"), dea_symbol_lever("dea")};
     for (int i = 0; i < KINDS + 2; i++) {
         char pins[64], text[4096], wanted[128] = "", *order;
         dea_symbol symbol;
         const dea_scene scene = scene_of(&kinds[i % KINDS], 0.0);
-        assert_true(i >= KINDS || dea_symbol_of_part(&scene, scene.models[0], &symbol));
+        assert_true(i >= KINDS || dea_symbol_of_part(&scene, scene.models[0], NULL, &symbol));
         symbol = i < KINDS ? symbol : helpers[i - KINDS];
         assert_true(pins_of(symbol.name, pins));
         FILE *file = child_open("symbol", "w+");
@@ -886,10 +1002,14 @@ int main(void)
         cmocka_unit_test(instances_of_different_numbers_nest_two_deep_under_long_names),
         cmocka_unit_test(a_step_of_a_nanosecond_converges),
         cmocka_unit_test(compatibility_modes_change_no_number),
+        cmocka_unit_test(m_parts_in_one_are_as_many_side_by_side),
+        cmocka_unit_test(options_of_the_circuit_change_no_answer),
         cmocka_unit_test(parameters_out_of_range_are_flagged_and_move_nothing),
         cmocka_unit_test(a_film_past_pull_in_is_flagged),
         cmocka_unit_test(a_lever_of_minus_one_sets_two_dots_against_each_other),
         cmocka_unit_test(a_scene_becomes_a_part_with_its_numbers_and_a_harmless_title),
+        cmocka_unit_test(parts_of_different_names_share_a_circuit),
+        cmocka_unit_test(names_of_parts_are_those_that_simulators_take),
         cmocka_unit_test(gnucap_gives_the_same_mechanics),
         cmocka_unit_test(every_line_of_every_dialect_keeps_to_what_simulators_share),
         cmocka_unit_test(the_lint_finds_what_simulators_read_differently),

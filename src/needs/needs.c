@@ -372,6 +372,19 @@ static void try_series(planner *p)
     }
 }
 
+/* True where a linear film leaves its frame: its rows end there, and their peak is not that of the run. */
+static bool leaves_frame(const planner *p)
+{
+    const dea_dynamics *d = &p->surrogate.dynamics;
+    for (size_t k = 0; d->linear && k < p->surrogate.count; k++) {
+        const double u = p->now.u[k];
+        if (!(u > -d->radius && u < d->point.frame_radius - d->radius)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* Peaks of the displacement over the probes, and of the velocity, no less than what moves the film once within the run. The
  * start of a film from rest, where its peak may be an edge's alone, counts where a sample sees it. */
 static void set_peaks(planner *p)
@@ -432,7 +445,7 @@ static dea_status plan(planner *p, dea_error *error)
         return status;
     }
     double *room = p->now.u;
-    if (dea_surrogate_solve(&p->surrogate, &p->reduction, p->now)) {
+    if (dea_surrogate_solve(&p->surrogate, &p->reduction, p->now) && !leaves_frame(p)) {
         set_peaks(p);
         try_all(p);
     }

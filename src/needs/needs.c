@@ -14,9 +14,9 @@ static const double one_share = 0.5;   /* most that one omission takes of what i
 static const double ring_share = 0.02; /* of the accuracy: what is left of a ring hides how fast the steps converge */
 static const double safe_linear = 1.5; /* bound over what the stand-in says, where it is the film itself */
 static const double safe_nonlinear = 4.0;
-static const double doubt = 5.0;   /* what a relative variation of the stiffness adds to it */
+static const double doubt = 5.0;           /* what a relative variation of the stiffness adds to it */
 static const double rate_allowance = 10.0; /* accuracies that velocity and current promise */
-static const double missed = 0.01; /* share of the static displacement that counts as peak where the samples see less */
+static const double missed = 0.01;         /* share of the static displacement that counts as peak where the samples see less */
 
 static const double rounding = 1e-12; /* of a stand-in's answer, relative to its peak */
 
@@ -30,7 +30,7 @@ typedef struct planner {
     dea_needs *needs;
     double left; /* of the budget [1] */
     double safety;
-    double peaks[DEA_SURROGATE_POINTS]; /* of the displacement, as the film itself would have them [m] */
+    double peaks[DEA_SURROGATE_POINTS];  /* of the displacement, as the film itself would have them [m] */
     double speeds[DEA_SURROGATE_POINTS]; /* of the velocity, likewise [m/s] */
 } planner;
 
@@ -372,6 +372,19 @@ static void try_series(planner *p)
     }
 }
 
+/* True where a linear film leaves its frame: its rows end there, and their peak is not that of the run. */
+static bool leaves_frame(const planner *p)
+{
+    const dea_dynamics *d = &p->surrogate.dynamics;
+    for (size_t k = 0; d->linear && k < p->surrogate.count; k++) {
+        const double u = p->now.u[k];
+        if (!(u > -d->radius && u < d->point.frame_radius - d->radius)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* Peaks of the displacement over the probes, and of the velocity, no less than what moves the film once within the run. The
  * start of a film from rest, where its peak may be an edge's alone, counts where a sample sees it. */
 static void set_peaks(planner *p)
@@ -432,7 +445,7 @@ static dea_status plan(planner *p, dea_error *error)
         return status;
     }
     double *room = p->now.u;
-    if (dea_surrogate_solve(&p->surrogate, &p->reduction, p->now)) {
+    if (dea_surrogate_solve(&p->surrogate, &p->reduction, p->now) && !leaves_frame(p)) {
         set_peaks(p);
         try_all(p);
     }

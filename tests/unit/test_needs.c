@@ -230,6 +230,18 @@ static void a_series_resistance_is_left_out_where_nothing_shows_it(void **state)
     assert_false(leaves_out_series(&scene));
 }
 
+/* Its rows end at the frame, and bounds relative to the peak of the whole run were an eighth of what is relative to theirs. */
+static void a_film_that_leaves_its_frame_keeps_all_its_parts(void **state)
+{
+    (void)state;
+    dea_scene scene = scene_of("step.voltage=6 kV");
+    assert_true(needs_of(&scene, "ngspice").count > 0);
+    dea_scene_free(&scene);
+    scene = scene_of("step.voltage=30 kV");
+    assert_int_equal(needs_of(&scene, "ngspice").count, 0);
+    dea_scene_free(&scene);
+}
+
 static void what_costs_an_engine_nothing_stays(void **state)
 {
     (void)state;
@@ -492,6 +504,7 @@ int main(void)
         cmocka_unit_test(a_branch_stays_where_its_mark_in_the_slow_ones_shows),
         cmocka_unit_test(samples_decide_what_is_left_out),
         cmocka_unit_test(a_series_resistance_is_left_out_where_nothing_shows_it),
+        cmocka_unit_test(a_film_that_leaves_its_frame_keeps_all_its_parts),
         cmocka_unit_test(what_costs_an_engine_nothing_stays),
         cmocka_unit_test(reduced_runs_keep_the_accuracy),
         cmocka_unit_test(simpler_forms_of_a_branch_are_springs_and_dampers),

@@ -118,12 +118,16 @@ static void widen_means(const dea_route *route, levels *l, apart *second, apart 
     }
 }
 
+/* Of the windows that end before the motion does. */
 static void tell_averages(const dea_route *route, const levels *l, dea_summary *summary)
 {
+    const double end = fmin(l->coarse.last.time, l->fine.last.time);
     for (size_t i = 0; i < route->scene->transient.average_count; i++) {
         const dea_window *window = &route->scene->transient.averages[i];
         const double u = better(l->coarse.integrals[i], l->fine.integrals[i]) / (window->to - window->from);
-        summary->averages[i] = (dea_average){u / route->dynamics->radius, u};
+        if (window->to <= end * (1.0 + 1e-12)) {
+            summary->averages[i] = (dea_average){u / route->dynamics->radius, u};
+        }
     }
 }
 
@@ -180,6 +184,7 @@ static void fill_summary(const dea_route *route, const levels *l, dea_summary *s
     const dea_audit *fine = &l->fine.audit;
     *summary = dea_summary_failed();
     summary->error = l->displacement;
+    tell_averages(route, l, summary);
     if (l->fine.end != DEA_STATE_OK || l->coarse.end != DEA_STATE_OK) {
         return;
     }
@@ -191,7 +196,6 @@ static void fill_summary(const dea_route *route, const levels *l, dea_summary *s
     last.v = stop.v;
     last.voltage = dea_route_voltage(route, last.source, stop.u, stop.charge);
     dea_audit_close(&audit, d, &l->fine.first, l->fine.start.z, &last, stop.z, summary);
-    tell_averages(route, l, summary);
 }
 
 /* From measured errors: three runs from there on mostly do. */

@@ -21,8 +21,8 @@ static const double nonlinear_step = 5.0;
 static const double netlist = 1000.0;
 static const double work_time = 6e-6; /* of one processor, roughly [s] */
 
-/* Most runs, and those after which a failure is one. */
-enum { MOST_LEVELS = 14, STUBBORN = 5 };
+/* Most runs, those after which a failure is one, and those after which a film that runs away does so at a sample. */
+enum { MOST_LEVELS = 14, STUBBORN = 5, PATIENT = 8 };
 
 /* Pieces that are many. */
 enum { MANY = 200 };
@@ -295,7 +295,8 @@ static dea_status refine_once(const dea_route *route, levels *l, double fineness
         judge(route, l);
         fill_summary(route, l, summary);
         l->residual = summary->residual;
-        const bool settled = l->fine.end != DEA_STATE_FAILED || (l->runs >= STUBBORN && !l->fine.bounces);
+        const bool ended = l->fine.end == DEA_STATE_OK || (l->fine.end == DEA_STATE_PULL_IN && !l->fine.vague);
+        const bool settled = ended || (l->runs >= (l->fine.vague ? PATIENT : STUBBORN) && !l->fine.bounces);
         const bool closed = l->fine.end != DEA_STATE_OK || summary->residual <= 10.0 * wanted || l->error <= enough * wanted;
         *done = l->error <= wanted && settled && closed;
     }

@@ -225,6 +225,7 @@ $(BUILD)/tests/test_faults: $(filter-out %/main.o,$(PROGRAM_OBJECTS)) $(BUILD)/t
 $(BUILD)/tests/test_faults: private LDFLAGS += $(FAULTS:%=-Wl,--wrap=%)
 $(BUILD)/tests/test_stability: $(STABILITY_PARTS)
 $(BUILD)/tests/test_promises: $(filter-out %/main.o,$(PROMISES))
+$(BUILD)/tests/test_stalls: $(BUILD)/tests/promises/stalls.o
 
 unit: $(UNIT_PROGRAMS)
 

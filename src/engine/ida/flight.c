@@ -1,6 +1,5 @@
 #include "engine/ida/flight.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,9 +7,9 @@
 /* Steps of all runs after which they are given up: about half a minute. */
 enum { MOST_STEPS = 3000000 };
 
-/* So many steps in a row that add no more than rounding to the time: the motion goes to infinity there. */
-enum { MOST_CRAWLS = 40 };
-static const double crawl = 4.0 * DBL_EPSILON;
+/* So many steps that add no more than such a share to the time: the motion gets infinitely fast there. */
+enum { CRAWL_STEPS = 1000 };
+static const double crawl = 1e-9;
 
 /* Share of its size below which an unknown needs a smaller one. */
 static const double small = 0.03;
@@ -87,15 +86,14 @@ bool dea_flight_fit(dea_flight *flight)
     return (motion->q >= 0 && shrink(motion->size + motion->q, 1, flight->reach[motion->q], flight->tolerance)) || shrinks;
 }
 
-/* The time stands still at the end of the last step. A film that moves and gets ever faster runs away, as a material that has lost
- * its stiffness lets it: there is no motion behind that. */
+/* The time stands still. A film that gets ever faster runs away, as a material that has lost its stiffness lets it, with mass or
+ * with a damper that has vanished with it: there is no motion behind that. */
 static dea_state stand_still(dea_flight *flight, double time)
 {
     const dea_motion *motion = &flight->motion;
     double f[DEA_MOTION_MOST];
-    const bool rates = dea_motion_rates(motion, time, flight->y, f);
-    const bool away = motion->v < 0 || f[motion->v] * flight->y[motion->v] > 0.0;
-    return rates && away ? DEA_STATE_PULL_IN : dea_flight_broke(flight, "SUNDIALS", 0, time);
+    const bool away = motion->v < 0 || !dea_motion_rates(motion, time, flight->y, f) || f[motion->v] * flight->y[motion->v] > 0.0;
+    return away ? DEA_STATE_PULL_IN : dea_flight_broke(flight, "SUNDIALS", 0, time);
 }
 
 dea_state dea_flight_step(dea_flight *flight, double time, const double *w)
@@ -114,9 +112,13 @@ dea_state dea_flight_step(dea_flight *flight, double time, const double *w)
                  flight->tolerance, flight->steps, at.time);
         return DEA_STATE_FAILED;
     }
-    flight->crawls = time - flight->stepped <= crawl * time ? flight->crawls + 1 : 0;
-    flight->stepped = time;
-    return flight->crawls < MOST_CRAWLS ? DEA_STATE_OK : stand_still(flight, time);
+    if (++flight->unseen < CRAWL_STEPS) {
+        return DEA_STATE_OK;
+    }
+    const double passed = time - flight->crawled;
+    flight->crawled = time;
+    flight->unseen = 0;
+    return passed > crawl * time ? DEA_STATE_OK : stand_still(flight, time);
 }
 
 bool dea_flight_affords(dea_flight *flight, double steps)
@@ -206,8 +208,8 @@ void dea_flight_run(dea_flight *flight, double tolerance, dea_trace *trace, dea_
     dea_motion_branches(&flight->motion, flight->y, first_z);
     for (size_t i = 0; trace->end == DEA_STATE_OK && i < flight->signal->count; i++) {
         flight->motion.segment = &flight->signal->segments[i];
-        flight->stepped = 0.0;
-        flight->crawls = 0;
+        flight->crawled = 0.0;
+        flight->unseen = 0;
         trace->end = fly_segment(flight);
     }
     if (summary && trace->end == DEA_STATE_OK) {

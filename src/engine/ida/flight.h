@@ -36,8 +36,8 @@ typedef struct dea_flight {
     double y[DEA_MOTION_MOST];
     double reach[DEA_MOTION_MOST]; /* largest of each unknown on the way */
     long steps;
-    double stepped; /* to this time of the segment [s] */
-    int crawls;     /* last steps that hardly added to it */
+    double crawled; /* time of the segment at the last look whether it still passes [s] */
+    int unseen;     /* steps since then */
 } dea_flight;
 
 /* Prepares runs of a scene; the caller ends them with dea_flight_close(), also after a failure. */

@@ -114,7 +114,11 @@ bool dea_motion_rates(const dea_motion *m, double time, const double *y, double 
     } else if (m->algebraic) {
         f[0] = at.force / (m->stiffness * m->size[0]) * m->pace;
     } else {
-        f[0] = at.force / (resistance(m, &at) * m->size[0]);
+        const double r = resistance(m, &at);
+        if (!(r > 0.0)) {
+            return false; /* nothing holds the film any more: no velocity */
+        }
+        f[0] = at.force / (r * m->size[0]);
     }
     for (size_t i = 0; i < d->branch_count; i++) {
         const int k = m->z + (int)i;

@@ -699,6 +699,15 @@ static bool start(runner *r)
     return r->track->end == DEA_STATE_OK;
 }
 
+/* Linear films, and those without mass and damper, end at a time that is known. */
+static bool is_vague(const runner *r)
+{
+    const dea_route *route = r->route;
+    const dea_track *track = r->track;
+    return track->end == DEA_STATE_PULL_IN && !route->dynamics->linear && !is_free(route->dynamics) &&
+           track->reached < route->samples && dea_layout_place(route->scene, track->reached) <= track->last.time + r->step;
+}
+
 dea_status dea_track_run(const dea_route *route, double fineness, dea_track *track, dea_error *error)
 {
     runner r = {.route = route, .track = track, .speed = 1.0, .loose = 1.0, .parts = ceil(edge_parts / fineness)};
@@ -719,5 +728,6 @@ dea_status dea_track_run(const dea_route *route, double fineness, dea_track *tra
     }
     track->last = r.last.moment;
     track->stop = r.last.state;
+    track->vague = is_vague(&r);
     return status;
 }

@@ -17,6 +17,7 @@ typedef struct dea_track {
     dea_state end;           /* why: ok, pull_in, failed */
     double integrals[DEA_WINDOWS]; /* of u over the windows of the scene [m s] */
     bool bounces;            /* it failed since its steps went through where the film turns back */
+    bool vague;              /* a sample lies in the step in which the film ran away */
     dea_audit audit;
     dea_moment first, last;
     dea_mobility_state start, stop; /* the states that go with them */

@@ -21,8 +21,8 @@ static const double nonlinear_step = 5.0;
 static const double netlist = 1000.0;
 static const double work_time = 6e-6; /* of one processor, roughly [s] */
 
-/* Most runs, and those after which a failure is one. */
-enum { MOST_LEVELS = 14, STUBBORN = 5 };
+/* Most runs, those after which a failure is one, and those after which a film that runs away does so at a sample. */
+enum { MOST_LEVELS = 14, STUBBORN = 5, PATIENT = 8 };
 
 /* Pieces that are many. */
 enum { MANY = 200 };
@@ -118,12 +118,16 @@ static void widen_means(const dea_route *route, levels *l, apart *second, apart 
     }
 }
 
+/* Of the windows that end before the motion does. */
 static void tell_averages(const dea_route *route, const levels *l, dea_summary *summary)
 {
+    const double end = fmin(l->coarse.last.time, l->fine.last.time);
     for (size_t i = 0; i < route->scene->transient.average_count; i++) {
         const dea_window *window = &route->scene->transient.averages[i];
         const double u = better(l->coarse.integrals[i], l->fine.integrals[i]) / (window->to - window->from);
-        summary->averages[i] = (dea_average){u / route->dynamics->radius, u};
+        if (window->to <= end * (1.0 + 1e-12)) {
+            summary->averages[i] = (dea_average){u / route->dynamics->radius, u};
+        }
     }
 }
 
@@ -180,6 +184,7 @@ static void fill_summary(const dea_route *route, const levels *l, dea_summary *s
     const dea_audit *fine = &l->fine.audit;
     *summary = dea_summary_failed();
     summary->error = l->displacement;
+    tell_averages(route, l, summary);
     if (l->fine.end != DEA_STATE_OK || l->coarse.end != DEA_STATE_OK) {
         return;
     }
@@ -191,7 +196,6 @@ static void fill_summary(const dea_route *route, const levels *l, dea_summary *s
     last.v = stop.v;
     last.voltage = dea_route_voltage(route, last.source, stop.u, stop.charge);
     dea_audit_close(&audit, d, &l->fine.first, l->fine.start.z, &last, stop.z, summary);
-    tell_averages(route, l, summary);
 }
 
 /* From measured errors: three runs from there on mostly do. */
@@ -291,7 +295,8 @@ static dea_status refine_once(const dea_route *route, levels *l, double fineness
         judge(route, l);
         fill_summary(route, l, summary);
         l->residual = summary->residual;
-        const bool settled = l->fine.end != DEA_STATE_FAILED || (l->runs >= STUBBORN && !l->fine.bounces);
+        const bool ended = l->fine.end == DEA_STATE_OK || (l->fine.end == DEA_STATE_PULL_IN && !l->fine.vague);
+        const bool settled = ended || (l->runs >= (l->fine.vague ? PATIENT : STUBBORN) && !l->fine.bounces);
         const bool closed = l->fine.end != DEA_STATE_OK || summary->residual <= 10.0 * wanted || l->error <= enough * wanted;
         *done = l->error <= wanted && settled && closed;
     }

@@ -1,0 +1,211 @@
+/* Transients on which ngspice took steps of 1e-9 s for ever, drives of many corners, and films past their fold: solved, as `ida`
+ * solves them, or refused at once. */
+#include "scenes.h"
+
+#include <stdlib.h>
+
+#include "../promises/promises.h"
+
+#define SILICONE_DOT                                                                                                             \
+    "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"                       \
+    "material: {base: elastosil-2030, density: 1080 kg/m^3, retardation: 1 ms}\n"
+
+enum { MOST_SAMPLES = 70000, LINE = 1024 };
+
+typedef struct outcome {
+    dea_sample samples[MOST_SAMPLES];
+    size_t count;
+    char log[LINE]; /* the first line */
+} outcome;
+
+static outcome found, wanted; /* too large for a stack */
+
+static dea_status take(void *user, size_t first, const void *points, size_t count, dea_error *error)
+{
+    outcome *o = user;
+    (void)first, (void)error;
+    assert_int_equal(count, 1);
+    memcpy(o->samples, points, o->count * sizeof *o->samples);
+    return DEA_OK;
+}
+
+static void hear(void *user, const char *line)
+{
+    outcome *o = user;
+    if (o->log[0] == '\0') {
+        snprintf(o->log, LINE, "%s", line);
+    }
+}
+
+/* Runs a scene's text; accuracy 0: that of the scene. Returns the accuracy. */
+static double run_text(const char *text, const char *engine, double accuracy, outcome *o)
+{
+    dea_error error = {0};
+    dea_scene scene;
+    const dea_run_options options = {.jobs = 1, .points = take, .log = hear, .user = o};
+    if (dea_scene_parse(text, strlen(text), "stall", ".", NULL, 0, NULL, &scene, &error) != DEA_OK) {
+        fail_msg("%s\n%s", error.message, text);
+    }
+    scene.accuracy = accuracy > 0.0 ? accuracy : scene.accuracy;
+    const double asked = scene.accuracy;
+    o->count = dea_layout_of(&scene).rows;
+    o->log[0] = '\0';
+    assert_true(o->count <= MOST_SAMPLES);
+    assert_int_equal(dea_study_run(&scene, dea_engine_find(engine), &options, &error), DEA_OK);
+    dea_scene_free(&scene);
+    return asked;
+}
+
+/* ngspice delivers what ida finds at a hundredth of the accuracy: states, and displacements to the accuracy. */
+static void agree(const char *text, double accuracy)
+{
+    const double asked = run_text(text, "ngspice", accuracy, &found);
+    double peak = 0.0;
+    run_text(text, "ida", fmax(1e-9, 0.01 * asked), &wanted);
+    for (size_t i = 0; i < wanted.count; i++) {
+        const double u = wanted.samples[i].displacement;
+        peak = fmax(peak, isnan(u) ? 0.0 : fabs(u));
+    }
+    for (size_t i = 0; i < wanted.count; i++) {
+        const dea_sample *a = &found.samples[i], *b = &wanted.samples[i];
+        if (a->state != b->state || (!isnan(b->displacement) && !(fabs(a->displacement - b->displacement) <= asked * peak))) {
+            fail_msg("sample %zu: %s %.9g, wanted %s %.9g within %g of %.9g (%s)\n%s", i, dea_state_name(a->state),
+                     a->displacement, dea_state_name(b->state), b->displacement, asked, peak, found.log, text);
+        }
+    }
+}
+
+/* ---- steps that collapsed */
+
+static void a_spring_on_its_branch_does_not_stall(void **state)
+{
+    (void)state;
+    agree("actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.4086956521739131, film_thickness: 100 um, prestretch: 1.2}\n"
+          "material: {base: elastosil-2030, density: 1080 kg/m^3, retardation: 20 us, prony: [{g: 0.08, tau: 0.2 s}]}\n"
+          "drive: {waveform: {step: {on: 0.1 s, off: 5 s, voltage: 3 kV}}, series_resistance: 1 MOhm}\n"
+          "model: lumped\nstudy: {transient: {until: 10 s, every: 1 ms}}\n",
+          1e-5);
+}
+
+static void a_lens_behind_a_small_resistance_does_not_stall(void **state)
+{
+    (void)state;
+    agree("actuator:\n  kind: lens\n  frame_radius: 0.007393245471603476 m\n  coverage: 0.13701295487032442\n"
+          "  film_thickness: 2.4094234875992994e-05 m\n  prestretch: 1.4770596688681352\n"
+          "material:\n  yeoh: {C1: 207274.77703337296 Pa, C2: -6092.811652275976 Pa, C3: 2840.3590731495256 Pa}\n"
+          "  permittivity: 3.886525759447005\n  density: 1049.890241854483 kg/m^3\n"
+          "  prony: [{g: 0.13743910955179323, tau: 0.04229569800800095 s}, {g: 0.119545110171, tau: 0.000158152073603 s}]\n"
+          "drive:\n  series_resistance: 344.99332066446283 Ohm\n  waveform:\n"
+          "    points: [[0 s, 283 V], [3.11e-5 s, 213.4 V], [5.34e-5 s, 426.3 V], [4.189e-4 s, 296 V], [7.271e-4 s, 318 V]]\n"
+          "    period: 8.059399787768e-4 s\n"
+          "model: lumped\nstudy: {transient: {until: 0.0013849058979167046 s, every: 2.826338567176948e-05 s}}\n",
+          1e-5);
+}
+
+static void random_stalls_are_solved(void **state)
+{
+    (void)state;
+    for (size_t number = 0; number < 10; number++) {
+        char *text = draw_stall(1, number);
+        assert_non_null(text);
+        agree(text, number % 2 ? 1e-3 : 1e-4);
+        free(text);
+    }
+}
+
+/* ---- drives of many corners */
+
+static void a_bridge_of_short_edges_is_solved(void **state)
+{
+    (void)state;
+    agree(SILICONE_DOT "drive: {waveform: {step: {on: 0 s, off: 0.1 ms, rise: 1 us, voltage: 3 kV}, period: 0.2 ms}}\n"
+                       "model: coverage\nstudy: {transient: {until: 12 ms, every: 0.05 ms}}\n",
+          1e-4);
+}
+
+/* 10,000 edges and ramps: refused before anything is run, with the limit and what to do. */
+static void what_takes_too_long_is_refused_at_once(void **state)
+{
+    (void)state;
+    run_text(SILICONE_DOT "drive: {waveform: {step: {on: 0 s, off: 0.01 ms, rise: 1 us, voltage: 3 kV}, period: 0.02 ms}}\n"
+                          "model: coverage\nstudy: {transient: {until: 1 s, every: 1 ms}}\n",
+             "ngspice", 1e-4, &found);
+    assert_int_equal(found.samples[1].state, DEA_STATE_FAILED);
+    assert_non_null(strstr(found.log, "edges and ramps"));
+    assert_non_null(strstr(found.log, "at most"));
+    assert_non_null(strstr(found.log, "--engine ida"));
+}
+
+/* ---- past the fold in time */
+
+static const char *snap(char *text, const char *film, double voltage, const char *times)
+{
+    snprintf(text, LINE, "%s  permittivity: 3.0\ndrive: {waveform: {step: {on: 0 s, voltage: %.17g V, rise: 0 s}}}\nmodel: coverage\n"
+                         "study: {transient: {%s}}\n",
+             film, voltage, times);
+    return text;
+}
+
+static size_t rows_of(const outcome *o, dea_state state)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < o->count; i++) {
+        count += o->samples[i].state == state;
+    }
+    return count;
+}
+
+/* The mass carries a dot through its fold into slack, where it turns back before the frame and swings. */
+static void a_film_is_followed_past_its_fold(void **state)
+{
+    (void)state;
+    char text[LINE];
+    static const char small[] =
+        "actuator: {kind: dot, frame_radius: 7.257726633171021 mm, coverage: 0.055658373381054525, film_thickness: 100 um, "
+        "prestretch: 1.1279595072600181}\n"
+        "material:\n  yeoh: {C1: 30728.961394946775 Pa, C2: 0 Pa, C3: 0 Pa}\n  density: 1050 kg/m^3\n  retardation: 0.65165 us\n";
+    static const char large[] =
+        "actuator: {kind: dot, frame_radius: 43.430555803523514 mm, coverage: 0.07776089090578293, film_thickness: 100 um, "
+        "prestretch: 1.4024233763785172}\n"
+        "material:\n  yeoh: {C1: 88580.09114559939 Pa, C2: 0 Pa, C3: 0 Pa}\n  density: 1050 kg/m^3\n  retardation: 6.0929 us\n";
+    agree(snap(text, small, 3449.7588332758273, "until: 2.5409 ms, every: 0.025409 ms"), 1e-2);
+    assert_int_equal(rows_of(&found, DEA_STATE_PULL_IN), 0);
+    assert_true(rows_of(&found, DEA_STATE_SLACK) > 80);
+    agree(snap(text, large, 4090.388178557825, "until: 9.235 ms, every: 0.030783 ms"), 1e-3);
+    assert_int_equal(rows_of(&found, DEA_STATE_PULL_IN), 0);
+    assert_true(rows_of(&found, DEA_STATE_SLACK) > 250);
+}
+
+/* Where the material softens without bounds no motion is left to follow, in a finite time: with mass it gets infinitely fast, with a
+ * damper alone nothing holds it. */
+static void a_film_that_runs_away_is_pulled_in(void **state)
+{
+    (void)state;
+    char text[LINE];
+    static const char heavy[] =
+        "actuator: {kind: dot, frame_radius: 18.148135878465144 mm, coverage: 0.21609926738997037, film_thickness: 65.589 um, "
+        "prestretch: 1.3465909201603221}\n"
+        "material:\n  yeoh: {C1: 55531.49 Pa, C2: -2776.57 Pa, C3: 0 Pa}\n  density: 1050 kg/m^3\n  retardation: 2.1777 us\n";
+    static const char light[] =
+        "actuator: {kind: dot, frame_radius: 21.355802725988353 mm, coverage: 0.61538358513075153, film_thickness: 90.893 um, "
+        "prestretch: 1.1379231902021159}\n"
+        "material:\n  yeoh: {C1: 22961.07 Pa, C2: -1148.05 Pa, C3: 0 Pa}\n  retardation: 7.161 us\n";
+    agree(snap(text, heavy, 1528.96, "until: 7.6253 ms, every: 0.038126 ms"), 1e-3);
+    assert_true(rows_of(&found, DEA_STATE_PULL_IN) > 100);
+    agree(snap(text, light, 4149.06, "until: 18.17 ms, every: 0.09085 ms"), 1e-3);
+    assert_int_equal(rows_of(&found, DEA_STATE_PULL_IN), found.count - 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_spring_on_its_branch_does_not_stall),
+        cmocka_unit_test(a_lens_behind_a_small_resistance_does_not_stall),
+        cmocka_unit_test(random_stalls_are_solved),
+        cmocka_unit_test(a_bridge_of_short_edges_is_solved),
+        cmocka_unit_test(what_takes_too_long_is_refused_at_once),
+        cmocka_unit_test(a_film_is_followed_past_its_fold),
+        cmocka_unit_test(a_film_that_runs_away_is_pulled_in),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -224,7 +224,7 @@ $(BUILD)/tests/program.o: src/program/main.c Makefile
 $(BUILD)/tests/test_faults: $(filter-out %/main.o,$(PROGRAM_OBJECTS)) $(BUILD)/tests/program.o
 $(BUILD)/tests/test_faults: private LDFLAGS += $(FAULTS:%=-Wl,--wrap=%)
 $(BUILD)/tests/test_stability: $(STABILITY_PARTS)
-$(BUILD)/tests/test_promises: $(filter-out %/main.o,$(PROMISES))
+$(BUILD)/tests/test_promises $(BUILD)/tests/test_columns: $(filter-out %/main.o,$(PROMISES))
 $(BUILD)/tests/test_stalls: $(BUILD)/tests/promises/stalls.o
 
 unit: $(UNIT_PROGRAMS)

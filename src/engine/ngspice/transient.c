@@ -131,6 +131,13 @@ static void tell_averages(const dea_route *route, const levels *l, dea_summary *
     }
 }
 
+/* A row has numbers within the frame alone, while a linear film runs on without end: what it does there is no peak. */
+static bool is_shown(const dea_route *route, const dea_track_point *point)
+{
+    const dea_dynamics *d = route->dynamics;
+    return point->u > -d->radius && point->u < d->point.frame_radius - d->radius;
+}
+
 /* Two runs: twice their difference; the error of the finer one is 1/3 of it in theory. Three: 2.5 times the difference of what
  * they extrapolate to; the error of the later one is 1/15 of it in theory, and more where steps follow the age of an edge. The
  * factors bound the errors of random scenes. */
@@ -140,10 +147,14 @@ static void judge(const dea_route *route, levels *l)
     apart second = {none, none};
     apart fourth = second;
     const size_t count = common(l);
+    bool shown = true;
     for (size_t i = 0; i < count; i++) {
         const dea_track_point answer = better_point(&l->coarse.points[i], &l->fine.points[i]);
-        widen(&second, &l->coarse.points[i], &l->fine.points[i]);
-        if (l->runs > 2) {
+        shown = shown && is_shown(route, &answer);
+        if (shown) {
+            widen(&second, &l->coarse.points[i], &l->fine.points[i]);
+        }
+        if (shown && l->runs > 2) {
             widen(&fourth, &l->before.points[i], &answer);
         }
         if (l->runs > 1) {

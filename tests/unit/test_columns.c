@@ -1,0 +1,281 @@
+/* Columns of transients that follow from displacement and charge: their scales, what engines promise for them, and that `check`
+ * and `make promises` look at them. Truths are those of make promises. */
+#include "scenes.h"
+
+#include "child_program.h"
+
+#include "../promises/promises.h"
+#include "result/compare.h"
+#include "result/scales.h"
+
+enum { LINE = 512 };
+
+/* ---- scales */
+
+/* The paper's film under a step of 4500 V at 0.1 s. */
+static dea_scene step_scene(double rise)
+{
+    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, (double)NAN);
+    scene.models[0] = dea_model_find("lumped");
+    scene.study = DEA_STUDY_TRANSIENT;
+    scene.drive.waveform = (dea_waveform){.kind = DEA_WAVE_STEP,
+                                          .step = {.on = 0.1, .off = (double)NAN, .voltage = 4500.0, .rise = rise},
+                                          .period = (double)NAN};
+    scene.transient = (dea_transient){.until = 2.0, .every = 0.1};
+    return scene;
+}
+
+static double pace_of(const dea_scene *scene)
+{
+    return dea_scales_open(scene, scene->models[0]).pace;
+}
+
+static void the_fastest_time_is_that_of_the_edge_or_of_the_film(void **state)
+{
+    (void)state;
+    dea_scene scene = step_scene(0.0);
+    assert_relative(pace_of(&scene), 0.5, 1e-12); /* it follows a jump at once: the run itself */
+    scene.material.prony_count = 1;
+    scene.material.prony[0] = (dea_prony){.g = 0.2, .tau = 0.05};
+    assert_relative(pace_of(&scene), 0.2 / 0.05, 1e-12);
+    scene.material.retardation = 1e-3;
+    assert_relative(pace_of(&scene), 1e3, 1e-12);
+    scene.material.density = 1080.0;
+    scene.material.retardation = 1e-9;
+    scene.material.prony_count = 0;
+    const double omega = 2.0 * DEA_PI * 825.5; /* of the film of examples/work-precision.yaml, which is this one */
+    assert_true(pace_of(&scene) > 0.5 * omega && pace_of(&scene) < 2.0 * omega);
+    scene.drive.waveform.step.rise = 0.25;
+    assert_relative(pace_of(&scene), 4.0, 1e-12); /* a slow edge */
+    scene.drive.series_resistance = 1e9;
+    const dea_scales scales = dea_scales_open(&scene, scene.models[0]);
+    assert_relative(scales.pace, 1.0 / 0.25237, 0.02); /* R C of 252 pF */
+    assert_relative(scales.charging, scales.pace, 1e-12);
+}
+
+static void a_scale_is_the_peak_unless_samples_miss_it(void **state)
+{
+    (void)state;
+    dea_scene scene = step_scene(0.0);
+    scene.material.retardation = 1e-3;
+    const dea_scales scales = dea_scales_open(&scene, scene.models[0]);
+    dea_sample rows[2] = {dea_sample_refused(0.0, 0.0, DEA_STATE_OK), dea_sample_refused(0.1, 0.0, DEA_STATE_OK)};
+    rows[0].displacement = -2e-3;
+    rows[0].velocity = 0.5;
+    rows[1].velocity = -7.0;
+    assert_relative(dea_scales_of(&scales, rows, 2).displacement, 2e-3, 1e-15);
+    assert_relative(dea_scales_of(&scales, rows, 2).velocity, 7.0, 1e-15);
+    rows[1].velocity = 0.0;
+    assert_relative(dea_scales_of(&scales, rows, 2).velocity, 2.0, 1e-12);
+}
+
+/* ---- promises */
+
+static char *read_case(const char *name)
+{
+    char path[4200];
+    size_t size;
+    snprintf(path, sizeof path, "%s/tests/cases/%s.yaml", child_home, name);
+    return file_read(path, &size);
+}
+
+static void hold(judged *j, const char *engine, double accuracy)
+{
+    char line[LINE] = "";
+    tally counted = {0};
+    if (judge_engine(j, dea_engine_find(engine), accuracy, &counted, line, sizeof line)) {
+        fail_msg("%s: %s", j->scene.title, line);
+    }
+    if (counted.delivered != 1) {
+        fail_msg("%s, %s, %g: %s", j->scene.title, engine, accuracy, counted.reasons[0].text);
+    }
+}
+
+static void every_column_is_within_ten_times_the_accuracy(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        double ida, ngspice; /* accuracies */
+    } cases[] = {
+        {"move1", 1e-8, 1e-4},           {"move1223", 1e-6, 1e-2},       {"columns_charging", 1e-8, 1e-4},
+        {"columns_damper", 1e-8, 1e-4},  {"columns_branches", 1e-4, 1e-2}, {"columns_corners", 1e-4, 1e-2},
+        {"columns_bias", 1e-6, 1e-4},    {"columns_held", 1e-6, 1e-2},   {"force_ngspice", 1e-6, 1e-6},
+    };
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        char *text = read_case(cases[c].name);
+        judged j;
+        assert_true(judge_open(&j, text, c));
+        hold(&j, "ida", 1e-2);
+        hold(&j, "ida", cases[c].ida);
+        hold(&j, "ngspice", cases[c].ngspice);
+        judge_close(&j);
+        free(text);
+    }
+}
+
+/* Rows of one run of a case. */
+static dea_status take_rows(void *user, size_t first, const void *points, size_t count, dea_error *error)
+{
+    (void)first, (void)count, (void)error;
+    const judged *j = ((void **)user)[0];
+    memcpy(((void **)user)[1], points, j->layout.point_size);
+    return DEA_OK;
+}
+
+static dea_sample *run_case(judged *j, const char *engine, double accuracy)
+{
+    dea_error error = {0};
+    dea_sample *rows = malloc(j->layout.point_size);
+    void *user[2] = {j, rows};
+    const dea_run_options options = {.jobs = 1, .points = take_rows, .user = user};
+    assert_non_null(rows);
+    j->scene.accuracy = accuracy;
+    assert_int_equal(dea_study_run(&j->scene, dea_engine_find(engine), &options, &error), DEA_OK);
+    return rows;
+}
+
+/* The velocity against the peak that the samples behind the start show, whatever the scale. */
+static void the_velocity_of_a_slow_film_has_its_sign_and_size(void **state)
+{
+    (void)state;
+    static const char *const cases[] = {"move1", "move1223", "columns_damper", "columns_held"};
+    for (size_t c = 0; c < 4; c++) {
+        for (int e = 0; e < 2; e++) {
+            char *text = read_case(cases[c]);
+            judged j;
+            assert_true(judge_open(&j, text, 0));
+            dea_sample *rows = run_case(&j, e == 0 ? "ngspice" : "ida", 1e-2);
+            double peak = 0.0;
+            for (size_t i = 1; i < j.layout.rows; i++) {
+                peak = fmax(peak, fabs(j.runs[0].samples[i].velocity));
+            }
+            assert_true(peak > 0.0);
+            for (size_t i = 1; i < j.layout.rows; i++) {
+                if (!(fabs(rows[i].velocity - j.runs[0].samples[i].velocity) <= 0.1 * peak)) {
+                    fail_msg("%s, row %zu: %g, not %g", cases[c], i, rows[i].velocity, j.runs[0].samples[i].velocity);
+                }
+            }
+            free(rows);
+            judge_close(&j);
+            free(text);
+        }
+    }
+}
+
+/* What a run says of its velocity and current covers the truth, times what estimates of the displacement are held to. */
+static void the_estimate_tells_the_error_of_a_rate(void **state)
+{
+    (void)state;
+    char *text = read_case("move1");
+    judged j;
+    assert_true(judge_open(&j, text, 0));
+    for (int e = 0; e < 2; e++) {
+        dea_sample *rows = run_case(&j, e == 0 ? "ngspice" : "ida", 1e-4);
+        const dea_summary *summary = dea_layout_summary(&j.layout, rows);
+        const dea_scales scales = dea_scales_open(&j.scene, j.scene.models[0]);
+        const dea_sample scale = dea_scales_of(&scales, rows, j.layout.rows);
+        double v = 0.0, i = 0.0;
+        for (size_t k = 0; k < j.layout.rows; k++) {
+            v = fmax(v, fabs(rows[k].velocity - j.runs[0].samples[k].velocity) / scale.velocity);
+            i = fmax(i, fabs(rows[k].current - j.runs[0].samples[k].current) / scale.current);
+        }
+        assert_true(v > 0.0 && v <= summary->velocity_error && summary->velocity_error <= 1e-3);
+        assert_true(i > 0.0 && i <= summary->current_error && summary->current_error <= 1e-3);
+        free(rows);
+    }
+    judge_close(&j);
+    free(text);
+}
+
+/* ---- judges */
+
+static dea_status ida_run(void *session, const dea_scene *scene, const dea_model *model, dea_sample *samples,
+                          dea_summary *summary, dea_error *error)
+{
+    return dea_engine_find("ida")->transient(session, scene, model, samples, summary, error);
+}
+
+static dea_status run_badly(void *session, const dea_scene *scene, const dea_model *model, dea_sample *samples,
+                            dea_summary *summary, dea_error *error)
+{
+    const dea_status status = ida_run(session, scene, model, samples, summary, error);
+    for (size_t i = 0; i < dea_layout_of(scene).rows; i++) {
+        samples[i].velocity *= 1.0 + 30.0 * scene->accuracy;
+    }
+    return status;
+}
+
+static void a_velocity_off_by_thirty_times_the_accuracy_is_found(void **state)
+{
+    (void)state;
+    char *text = read_case("columns_damper"), line[LINE] = "";
+    dea_engine bad = *dea_engine_find("ida");
+    bad.transient = run_badly;
+    judged j;
+    tally counted = {0};
+    assert_true(judge_open(&j, text, 0));
+    assert_true(judge_engine(&j, &bad, 1e-4, &counted, line, sizeof line));
+    assert_non_null(strstr(line, "velocity"));
+    assert_true(counted.worst > 2.8 && counted.worst < 3.2);
+    judge_close(&j);
+    free(text);
+}
+
+static void check_compares_velocity_by_its_scale(void **state)
+{
+    (void)state;
+    dea_scene scene = step_scene(0.0);
+    scene.material.retardation = 1e-3;
+    dea_comparison comparison;
+    assert_int_equal(dea_comparison_open(&comparison, &scene, NULL), DEA_OK);
+    char *point = calloc(1, comparison.layout.point_size);
+    dea_sample *rows = (dea_sample *)(void *)point;
+    for (size_t i = 0; i < comparison.layout.rows; i++) {
+        rows[i] = (dea_sample){.displacement = 1e-3, .velocity = 4.0, .state = DEA_STATE_OK};
+    }
+    *dea_layout_summary(&comparison.layout, point) = dea_summary_failed();
+    assert_int_equal(dea_comparison_take(&comparison, 0, point, 1, NULL), DEA_OK);
+    comparison.filling = false;
+    rows[3].velocity = 4.4;
+    assert_int_equal(dea_comparison_take(&comparison, 0, point, 1, NULL), DEA_OK);
+    assert_relative(dea_comparison_worst(&comparison), 0.01, 1e-12); /* a tenth of its peak, of ten promised */
+    rows[3].velocity = 4.0;
+    rows[3].displacement = 1.02e-3;
+    dea_comparison_forget(&comparison);
+    assert_int_equal(dea_comparison_take(&comparison, 0, point, 1, NULL), DEA_OK);
+    assert_relative(dea_comparison_worst(&comparison), 0.02, 1e-10);
+    dea_comparison_close(&comparison);
+    free(point);
+}
+
+static void the_program_tells_and_compares_rates(void **state)
+{
+    (void)state;
+    char *text = read_case("move1");
+    file_write("move1.yaml", text, strlen(text));
+    free(text);
+    RUN("run", "move1.yaml", "--engine", "ngspice", "-o", "move1.csv");
+    assert_status(0);
+    assert_non_null(strstr(child_err, " of the largest displacement (velocity "));
+    assert_non_null(strstr(child_err, ", current "));
+    RUN("check", "move1.yaml");
+    assert_status(0);
+    assert_non_null(strstr(child_out, "velocity"));
+    assert_non_null(strstr(child_out, "current"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_fastest_time_is_that_of_the_edge_or_of_the_film),
+        cmocka_unit_test(a_scale_is_the_peak_unless_samples_miss_it),
+        cmocka_unit_test(every_column_is_within_ten_times_the_accuracy),
+        cmocka_unit_test(the_velocity_of_a_slow_film_has_its_sign_and_size),
+        cmocka_unit_test(the_estimate_tells_the_error_of_a_rate),
+        cmocka_unit_test(a_velocity_off_by_thirty_times_the_accuracy_is_found),
+        cmocka_unit_test(check_compares_velocity_by_its_scale),
+        cmocka_unit_test(the_program_tells_and_compares_rates),
+    };
+    return cmocka_run_group_tests(tests, child_enter, child_leave);
+}

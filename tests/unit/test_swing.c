@@ -1,4 +1,5 @@
-/* The damped swing of the free film: closed forms, LAPACK's eigenvalues, the closed form of `direct`, and the film's own trace. */
+/* The damped swing of the free film: closed forms, LAPACK's eigenvalues, the closed form of `direct`, and the film's own trace.
+ */
 #include "random_transients.h"
 
 #include <complex.h>

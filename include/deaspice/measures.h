@@ -27,8 +27,8 @@ typedef struct dea_step_edge {
     bool rising;     /**< the edge `on`, not the edge `off` */
 } dea_step_edge;
 
-/** The answer of the displacement to an edge. It rests on the samples and their velocities, a cubic between two of them, and on the
- * static displacement under the new voltage as the final value, which a creeping film may not reach within the run. */
+/** The answer of the displacement to an edge. It rests on the samples and their velocities, a cubic between two of them, and on
+ * the static displacement under the new voltage as the final value, which a creeping film may not reach within the run. */
 typedef struct dea_edge_answer {
     double time;           /**< where the edge begins [s] */
     bool rising;           /**< the edge `on`, not the edge `off` */
@@ -50,7 +50,8 @@ typedef bool dea_magnitudes(void *user, double from, double to, size_t count, do
 /** The answer to one edge; false where no sample lies behind it. */
 DEA_API bool dea_measure_edge(const dea_sample *samples, size_t count, const dea_step_edge *edge, dea_edge_answer *answer);
 /** Answers to the edges of the scene's step, those of its first period where it repeats; returns how many, 0 for every other
- * waveform. An edge with no sample behind it is left out. All axes of @p scene are at their place, its first model is the run's. */
+ * waveform. An edge with no sample behind it is left out. All axes of @p scene are at their place, its first model is the run's.
+ */
 DEA_API size_t dea_measure_edges(const dea_scene *scene, const dea_sample *samples, size_t count, const dea_summary *summary,
                                  dea_edge_answer answers[DEA_EDGES]);
 /** True where the film swings and a sample behind an edge can still see that. */

@@ -87,6 +87,9 @@ typedef struct dea_summary {
     double residual;   /**< of the balance of these, relative to the largest of them on the way [1] */
     double resonance;  /**< of the damped swing of the free film, at rest and 0 V [Hz]; NAN: it does not swing */
     double decay;      /**< of that swing [1/s], 0: undamped; NAN: none */
+    /** Largest magnitude of the source's current, between samples too, within ten times the accuracy [A], and when [s]; NAN where
+     * no series resistance limits it, or the run leaves it out. */
+    double peak_current, peak_time;
     /** Means of the solution over the scene's windows, integrated by the engine whatever the samples, each within the accuracy of
      * the displacement's peak; NAN for those that the scene does not have and where the film has no number in the window. */
     dea_average averages[DEA_WINDOWS];
@@ -102,7 +105,8 @@ typedef struct dea_response {
     dea_state state;
 } dea_response;
 
-/** What a frequency response tells, between its frequencies too; a resonance and a bandwidth that the range does not hold are NAN. */
+/** What a frequency response tells, between its frequencies too; a resonance and a bandwidth that the range does not hold are
+ * NAN. */
 typedef struct dea_band {
     double resonance; /**< highest peak of the displacement per volt inside the range [Hz] */
     double bandwidth; /**< where it first falls to 1/sqrt(2) of its value at the lowest frequency [Hz] */

@@ -368,6 +368,12 @@ static double current(const dea_dynamics *d, const dea_edge *e, const dea_moment
     return e->capacitance * m->slope + e->capacitance_slope * m->v * m->voltage + m->voltage * d->conductance;
 }
 
+double dea_dynamics_current(dea_dynamics *dynamics, const dea_moment *moment)
+{
+    const dea_edge e = dea_dynamics_edge(dynamics, moment->u);
+    return current(dynamics, &e, moment);
+}
+
 /* The first sample of a run from rest, over a resistance that the network leaves out: the film has no charge yet. */
 static void sample_uncharged(dea_dynamics *dynamics, const dea_moment *moment, dea_sample *sample)
 {

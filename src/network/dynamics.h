@@ -91,6 +91,8 @@ typedef struct dea_moment {
 /* Fills a row; its state says slack or breakdown. A displacement past what the film can do is pull_in: false, as for all that
  * follows. */
 bool dea_dynamics_sample(dea_dynamics *dynamics, const dea_moment *moment, dea_sample *sample);
+/* Current of the source at a moment [A]. */
+double dea_dynamics_current(dea_dynamics *dynamics, const dea_moment *moment);
 /* A row without numbers but time and voltage. */
 dea_sample dea_sample_refused(double time, double voltage, dea_state state);
 

@@ -86,8 +86,8 @@ static double distance_above(const film *f, size_t pole)
     return sqrt(low) * sqrt(high);
 }
 
-/* Every branch has a real root above its pole. Of all roots the sum is -r/m - sum q_i and the product (-1)^n K prod q_i/m, so that
- * two are left with the sum 2 sigma and the product p below: complex where p > sigma^2. */
+/* Every branch has a real root above its pole. Of all roots the sum is -r/m - sum q_i and the product (-1)^n K prod q_i/m, so
+ * that two are left with the sum 2 sigma and the product p below: complex where p > sigma^2. */
 dea_swing dea_swing_of(dea_dynamics *dynamics, double u, double voltage)
 {
     const film f = film_at(dynamics, u, voltage);

@@ -20,7 +20,7 @@
 #define DEA_VERSION "unknown"
 #endif
 
-enum { SLAB_ROWS = 4096, TEXT_LENGTH = 512, SUMMARIES = 10, AVERAGES = 2 };
+enum { SLAB_ROWS = 4096, TEXT_LENGTH = 512, SUMMARIES = 12, AVERAGES = 2 };
 
 /* Largest number of doubles in one variable of the 64-bit offset format: 2^32 - 4 bytes. */
 static const uint64_t offset_values = UINT64_C(4294967292) / sizeof(double);
@@ -66,6 +66,8 @@ static const figure summaries[SUMMARIES] = {
     {"kinetic_energy_J", "change of the kinetic energy", "J", offsetof(dea_summary, kinetic)},
     {"dissipated_energy_J", "energy dissipated in dampers, branches and resistances", "J", offsetof(dea_summary, dissipated)},
     {"energy_residual", "residual of the energy balance, relative to the largest energy", "1", offsetof(dea_summary, residual)},
+    {"peak_current_A", "largest magnitude of the source's current", "A", offsetof(dea_summary, peak_current)},
+    {"peak_current_time_s", "time of the largest current", "s", offsetof(dea_summary, peak_time)},
     {"resonance_Hz", "damped swing of the free film", "Hz", offsetof(dea_summary, resonance)},
 };
 

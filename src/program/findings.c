@@ -306,6 +306,14 @@ static void print_transients(const dea_findings *findings, const dea_engine *eng
         print_quantity(findings->summary.resonance, "Hz");
         fputs(findings->summary.decay > 0.0 ? "\n" : ", undamped: the material has no retardation and no branch\n", stderr);
     }
+    if (findings->points == 1 && findings->summary.peak_current > 0.0) {
+        const double told = findings->summary.current_error, error = isnan(told) ? 10.0 * findings->summary.error : told;
+        fputs("peak current ", stderr);
+        print_digits(findings->summary.peak_current, "A", error < 5e-5 ? 4 : error < 2e-3 ? 3 : 2);
+        fputs(" at ", stderr);
+        print_quantity(findings->summary.peak_time, "s");
+        fputc('\n', stderr);
+    }
     if (findings->points == 1) {
         print_aliases(findings);
         print_edges(findings);

@@ -94,7 +94,7 @@ dea_band *dea_layout_band(const dea_layout *layout, void *point)
 dea_summary dea_summary_failed(void)
 {
     const double none = (double)NAN;
-    dea_summary summary = {none, none, none, 0.0, none, none, none, none, none, none, none, none, {{none, none}}};
+    dea_summary summary = {none, none, none, 0.0, none, none, none, none, none, none, none, none, none, none, {{none, none}}};
     for (size_t i = 0; i < DEA_WINDOWS; i++) {
         summary.averages[i] = (dea_average){none, none};
     }

@@ -227,12 +227,14 @@ size_t dea_measure_edges(const dea_scene *scene, const dea_sample *samples, size
     const double off = isnan(wave->step.off) ? fmin(wave->period, next) : fmin(wave->step.off, next);
     const bool falls = off < next;
     const double omega = dea_measure_shows(scene, summary) ? 2.0 * DEA_PI * summary->resonance : 0.0;
-    dea_step_edge edge = {.from = wave->step.on, .to = falls ? off : next, .rise = wave->step.rise, .rising = true, .omega = omega};
+    dea_step_edge edge = {
+        .from = wave->step.on, .to = falls ? off : next, .rise = wave->step.rise, .rising = true, .omega = omega};
     edge.error = isnan(summary->error) ? 0.0 : fmin(summary->error, 0.5 * band);
     edge.final = relaxed(scene, wave->step.voltage);
     size_t found = dea_measure_edge(samples, count, &edge, &answers[0]) ? 1 : 0;
     if (falls) {
-        edge = (dea_step_edge){.from = off, .to = next, .rise = edge.rise, .omega = omega, .error = edge.error, .final = relaxed(scene, 0.0)};
+        edge = (dea_step_edge){
+            .from = off, .to = next, .rise = edge.rise, .omega = omega, .error = edge.error, .final = relaxed(scene, 0.0)};
         found += dea_measure_edge(samples, count, &edge, &answers[found]) ? 1 : 0;
     }
     return found;

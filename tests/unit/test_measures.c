@@ -112,7 +112,8 @@ static void samples_too_coarse_for_a_rise_bound_it(void **state)
         measure(&scene, sample_count(&scene), 1.0, 0.0, edges);
         assert_true(edges[0].rise.early <= lag * log(9.0) && edges[0].rise.late >= lag * log(9.0));
         assert_true(edges[0].rise.late > edges[0].rise.early);
-        assert_true(edges[0].settling.early <= lag * log(50.0) * (1.0 + 1e-3) && edges[0].settling.late >= lag * log(50.0) * (1.0 - 1e-3));
+        assert_true(edges[0].settling.early <= lag * log(50.0) * (1.0 + 1e-3) &&
+                    edges[0].settling.late >= lag * log(50.0) * (1.0 - 1e-3));
     }
 }
 
@@ -130,7 +131,8 @@ static double second_settles(void)
 static void second_order_overshoots_by_its_damping(void **state)
 {
     (void)state;
-    const double wanted = exp(-DEA_PI * zeta / sqrt(1.0 - zeta * zeta)), period = 2.0 * DEA_PI / (omega * sqrt(1.0 - zeta * zeta));
+    const double wanted = exp(-DEA_PI * zeta / sqrt(1.0 - zeta * zeta)),
+                 period = 2.0 * DEA_PI / (omega * sqrt(1.0 - zeta * zeta));
     const double rates[] = {20.0, 20.37, 23.1, 57.7, 400.0};
     for (size_t i = 0; i < 5; i++) {
         const dea_scene scene = step_make(second_order, second_speed, -1e-4, period / rates[i]);

@@ -303,7 +303,7 @@ static void coarse_samples_tell_no_rise_time(void **state)
 }
 
 #define SWINGING(more, drive, study)                                                                                             \
-    "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"                        \
+    "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"                       \
     "material: {yeoh: {C1: 178426 Pa, C2: -6023 Pa, C3: 4234 Pa}, permittivity: 2.8, density: 1080 kg/m^3" more "}\n"            \
     "drive: {waveform: {" drive "}}\nmodel: lumped\nstudy: {transient: {" study "}}\n"
 
@@ -323,7 +323,8 @@ static void figures_of_a_step_are_those_that_the_film_has(void **state)
         {SWINGING(", retardation: 5 ms", "step: {on: 2 ms, voltage: 3 kV}", "until: 60 ms, every: 20 us"),
          {"10-90 % in 11 ms", "settled to 2 % in 19.5 ms", "no overshoot"},
          "resonance"},
-        {SWINGING(", retardation: 1 ms, prony: [{g: 0.5, tau: 60 s}]", "step: {on: 1 s, voltage: 3 kV}", "until: 11 s, every: 10 ms"),
+        {SWINGING(", retardation: 1 ms, prony: [{g: 0.5, tau: 60 s}]", "step: {on: 1 s, voltage: 3 kV}",
+                  "until: 11 s, every: 10 ms"),
          {"switched on at 1 s: does not settle within the run\n", "", ""},
          "overshoot"},
         {SWINGING(", retardation: 20 us", "sine: {amplitude: 3 kV, frequency: 50 Hz}", "until: 0.1 s, every: 10 ms"),
@@ -564,7 +565,8 @@ static void fit_without_a_result_leaves_no_file(void **state)
 
 static void stretch_beyond_the_data_is_told(void **state)
 {
-    static const char *const inside = "study.sweep.prestretch=[1.1, 1.15]", *const outside = "study.sweep.prestretch=[1.1, 1.4, 1.5]";
+    static const char *const inside = "study.sweep.prestretch=[1.1, 1.15]", *const outside =
+                                                                                "study.sweep.prestretch=[1.1, 1.4, 1.5]";
     (void)state;
     write_file("near.csv", "stretch,stress_kPa\n1.05,32.3\n1.1,60.9\n1.15,86.7\n1.2,110.8\n");
     RUN("fit", "--uniaxial", "near.csv", "-o", "near.yaml");

@@ -1,4 +1,5 @@
-/* The damped swing of the free film: closed forms, LAPACK's eigenvalues, the closed form of `direct`, and the film's own trace. */
+/* The damped swing of the free film: closed forms, LAPACK's eigenvalues, the closed form of `direct`, and the film's own trace.
+ */
 #include "random_transients.h"
 
 #include <complex.h>
@@ -214,7 +215,7 @@ static dea_summary summary_by(const char *name, const dea_scene *scene, dea_samp
     const dea_engine *engine = dea_engine_find(name);
     dea_error error = {0};
     void *session = NULL;
-    dea_summary summary;
+    dea_summary summary = dea_summary_failed();
     if (engine->begin(&session, &error) != DEA_OK ||
         engine->transient(session, scene, scene->models[0], samples, &summary, &error) != DEA_OK) {
         fail_msg("%s: %s", name, error.message);

@@ -21,7 +21,7 @@ typedef struct explicit_run {
     double integral;    /* of that up to the last stop */
     long before;        /* steps of the run before this one */
     N_Vector w;         /* owned, as all below: unknowns, then energies */
-    N_Vector tolerance;
+    N_Vector tolerance, between;
     void *ark;
 } explicit_run;
 
@@ -78,7 +78,8 @@ static bool begin(explicit_run *run)
     const dea_sundials *sun = flight->integrator.sun;
     run->w = sun->N_VNew_Serial(n + run->audited + run->integrated, sun->context);
     run->tolerance = run->w ? sun->N_VClone(run->w) : NULL;
-    if (!run->tolerance) {
+    run->between = run->w ? sun->N_VClone(run->w) : NULL;
+    if (!run->tolerance || !run->between) {
         return false;
     }
     sun->N_VConst(0.0, run->w);
@@ -144,6 +145,30 @@ static void integrate(explicit_run *run, double before, double time)
     run->integral = whole;
 }
 
+/* Current at a time of the last step, counted over the run [A]. */
+static double current_at(void *user, double time)
+{
+    explicit_run *run = user;
+    dea_flight *flight = run->flight;
+    const double at = time - flight->motion.segment->from;
+    double y[DEA_MOTION_MOST];
+    if (flight->integrator.sun->DEA_ARK(GetDky)(run->ark, at, 0, run->between) != ARK_SUCCESS) {
+        return 0.0;
+    }
+    dea_ring_state(flight->ring, dea_ring_turn(flight->ring, at, 0.0), NV_DATA_S(run->between), y);
+    const dea_moment moment = dea_motion_moment(&flight->motion, at, y);
+    return dea_dynamics_current(flight->motion.dynamics, &moment);
+}
+
+static void see_current(explicit_run *run, double before, double time)
+{
+    dea_flight *flight = run->flight;
+    if (flight->motion.q >= 0 && time > before) {
+        const double begin = flight->motion.segment->from;
+        dea_peak_search(&flight->trace->peak, begin + before, begin + time, current_at, run);
+    }
+}
+
 /* Steps to the next sample or end of a window, or to the end if that is nearer. */
 static dea_state advance(explicit_run *run, double to, double *time)
 {
@@ -154,6 +179,7 @@ static dea_state advance(explicit_run *run, double to, double *time)
     const bool sampled = next <= segment->to && next - segment->from <= end;
     const double stop = sampled ? fmax(before, next - segment->from) : end;
     for (int code = ARK_SUCCESS; *time < stop && code != ARK_TSTOP_RETURN;) {
+        const double last = *time;
         code = sun->DEA_ARK(SetStopTime)(run->ark, stop);
         code = code == ARK_SUCCESS ? sun->DEA_ARK(Evolve)(run->ark, stop, run->w, time, ARK_ONE_STEP) : code;
         if (code < 0) {
@@ -164,6 +190,7 @@ static dea_state advance(explicit_run *run, double to, double *time)
         if (state != DEA_STATE_OK || endless(run, to, *time)) {
             return state != DEA_STATE_OK ? state : DEA_STATE_FAILED;
         }
+        see_current(run, last, *time);
     }
     integrate(run, before, stop);
     return !sampled || dea_flight_record(flight, stop, flight->y) ? DEA_STATE_OK : DEA_STATE_PULL_IN;
@@ -203,6 +230,9 @@ dea_state dea_flight_explicit(dea_flight *flight, double to)
     }
     if (run.tolerance) {
         sun->N_VDestroy(run.tolerance);
+    }
+    if (run.between) {
+        sun->N_VDestroy(run.between);
     }
     if (run.w) {
         sun->N_VDestroy(run.w);

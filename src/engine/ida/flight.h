@@ -8,14 +8,16 @@
 
 #include "engine/ida/ring.h"
 #include "engine/ida/sundials.h"
+#include "network/peak.h"
 
 /* What a run leaves: the moments of its samples up to where it ended. */
 typedef struct dea_trace {
-    dea_moment *moments;         /* owned by the user: room for all rows */
-    size_t count;                /* samples in use */
-    dea_state end;               /* ok, or what all samples from count on are */
-    double largest_u, largest_v; /* on the way [m], [m/s] */
+    dea_moment *moments;           /* owned by the user: room for all rows */
+    size_t count;                  /* samples in use */
+    dea_state end;                 /* ok, or what all samples from count on are */
+    double largest_u, largest_v;   /* on the way [m], [m/s] */
     double integrals[DEA_WINDOWS]; /* of u over the windows of the scene [m s] */
+    dea_peak peak;                 /* of the current, behind a series resistance */
 } dea_trace;
 
 typedef struct dea_flight {

@@ -251,6 +251,24 @@ static void integrate_step(const dea_flight *flight, double before, double time)
     }
 }
 
+/* Current at a time of the last step, counted over the run [A]. */
+static double current_at(void *user, double time)
+{
+    const dea_flight *flight = user;
+    const double at = time - flight->motion.segment->from;
+    const double *there = unknowns_at(flight, at, 0);
+    double w[DEA_MOTION_MOST], y[DEA_MOTION_MOST];
+    if (!there) {
+        return 0.0;
+    }
+    memcpy(w, there, (size_t)flight->motion.count * sizeof *w);
+    const dea_turn turn = dea_ring_turn(flight->ring, at, 0.0);
+    dea_ring_state(flight->ring, turn, w, y);
+    dea_moment moment = dea_motion_moment(&flight->motion, at, y);
+    take_current(flight, at, turn, w, &moment);
+    return dea_dynamics_current(flight->motion.dynamics, &moment);
+}
+
 /* Highest order of BDF behind an explicit method. From order 3 on BDF lets the tail of a ring grow while a step is a part of its
  * period, and may crawl through all that is left, a step a radian. Order 2 never does; of its steps, relaxation takes about
  * 4/tolerance^(1/3). */
@@ -309,6 +327,10 @@ dea_state dea_flight_implicit(dea_flight *flight, double from)
             return DEA_STATE_PULL_IN;
         }
         integrate_step(flight, before, time);
+        if (flight->motion.q >= 0) {
+            const double begin = flight->motion.segment->from;
+            dea_peak_search(&flight->trace->peak, begin + before, begin + time, current_at, flight);
+        }
         if (flight->audit) {
             visit_step(flight, before, time, audit_at, NULL);
         }

@@ -31,15 +31,17 @@
 #define DEA_SUNDIALS_LIST(X)                                                                                                     \
     DEA_SUNDIALS_QUIET(X)                                                                                                        \
     X(SUNContext_Create)                                                                                                         \
-    X(SUNContext_Free) X(SUNDIALSGetVersion) X(SUNDIALSGetVersionNumber) X(N_VClone) X(N_VConst) X(N_VDestroy) X(N_VNew_Serial)  \
-        X(SUNDenseMatrix) X(SUNMatDestroy) X(SUNLinSol_Dense) X(SUNLinSolFree) X(IDACalcIC) X(IDACreate) X(IDAFree)              \
-            X(IDAGetConsistentIC) X(IDAGetDky) X(IDAGetLastStep) X(IDAGetRootInfo) X(IDAInit) X(IDAReInit) X(IDARootInit)        \
-                X(IDASStolerances) X(IDASVtolerances) X(IDASetId) X(IDASetJacFn) X(IDASetLinearSolver) X(IDASetMaxConvFails)     \
+    X(SUNContext_Free)                                                                                                           \
+    X(SUNDIALSGetVersion) X(SUNDIALSGetVersionNumber) X(N_VClone) X(N_VConst) X(N_VDestroy) X(N_VNew_Serial) X(SUNDenseMatrix)   \
+        X(SUNMatDestroy) X(SUNLinSol_Dense) X(SUNLinSolFree) X(IDACalcIC) X(IDACreate) X(IDAFree) X(IDAGetConsistentIC)          \
+            X(IDAGetDky) X(IDAGetLastStep) X(IDAGetRootInfo) X(IDAInit) X(IDAReInit) X(IDARootInit) X(IDASStolerances)           \
+                X(IDASVtolerances) X(IDASetId) X(IDASetJacFn) X(IDASetLinearSolver) X(IDASetMaxConvFails)                        \
                     X(IDASetMaxErrTestFails) X(IDASetMaxNumSteps) X(IDASetMaxOrd) X(IDASetMaxStep) X(IDASetStopTime)             \
                         X(IDASetUserData) X(IDASolve) X(KINCreate) X(KINFree) X(KINInit) X(KINSetFuncNormTol) X(KINSetMAA)       \
                             X(KINSetNumMaxIters) X(KINSetUserData) X(KINSol) X(ARKStepCreate) X(ARKStepSetTableNum)              \
-                                X(DEA_ARK(Evolve)) X(DEA_ARK(Free)) X(DEA_ARK(SVtolerances)) X(DEA_ARK(SetMaxErrTestFails))      \
-                                    X(DEA_ARK(SetMaxStep)) X(DEA_ARK(SetStopTime)) X(DEA_ARK(SetUserData))
+                                X(DEA_ARK(Evolve)) X(DEA_ARK(Free)) X(DEA_ARK(GetDky)) X(DEA_ARK(SVtolerances))                  \
+                                    X(DEA_ARK(SetMaxErrTestFails)) X(DEA_ARK(SetMaxStep)) X(DEA_ARK(SetStopTime))                \
+                                        X(DEA_ARK(SetUserData))
 
 /* A context that prints nothing, and the functions that work in it. Zeroed is empty. */
 typedef struct dea_sundials {

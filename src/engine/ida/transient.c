@@ -170,6 +170,17 @@ static void tell_averages(const dea_flight *flight, const dea_trace *trace, dea_
     }
 }
 
+/* The peak of the current, where two runs agree about it within ten times the accuracy. */
+static void tell_peak(const dea_flight *flight, const dea_trace traces[2], dea_summary *summary)
+{
+    const dea_peak *a = &traces[0].peak, *b = &traces[1].peak;
+    if (flight->motion.q >= 0 && traces[1].end == DEA_STATE_OK &&
+        fabs(a->current - b->current) <= 10.0 * flight->scene->accuracy * b->current) {
+        summary->peak_current = b->current;
+        summary->peak_time = b->time;
+    }
+}
+
 static void explain(const dea_flight *flight, const dea_summary *summary, dea_error *error)
 {
     if (flight->why.message[0] != '\0') {
@@ -204,6 +215,7 @@ static dea_status fly(dea_flight *flight, dea_sample *samples, dea_summary *summ
             rates.current = scales.motional * rates.velocity;
         }
         dea_scales_tell(&scales, samples, flight->rows, rates, summary);
+        tell_peak(flight, traces, summary);
     }
     free(traces[0].moments);
     free(traces[1].moments);

@@ -22,7 +22,8 @@ static const double edge_parts = 2.0;
 /* Share of a step within which a film charges at once. */
 static const double at_once = 1e-2;
 
-/* Steps over a time of the network, above which the trapezoidal rule turns the sign of what is left of its motion at every step. */
+/* Steps over a time of the network, above which the trapezoidal rule turns the sign of what is left of its motion at every step.
+ */
 static const double alternating = 2.0;
 
 /* Rates of the states that steps do not resolve: what is left of a fast motion alternates there from step to step, and where a
@@ -42,11 +43,11 @@ typedef struct slopes {
 typedef struct node {
     dea_moment moment;
     dea_mobility_state state;
-    double stress;         /* S */
-    double acceleration;   /* with mass [m/s^2] */
-    double current;        /* slope of the charge, with series resistance [A] */
+    double stress;              /* S */
+    double acceleration;        /* with mass [m/s^2] */
+    double current;             /* slope of the charge, with series resistance [A] */
     double rate[DEA_PRONY_MAX]; /* slopes of z */
-    double complex change; /* what correct() has added [m] */
+    double complex change;      /* what correct() has added [m] */
 } node;
 
 typedef struct runner {
@@ -66,8 +67,8 @@ typedef struct runner {
     fast_rates fast;
     dea_mobility_state before; /* the state before the last point, */
     double before_time;        /* at that time, if it lies in the segment [s] */
-    node last;      /* in the segment that begins there */
-    double pending; /* weight of its powers [s] */
+    node last;                 /* in the segment that begins there */
+    double pending;            /* weight of its powers [s] */
 } runner;
 
 double dea_route_voltage(const dea_route *route, double source, double u, double charge)
@@ -254,6 +255,29 @@ static void integrate(runner *r, const node *b)
         for (int k = 0; k < 3 && half > 0.0; k++) {
             r->track->integrals[i] += half * weights[k] * place_between(r, &r->last, b, middle + half * places[k]);
         }
+    }
+}
+
+/* The step from the last point to another. */
+typedef struct stretch {
+    runner *runner;
+    const node *end;
+} stretch;
+
+/* Current of the source within it [A]. */
+static double current_at(void *user, double time)
+{
+    const stretch *s = user;
+    const node *a = &s->runner->last, *b = s->end;
+    const node n = time <= a->moment.time ? *a : time >= b->moment.time ? *b : between(s->runner, a, b, time);
+    return n.current + n.moment.voltage * s->runner->route->dynamics->conductance;
+}
+
+static void see_current(runner *r, const node *b)
+{
+    stretch s = {r, b};
+    if (r->route->dynamics->series > 0.0) {
+        dea_peak_search(&r->track->peak, r->last.moment.time, b->moment.time, current_at, &s);
     }
 }
 
@@ -469,6 +493,7 @@ static bool advance(runner *r, const ahead *p)
     }
     add_step(r, &n);
     integrate(r, &n);
+    see_current(r, &n);
     take_samples(r, &n);
     r->before = r->last.state;
     r->before_time = r->last.moment.time;
@@ -491,8 +516,8 @@ static void find_fast(runner *r)
     const double resistance = e.area * d->retardation * e.stress_slope, limit = r->step / alternating;
     const double held = dea_dynamics_stiffness(d, r->last.moment.u, r->last.moment.voltage, false);
     const double heavy = d->mass > 0.0 ? (r->rings || r->slow ? (double)INFINITY : d->mass / resistance) : resistance / held;
-    r->fast = (fast_rates){.u = !is_free(d) && heavy < limit,
-                           .charge = d->series > 0.0 && d->series * e.capacitance < limit && !r->rings};
+    r->fast =
+        (fast_rates){.u = !is_free(d) && heavy<limit, .charge = d->series> 0.0 && d->series * e.capacitance < limit && !r->rings};
     r->fast.any = r->fast.u || r->fast.charge;
     for (size_t i = 0; i < d->branch_count; i++) {
         r->fast.z[i] = d->branches[i].tau < limit;

@@ -5,6 +5,7 @@
 #include "engine/ngspice/library.h"
 #include "engine/ngspice/pieces.h"
 #include "netlist/mobility.h"
+#include "network/peak.h"
 
 /* Displacement, velocity, charge and its slope, where there is a series resistance, at a sample. */
 typedef struct dea_track_point {
@@ -12,12 +13,13 @@ typedef struct dea_track_point {
 } dea_track_point;
 
 typedef struct dea_track {
-    dea_track_point *points; /* owned: computed by dea_track_run(), `reached` of them */
-    size_t reached;          /* samples before the run ended */
-    dea_state end;           /* why: ok, pull_in, failed */
+    dea_track_point *points;       /* owned: computed by dea_track_run(), `reached` of them */
+    size_t reached;                /* samples before the run ended */
+    dea_state end;                 /* why: ok, pull_in, failed */
     double integrals[DEA_WINDOWS]; /* of u over the windows of the scene [m s] */
-    bool bounces;            /* it failed since its steps went through where the film turns back */
-    bool vague;              /* a sample lies in the step in which the film ran away */
+    bool bounces;                  /* it failed since its steps went through where the film turns back */
+    bool vague;                    /* a sample lies in the step in which the film ran away */
+    dea_peak peak;                 /* of the current, behind a series resistance */
     dea_audit audit;
     dea_moment first, last;
     dea_mobility_state start, stop; /* the states that go with them */
@@ -33,10 +35,10 @@ typedef struct dea_route {
     const dea_signal *signal;
     const dea_pieces *pieces;
     size_t samples;
-    double voltage;   /* most that the film sees [V] */
-    double scale;     /* size of a displacement [m] */
-    double omega;     /* of the ring [rad/s], 0: none */
-    double unit;      /* of the times of the scene [1/s] */
+    double voltage; /* most that the film sees [V] */
+    double scale;   /* size of a displacement [m] */
+    double omega;   /* of the ring [rad/s], 0: none */
+    double unit;    /* of the times of the scene [1/s] */
 } dea_route;
 
 /* Runs the pieces with @p fineness times their steps; the caller frees track->points, also after a failure. A run that ends early

@@ -138,6 +138,17 @@ static bool is_shown(const dea_route *route, const dea_track_point *point)
     return point->u > -d->radius && point->u < d->point.frame_radius - d->radius;
 }
 
+/* The peak of the current, where the answer of the two last runs is within ten times the accuracy: half their difference bounds
+ * its error. */
+static void tell_peak(const dea_route *route, const levels *l, dea_summary *summary)
+{
+    const double coarse = l->coarse.peak.current, fine = l->fine.peak.current;
+    const bool told = route->dynamics->series > 0.0 && l->fine.end == DEA_STATE_OK &&
+                      0.5 * fabs(fine - coarse) <= 10.0 * route->scene->accuracy * fine;
+    summary->peak_current = told ? better(coarse, fine) : (double)NAN;
+    summary->peak_time = told ? l->fine.peak.time : (double)NAN;
+}
+
 /* Two runs: twice their difference; the error of the finer one is 1/3 of it in theory. Three: 2.5 times the difference of what
  * they extrapolate to; the error of the later one is 1/15 of it in theory, and more where steps follow the age of an edge. The
  * factors bound the errors of random scenes. */
@@ -207,6 +218,7 @@ static void fill_summary(const dea_route *route, const levels *l, dea_summary *s
     last.v = stop.v;
     last.voltage = dea_route_voltage(route, last.source, stop.u, stop.charge);
     dea_audit_close(&audit, d, &l->fine.first, l->fine.start.z, &last, stop.z, summary);
+    tell_peak(route, l, summary);
 }
 
 /* From measured errors: three runs from there on mostly do. */

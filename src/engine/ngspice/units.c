@@ -150,6 +150,8 @@ void dea_units_return_summary(const dea_units *units, dea_summary *summary)
     summary->elastic /= energy;
     summary->kinetic /= energy;
     summary->dissipated /= energy;
+    summary->peak_current /= charge(units) / units->time;
+    summary->peak_time /= units->time;
     for (size_t i = 0; i < DEA_WINDOWS; i++) {
         summary->averages[i].displacement /= units->length;
     }

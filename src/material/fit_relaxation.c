@@ -400,6 +400,9 @@ dea_status dea_fit_relaxation(const dea_relaxation_data *data, size_t branches, 
         if (status == DEA_OK) {
             fit_fill(&held, &best, fit);
         }
+        if (status == DEA_OK && !held.memory) {
+            status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+        }
     }
     dea_held_end(&held);
     return status;

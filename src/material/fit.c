@@ -147,7 +147,10 @@ static dea_status problem_decompose(problem *p, dea_fit *fit, dea_error *error)
     const lapack_int rows = (lapack_int)p->rows, terms = (lapack_int)p->terms;
     const lapack_int info = dea_lapacke_dgesvd(LAPACK_COL_MAJOR, 'S', 'S', rows, terms, p->matrix, rows, p->singular, p->left,
                                                rows, p->vt, terms, work);
-    if (info != 0) {
+    if (info < 0) { /* says nothing about the data */
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory in LAPACK (dgesvd: %d)", (int)info);
+    }
+    if (info > 0) {
         return dea_fail(error, DEA_ERROR_USAGE, "the least-squares problem could not be solved (LAPACK dgesvd: %d)", (int)info);
     }
     fit->condition = p->singular[0] / p->singular[p->terms - 1];

@@ -169,8 +169,10 @@ static bool step_solve(dea_held *held, const dea_branches *c, double damping)
         const double size = dea_squares(held->matrix + j * rows, held->rows);
         held->matrix[j * rows + held->rows + j] = size > 0.0 ? sqrt(damping * size) : 1.0;
     }
-    return dea_lapacke_dgels(LAPACK_COL_MAJOR, 'N', (lapack_int)rows, (lapack_int)columns, 1, held->matrix, (lapack_int)rows,
-                             held->step, (lapack_int)rows) == 0;
+    const lapack_int info = dea_lapacke_dgels(LAPACK_COL_MAJOR, 'N', (lapack_int)rows, (lapack_int)columns, 1, held->matrix,
+                                              (lapack_int)rows, held->step, (lapack_int)rows);
+    held->memory = held->memory && info >= 0;
+    return info == 0;
 }
 
 /* Moves the times until no step helps any more. */

@@ -21,6 +21,7 @@ typedef struct search {
     size_t *used;     /* numbers of the columns in use; owned */
     size_t count;     /* of them */
     bool *barred;     /* out, or of no use at this x; owned */
+    bool exhausted;       /* memory ran out in LAPACK */
 } search;
 
 static dea_status search_begin(search *s)
@@ -91,7 +92,10 @@ static bool block_solve(search *s)
     }
     memcpy(s->solved, s->right, s->rows * sizeof *s->solved);
     const lapack_int rows = (lapack_int)s->rows;
-    return dea_lapacke_dgels(LAPACK_COL_MAJOR, 'N', rows, (lapack_int)s->count, 1, s->block, rows, s->solved, rows) == 0;
+    const lapack_int info =
+        dea_lapacke_dgels(LAPACK_COL_MAJOR, 'N', rows, (lapack_int)s->count, 1, s->block, rows, s->solved, rows);
+    s->exhausted = s->exhausted || info < 0;
+    return info == 0;
 }
 
 /* Goes from x towards the solution as far as no unknown turns negative, and drops those that reach 0; true where it arrived. */
@@ -145,7 +149,7 @@ dea_status dea_nnls(size_t rows, size_t columns, const double *matrix, const dou
         size += right[i] * right[i];
     }
     size_t steps = 3 * columns;
-    while (status == DEA_OK && s.count < rows && steps > 0) {
+    while (status == DEA_OK && !s.exhausted && s.count < rows && steps > 0) {
         const size_t j = column_best(&s, gain_least * sqrt(size));
         if (j == columns) {
             break;
@@ -157,5 +161,5 @@ dea_status dea_nnls(size_t rows, size_t columns, const double *matrix, const dou
         *squares += s.residual[i] * s.residual[i];
     }
     search_end(&s);
-    return status;
+    return s.exhausted ? DEA_ERROR_MEMORY : status;
 }

@@ -144,8 +144,10 @@ static bool covariances_find(dea_held *held, const dea_branches *c, covariances 
         }
     }
     const lapack_int rows = (lapack_int)held->rows, order = (lapack_int)columns;
-    if (dea_lapacke_dgesvd(LAPACK_COL_MAJOR, 'O', 'S', rows, order, held->matrix, rows, singular, &right, 1, vt, order, rest) != 0 ||
-        !(singular[columns - 1] > 1e-12 * singular[0])) {
+    const lapack_int info =
+        dea_lapacke_dgesvd(LAPACK_COL_MAJOR, 'O', 'S', rows, order, held->matrix, rows, singular, &right, 1, vt, order, rest);
+    held->memory = held->memory && info >= 0;
+    if (info != 0 || !(singular[columns - 1] > 1e-12 * singular[0])) {
         return false;
     }
     dea_errors_covariances(&(dea_decomposed){held->rows, columns, held->matrix, singular, vt}, held->step, found->alike,
@@ -397,6 +399,9 @@ dea_status dea_fit_relaxation(const dea_relaxation_data *data, size_t branches, 
                              : dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
         if (status == DEA_OK) {
             fit_fill(&held, &best, fit);
+        }
+        if (status == DEA_OK && !held.memory) {
+            status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
         }
     }
     dea_held_end(&held);

@@ -450,10 +450,20 @@ static dea_status records_heal(dea_journal *journal, bool strict, record_kind ki
     return ftruncate(journal->fd, (off_t)journal->end) == 0 ? DEA_OK : fail_io(error, "write", journal->path);
 }
 
-/* Finds and verifies all records, also those behind a damaged one. With @p strict false a torn end is cut off. */
+static void records_forget(dea_journal *journal, uint64_t begin)
+{
+    memset(journal->kept, 0, journal->blocks.count * sizeof *journal->kept);
+    journal->end = begin;
+    journal->points = journal->lost = 0;
+}
+
+/* Finds all records, also those behind a damaged one. With @p strict false a torn end is cut off. The points of all records are
+ * verified, but for a strict search that meets one whole record after the other: they are verified when they are used. */
 static dea_status records_find(dea_journal *journal, bool strict, dea_error *error)
 {
     struct stat about;
+    const uint64_t begin = journal->end;
+    bool verify = !strict;
     if (fstat(journal->fd, &about) != 0) {
         return fail_io(error, "read", journal->path);
     }
@@ -461,7 +471,12 @@ static dea_status records_find(dea_journal *journal, bool strict, dea_error *err
     for (uint64_t size = (uint64_t)about.st_size; journal->end < size && status == DEA_OK;) {
         record_head head;
         record_kind kind = record_find(journal, journal->end, size, &head);
-        if (kind == RECORD_WHOLE || kind == RECORD_TWICE) {
+        if (!verify && kind != RECORD_WHOLE) {
+            records_forget(journal, begin);
+            verify = true;
+            continue;
+        }
+        if (verify && (kind == RECORD_WHOLE || kind == RECORD_TWICE)) {
             const record_kind verified = record_verify(journal, journal->end, &head);
             kind = verified == RECORD_WHOLE ? kind : verified;
         }

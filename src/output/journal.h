@@ -63,7 +63,7 @@ dea_status dea_journal_open(const dea_journal_study *study, dea_shard shard, con
 /* A new journal without a name, beside @p target. */
 dea_status dea_journal_create(const dea_journal_study *study, dea_shard shard, const char *target, dea_journal **journal,
                               dea_error *error);
-/* Opens a part to read it. Its records are verified. Its shard is what the file says.
+/* Opens a part to read it. Its records are found; their points are verified when they are read. Its shard is what the file says.
  * DEA_ERROR_USAGE: not a part, of another study, or damaged; the message names file and points. */
 dea_status dea_journal_read(const dea_journal_study *study, const char *path, dea_journal **journal, dea_error *error);
 /* The file's shard. */

@@ -105,7 +105,6 @@ FAULT_CALL(realpath, char *, (const char *path, char *whole), (path, whole), NUL
 /* files */
 FAULT_CALL(fopen, FILE *, (const char *path, const char *mode), (path, mode), NULL, EMFILE)
 FAULT_CALL(tmpfile, FILE *, (void), (), NULL, ENOSPC)
-FAULT_CALL(fread, size_t, (void *bytes, size_t size, size_t count, FILE *file), (bytes, size, count, file), 0, EIO)
 FAULT_CALL(fflush, int, (FILE *file), (file), EOF, ENOSPC)
 FAULT_CALL(fseek, int, (FILE *file, long offset, int whence), (file, offset, whence), -1, EIO)
 FAULT_CALL(read, ssize_t, (int fd, void *bytes, size_t size), (fd, bytes, size), -1, EIO)
@@ -124,6 +123,17 @@ FAULT_CALL(fstat, int, (int fd, struct stat *about), (fd, about), -1, EIO)
 FAULT_CALL(dup2, int, (int from, int to), (from, to), -1, EIO)
 
 enum { FAULT_FERROR = 0x20 }; /* what makes ferror() true in the GNU C library */
+
+size_t __real_fread(void *bytes, size_t size, size_t count, FILE *file);
+size_t __wrap_fread(void *bytes, size_t size, size_t count, FILE *file);
+size_t __wrap_fread(void *bytes, size_t size, size_t count, FILE *file)
+{
+    if (!fault_due("fread", EIO)) {
+        return __real_fread(bytes, size, count, file);
+    }
+    file->_flags |= FAULT_FERROR;
+    return 0;
+}
 
 /* Messages are the way in which faults are told. */
 size_t __real_fwrite(const void *bytes, size_t size, size_t count, FILE *file);

@@ -840,13 +840,13 @@ static void named_parts_keep_their_material_in_one_circuit(void **state)
     assert_int_equal(PROGRAM("--as", "subckt", "--name", "soft", "-o", second, "tests/cases/part_soft.yaml"), 0);
     snprintf(command, sizeof command, "cp tests/cases/two_parts.cir '%s/circuit.cir' && cd '%s' && ngspice -b circuit.cir 2>&1", folder,
              folder);
-    FILE *answer = popen(command, "r");
-    assert_non_null(answer);
-    while (fgets(line, sizeof line, answer)) {
+    FILE *heard = popen(command, "r");
+    assert_non_null(heard);
+    while (fgets(line, sizeof line, heard)) {
         (void)sscanf(line, "v(xa.u) = %lf", &silicone);
         (void)sscanf(line, "v(xb.u) = %lf", &soft);
     }
-    pclose(answer);
+    pclose(heard);
     assert_true(fabs(silicone - 94.73) < 0.01 && fabs(soft - 524.35) < 0.01);
     unlink(first);
     unlink(second);

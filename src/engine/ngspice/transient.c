@@ -104,13 +104,13 @@ static bool covers(const dea_route *route, const levels *l, size_t window)
 }
 
 /* The same for the means of the displacement. */
-static void widen_means(const dea_route *route, levels *l, apart *second, apart *fourth)
+static void widen_means(const dea_route *route, levels *l, double shown, apart *second, apart *fourth)
 {
     for (size_t i = 0; i < route->scene->transient.average_count; i++) {
         const dea_window *window = &route->scene->transient.averages[i];
         const double width = window->to - window->from;
         const double coarse = l->coarse.integrals[i], fine = l->fine.integrals[i], answer = better(coarse, fine);
-        if (covers(route, l, i)) {
+        if (covers(route, l, i) && window->to <= shown) {
             second->most.u = fmax(second->most.u, fabs(fine - coarse) / width);
             fourth->most.u = fmax(fourth->most.u, l->runs > 2 ? fabs(answer - l->before.integrals[i]) / width : 0.0);
         }
@@ -159,10 +159,12 @@ static void judge(const dea_route *route, levels *l)
     apart fourth = second;
     const size_t count = common(l);
     bool shown = true;
+    double last = 0.0; /* time of the last row that has numbers */
     for (size_t i = 0; i < count; i++) {
         const dea_track_point answer = better_point(&l->coarse.points[i], &l->fine.points[i]);
         shown = shown && is_shown(route, &answer);
         if (shown) {
+            last = dea_layout_place(route->scene, i);
             widen(&second, &l->coarse.points[i], &l->fine.points[i]);
         }
         if (shown && l->runs > 2) {
@@ -172,7 +174,7 @@ static void judge(const dea_route *route, levels *l)
             l->before.points[i] = answer;
         }
     }
-    widen_means(route, l, &second, &fourth);
+    widen_means(route, l, shown ? (double)INFINITY : last, &second, &fourth);
     l->displacement = 2.0 * largest(&second);
     l->rates = (dea_rate_errors){2.0 * second.most.v, 2.0 * second.most.current};
     double rate = 2.0 * largest_rate(&second, &l->scales);

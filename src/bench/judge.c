@@ -157,7 +157,10 @@ void dea_bench_judge(dea_bench_work *work, dea_bench_setting *setting, uint64_t 
     }
     dea_comparison *comparison = &truth->comparison;
     dea_comparison_forget(comparison);
-    dea_comparison_take(comparison, 0, work->buffer, work->points, NULL);
+    if (dea_comparison_take(comparison, 0, work->buffer, work->points, NULL) != DEA_OK) {
+        setting->error = (double)NAN; /* out of memory: not judged */
+        return;
+    }
     setting->reference = digest == truth->digest && setting->engine == work->bench->models[setting->model].reference;
     setting->error = comparison->failed < work->bench->rows ? dea_comparison_worst(comparison) : (double)NAN;
     setting->states = comparison->states;

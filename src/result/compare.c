@@ -82,7 +82,7 @@ static double peak_of(const dea_comparison *comparison, const char *point, size_
 }
 
 /* What the columns of a point of the reference count by. */
-static void find_peaks(const dea_comparison *comparison, size_t number, const char *point, double peaks[DEA_COMPARED_COLUMNS])
+static dea_status find_peaks(const dea_comparison *comparison, size_t number, const char *point, double peaks[DEA_COMPARED_COLUMNS])
 {
     const bool moving = comparison->scene->study == DEA_STUDY_TRANSIENT;
     dea_sample of = dea_sample_refused(0.0, 0.0, DEA_STATE_OK);
@@ -90,12 +90,16 @@ static void find_peaks(const dea_comparison *comparison, size_t number, const ch
         dea_scene here = *comparison->scene;
         dea_axes_place(&here, number);
         const dea_scales scales = dea_scales_open(&here, here.models[0]);
+        if (scales.status == DEA_ERROR_MEMORY) {
+            return scales.status;
+        }
         of = dea_scales_of(&scales, (const dea_sample *)(const void *)point, comparison->layout.rows);
     }
     for (size_t c = 0; c < comparison->column_count; c++) {
         peaks[c] = moving ? value_of(comparison, (const char *)&of, c)
                           : fmax(peak_of(comparison, point, c), comparison->least[c]);
     }
+    return DEA_OK;
 }
 
 static double angle_between(double a, double b)
@@ -207,7 +211,7 @@ static void compare_summaries(dea_comparison *comparison, const char *point, con
     comparison->swing = fmax(comparison->swing, swing_gap(&a, &b));
 }
 
-static void take_point(dea_comparison *comparison, size_t number, const char *point)
+static dea_status take_point(dea_comparison *comparison, size_t number, const char *point)
 {
     const dea_layout *layout = &comparison->layout;
     char *reference = comparison->reference + number * layout->point_size;
@@ -224,7 +228,10 @@ static void take_point(dea_comparison *comparison, size_t number, const char *po
     if (comparison->filling) {
         memcpy(reference, point, layout->point_size);
     }
-    find_peaks(comparison, number, reference, peaks);
+    const dea_status status = find_peaks(comparison, number, reference, peaks);
+    if (status != DEA_OK) {
+        return status;
+    }
     for (size_t c = 0; c < comparison->column_count; c++) {
         comparison->scale[c] = fmax(comparison->scale[c], peaks[c]);
     }
@@ -234,6 +241,7 @@ static void take_point(dea_comparison *comparison, size_t number, const char *po
             compare_summaries(comparison, point, reference, peaks[0]); /* of the displacement */
         }
     }
+    return DEA_OK;
 }
 
 dea_status dea_comparison_open(dea_comparison *comparison, const dea_scene *scene, dea_error *error)
@@ -274,7 +282,9 @@ dea_status dea_comparison_take(dea_comparison *comparison, size_t first, const v
         return dea_fail(error, DEA_ERROR_ENGINE, "more points than the study has");
     }
     for (size_t i = 0; i < count; i++) {
-        take_point(comparison, first + i, (const char *)points + i * comparison->layout.point_size);
+        if (take_point(comparison, first + i, (const char *)points + i * comparison->layout.point_size) != DEA_OK) {
+            return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for the scales of a run");
+        }
     }
     return DEA_OK;
 }

@@ -53,7 +53,7 @@ void dea_comparison_close(dea_comparison *comparison);
 /* Forgets all differences, before the points of the next engine. */
 void dea_comparison_forget(dea_comparison *comparison);
 /* Takes points in any order: into the reference, or against it. Rows that one of the two did not solve are not compared.
- * @return DEA_OK, DEA_ERROR_ENGINE (more points than the study has) */
+ * @return DEA_OK, DEA_ERROR_ENGINE (more points than the study has), DEA_ERROR_MEMORY */
 dea_status dea_comparison_take(dea_comparison *comparison, size_t first, const void *points, size_t count, dea_error *error);
 /* Largest difference over the compared columns and figures, each over its allowance; rows whose states differ do not count here. */
 double dea_comparison_worst(const dea_comparison *comparison);

@@ -86,8 +86,11 @@ dea_scales dea_scales_open(const dea_scene *scene, const dea_model *model)
     dea_signal signal = {0};
     dea_scales scales = {0};
     full.reduction = (dea_reduction){0};
-    if (dea_dynamics_open(&full, model, &dynamics, NULL) == DEA_OK && dea_signal_open(scene, &signal, NULL) == DEA_OK &&
-        signal.largest > 0.0) {
+    scales.status = dea_dynamics_open(&full, model, &dynamics, NULL);
+    if (scales.status == DEA_OK) {
+        scales.status = dea_signal_open(scene, &signal, NULL);
+    }
+    if (scales.status == DEA_OK && signal.largest > 0.0) {
         set_least(&scales, &dynamics, &signal);
         set_rates(&scales, &dynamics, &signal, scene->transient.from_bias ? signal.segments[0].start : 0.0);
     }

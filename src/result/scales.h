@@ -24,6 +24,7 @@ typedef struct dea_scales {
     double pace;      /* 1/T of the displacement [1/s] */
     double charging;  /* 1/T of the charge [1/s] */
     double motional;  /* C' U_max: current of a velocity [A s/m] */
+    dea_status status; /* DEA_OK, or why there are no scales: DEA_ERROR_MEMORY, or a model that does not move */
 } dea_scales;
 
 /* Largest difference that a column may have from the truth, in its unit. */
@@ -34,7 +35,7 @@ typedef struct dea_rate_errors {
 /* Accuracies that a column of a transient promises, relative to its scale: 1 for displacement and strain, 10 for the others. */
 double dea_scales_allowance(size_t offset);
 
-/* Of the scene's full network under its drive, axes at their place; all 0 where that cannot be built. */
+/* Of the scene's full network under its drive, axes at their place; where that cannot be built all are 0, and the status says why. */
 dea_scales dea_scales_open(const dea_scene *scene, const dea_model *model);
 /* Scales of the columns over the rows of a run that have numbers, in the fields of a sample; time and voltage 0. */
 dea_sample dea_scales_of(const dea_scales *scales, const dea_sample *samples, size_t count);

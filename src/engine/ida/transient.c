@@ -192,30 +192,37 @@ static void explain(const dea_flight *flight, const dea_summary *summary, dea_er
     }
 }
 
+/* Runs until the answer is good enough, and tells it. */
+static void fly_on(dea_flight *flight, const dea_scales *scales, dea_trace traces[2], dea_sample *samples, dea_summary *summary,
+                   dea_error *error)
+{
+    dea_rate_errors rates = {0.0, 0.0};
+    const bool reached = refine(flight, scales, flight->scene->accuracy, traces, summary, &rates);
+    if (!reached || traces[1].end == DEA_STATE_FAILED) {
+        explain(flight, summary, error);
+    }
+    if (!reached) {
+        traces[1].count = 0;
+        traces[1].end = DEA_STATE_FAILED;
+    }
+    fill(flight, &traces[1], samples);
+    tell_averages(flight, &traces[1], summary);
+    if (!(flight->motion.dynamics->series > 0.0)) { /* the current C U' + C' U v is as good as the velocity */
+        rates.current = scales->motional * rates.velocity;
+    }
+    dea_scales_tell(scales, samples, flight->rows, rates, summary);
+    tell_peak(flight, traces, summary);
+}
+
 static dea_status fly(dea_flight *flight, dea_sample *samples, dea_summary *summary, dea_error *error)
 {
     dea_trace traces[2] = {{0}, {0}};
+    const dea_scales scales = dea_scales_open(flight->scene, flight->motion.dynamics->model);
     traces[0].moments = malloc(flight->rows * sizeof *traces[0].moments);
     traces[1].moments = malloc(flight->rows * sizeof *traces[1].moments);
-    const bool room = traces[0].moments && traces[1].moments;
+    const bool room = traces[0].moments && traces[1].moments && scales.status != DEA_ERROR_MEMORY;
     if (room) {
-        const dea_scales scales = dea_scales_open(flight->scene, flight->motion.dynamics->model);
-        dea_rate_errors rates = {0.0, 0.0};
-        const bool reached = refine(flight, &scales, flight->scene->accuracy, traces, summary, &rates);
-        if (!reached || traces[1].end == DEA_STATE_FAILED) {
-            explain(flight, summary, error);
-        }
-        if (!reached) {
-            traces[1].count = 0;
-            traces[1].end = DEA_STATE_FAILED;
-        }
-        fill(flight, &traces[1], samples);
-        tell_averages(flight, &traces[1], summary);
-        if (!(flight->motion.dynamics->series > 0.0)) { /* the current C U' + C' U v is as good as the velocity */
-            rates.current = scales.motional * rates.velocity;
-        }
-        dea_scales_tell(&scales, samples, flight->rows, rates, summary);
-        tell_peak(flight, traces, summary);
+        fly_on(flight, &scales, traces, samples, summary, error);
     }
     free(traces[0].moments);
     free(traces[1].moments);

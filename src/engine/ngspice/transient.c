@@ -512,7 +512,8 @@ static dea_status run_on(dea_route *route, dea_sample *samples, dea_summary *sum
     dea_pieces pieces;
     levels l = {.error = INFINITY, .scales = dea_scales_open(route->scene, route->dynamics->model)};
     pieces.pieces = NULL;
-    dea_status status = can_tell_edges(route, &pace, error);
+    dea_status status = l.scales.status == DEA_ERROR_MEMORY ? dea_fail(error, DEA_ERROR_MEMORY, "out of memory for a run")
+                                                            : can_tell_edges(route, &pace, error);
     if (status == DEA_OK) {
         status =
             dea_pieces_cut(route->signal, &pace, route->scene->accuracy, route->scene->reduction.ring, quiet, &pieces, error);

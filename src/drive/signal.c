@@ -217,6 +217,12 @@ double dea_segment_slope(const dea_signal *signal, const dea_segment *segment, d
     return (segment->end - segment->start) / (segment->to - segment->from);
 }
 
+double dea_segment_curvature(const dea_signal *signal, const dea_segment *segment, double time)
+{
+    const double omega = 2.0 * DEA_PI * signal->sine.frequency;
+    return segment->sine ? -signal->sine.amplitude * omega * omega * sin(angle(&signal->sine, time)) : 0.0;
+}
+
 size_t dea_signal_find(const dea_signal *signal, size_t near, double time)
 {
     while (near + 1 < signal->count && time > signal->segments[near].to) {

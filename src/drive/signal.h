@@ -23,9 +23,10 @@ typedef struct dea_signal {
 dea_status dea_signal_open(const dea_scene *scene, dea_signal *signal, dea_error *error);
 void dea_signal_close(dea_signal *signal);
 
-/* Voltage [V] and its slope [V/s] inside a segment, ends included. */
+/* Voltage [V], its slope [V/s] and its curvature [V/s^2] inside a segment, ends included. */
 double dea_segment_voltage(const dea_signal *signal, const dea_segment *segment, double time);
 double dea_segment_slope(const dea_signal *signal, const dea_segment *segment, double time);
+double dea_segment_curvature(const dea_signal *signal, const dea_segment *segment, double time);
 
 /* The segment of a time, searched from segment number @p near on: from < time <= to, the first one at its begin too. */
 size_t dea_signal_find(const dea_signal *signal, size_t near, double time);

@@ -120,21 +120,26 @@ static void set_velocity(const runner *r, const dea_edge *e, node *n)
 }
 
 /* A film that charges at once: the drop over R_s, a difference of almost equal voltages, follows from i = d(C U)/dt with
- * U' = U_s' - R_s i' instead, where i' is (C' u'' + C'' u'^2) U; C' = 2 phi. (R_s C)^2 i'' is left out: that is nothing where the
- * film charges within a small part of a step, and for a sample where that is of a radian of its ring. */
+ * U' = U_s' - R_s i' instead, where i' is C U_s'' + 2 C' u' U_s' + (C' u'' + C'' u'^2) U_s; C' = 2 phi. (R_s C)^2 i'' is left out:
+ * that is nothing where the film charges within a small part of a step, and for a sample where that is of a radian of its ring. */
 static void follow_source(const runner *r, const dea_edge *e, node *n)
 {
     const dea_dynamics *d = r->route->dynamics;
+    const dea_signal *signal = r->route->signal;
+    const dea_segment *segment = &signal->segments[r->segment];
     const double time = d->series * e->capacitance;
     const bool turns = d->mass > 0.0 && !r->slow && time < r->step && r->route->omega * time < 0.2 * at_once;
     if (time >= at_once * r->step && !turns) {
         return;
     }
     dea_moment *m = &n->moment;
-    const double bend = e->capacitance_slope * n->acceleration + 2.0 * e->push_slope * m->v * m->v;
-    const double slope =
-        dea_segment_slope(r->route->signal, &r->route->signal->segments[r->segment], m->time) - d->series * bend * m->source;
-    n->current = e->capacitance * slope + e->capacitance_slope * m->v * m->source;
+    const double rate = dea_segment_slope(signal, segment, m->time);
+    const double bend = e->capacitance * dea_segment_curvature(signal, segment, m->time) +
+                        2.0 * e->capacitance_slope * m->v * rate +
+                        (e->capacitance_slope * n->acceleration + 2.0 * e->push_slope * m->v * m->v) * m->source;
+    const double slope = rate - d->series * bend;
+    const double motional = e->capacitance_slope * m->v; /* C' u' U = C' u' (U_s - R_s i) */
+    n->current = (e->capacitance * slope + motional * m->source) / (1.0 + d->series * motional);
     if (time < at_once * r->step) {
         m->slope = slope;
         m->voltage = m->source - d->series * (n->current + m->source * d->conductance);

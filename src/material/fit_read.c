@@ -138,11 +138,11 @@ static dea_status relaxation_point(const dea_table *t, const dea_relaxation_data
 /* Adds a point; rows of equal time, as a rounded clock writes them, become their mean. *equal counts them. */
 static dea_status relaxation_add(dea_relaxation_data *data, dea_relaxation_point point, size_t *equal, dea_error *error)
 {
-    dea_relaxation_point *last = data->points + data->count - 1;
-    if (data->count == 0 || point.time > last->time) {
+    if (data->count == 0 || point.time > data->points[data->count - 1].time) {
         *equal = 1;
         return dea_relaxation_add(data, point, error);
     }
+    dea_relaxation_point *last = &data->points[data->count - 1];
     ++*equal;
     last->stress += (point.stress - last->stress) / (double)*equal;
     return DEA_OK;

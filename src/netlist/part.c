@@ -622,7 +622,8 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is written");
     }
     dea_status status = write_part(&p, defaults, model, name, error);
-    const bool whole = !ferror(p.out) && fclose(p.out) == 0;
+    const bool broken = ferror(p.out) != 0;
+    const bool whole = fclose(p.out) == 0 && !broken;
     if (status == DEA_OK && !whole) {
         status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is written");
     }

@@ -8,6 +8,7 @@
 #include "netlist/export.h"
 #include "netlist/part_text.h"
 #include "network/balance.h"
+#include "support/text.h"
 
 /* Most lines of one netlist, most values of an axis that is not uniform, and most steps from one point to the next. */
 enum { MOST_LINES = 2000, MOST_LIST = 400, MOST_PARTS = 64, NAMES_A_LINE = 6 };
@@ -353,8 +354,7 @@ static dea_status write_lines(writer *w, dea_error *error)
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
     }
     dea_status status = dea_lines_visit(scene, 0, dea_scene_point_count(scene), visit_line, w, error);
-    const bool sound = !ferror(w->names);
-    if ((fclose(w->names) != 0 || !sound) && status == DEA_OK) {
+    if (!dea_text_close(w->names) && status == DEA_OK) {
         status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
     }
     if (status == DEA_OK && w->written == 0) {

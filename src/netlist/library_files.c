@@ -8,6 +8,7 @@
 
 #include "netlist/symbol.h"
 #include "output/atomic.h"
+#include "support/text.h"
 
 enum { PATH_ROOM = 4096 };
 
@@ -58,7 +59,7 @@ static dea_status open_memory(memory_file *file, dea_error *error)
 static dea_status close_memory(memory_file *file, dea_status status, const char *folder, const char *tool, const char *name,
                                dea_error *error)
 {
-    const bool whole = !ferror(file->out) && fclose(file->out) == 0;
+    const bool whole = dea_text_close(file->out);
     if (status == DEA_OK && !whole) {
         status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a library is written");
     }

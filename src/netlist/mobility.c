@@ -12,6 +12,7 @@
 #include "netlist/expression_text.h"
 #include "network/derivative.h"
 #include "network/formula.h"
+#include "support/text.h"
 
 dea_status dea_mobility_open(const dea_scene *scene, const dea_dynamics *dynamics, dea_mobility *mobility, dea_error *error)
 {
@@ -399,9 +400,8 @@ static void write_piece(writer *w)
 /* Closes the stream; on DEA_OK its text belongs to the caller. */
 static dea_status finish(FILE *out, bool ready, char **text, dea_error *error)
 {
-    const bool sound = out && !ferror(out);
-    const bool closed = out && fclose(out) == 0;
-    if (!ready || !sound || !closed) {
+    const bool whole = dea_text_close(out);
+    if (!ready || !whole) {
         free(*text);
         *text = NULL;
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "netlist/expression_text.h"
+#include "support/text.h"
 
 /* The swept scalar as a voltage of the index k, so that no rounding adds up along a sweep. */
 static void write_axis(FILE *out, const dea_netlist_study *study)
@@ -108,7 +109,7 @@ dea_status dea_netlist_write(dea_network *network, const dea_netlist_study *stud
     if (ready) {
         write_all(&writer, network, elastic, load, study);
     }
-    const bool written = out && !ferror(out) && fclose(out) == 0;
+    const bool written = dea_text_close(out);
     dea_expression_text_close(&writer);
     if (!ready || !written) {
         free(*text);

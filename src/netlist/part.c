@@ -9,6 +9,7 @@
 #include "network/derivative.h"
 #include "network/formula.h"
 #include "network/network.h"
+#include "support/text.h"
 
 /* The symbols of a part's network: parameters that the checks of the subcircuit have put into their ranges. */
 enum {
@@ -622,8 +623,7 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is written");
     }
     dea_status status = write_part(&p, defaults, model, name, error);
-    const bool broken = ferror(p.out) != 0;
-    const bool whole = fclose(p.out) == 0 && !broken;
+    const bool whole = dea_text_close(p.out);
     if (status == DEA_OK && !whole) {
         status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is written");
     }

@@ -127,8 +127,7 @@ dea_status dea_identity_write(const dea_scene *scene, const dea_engine *engine, 
     put_study(out, scene);
     put_scalars(out, scene);
     put_lists(out, scene);
-    const bool bad = ferror(out) != 0;
-    if (fclose(out) != 0 || bad) {
+    if (!dea_text_close(out)) {
         free(*text);
         *text = NULL;
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");

@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 /* Room for dea_text_clip() of DEA_TEXT_SHOWN characters. */
 enum { DEA_TEXT_SHOWN = 60, DEA_TEXT_ROOM = 10 * DEA_TEXT_SHOWN + 8 };
@@ -16,6 +17,8 @@ bool dea_text_hidden(unsigned code);
 /* Copies at most @p shown characters of @p text to @p out, hidden ones and foreign bytes escaped, "..." where it was cut; returns
  * @p out. */
 char *dea_text_clip(const char *text, size_t shown, char *out, size_t room);
+/* Closes a stream, whatever it lost; true where it lost nothing. NULL: false. */
+bool dea_text_close(FILE *stream);
 /* Edits between two words (insert, delete, replace, swap neighbours), case ignored; a large number where one is longer than 63
  * bytes. */
 size_t dea_text_distance(const char *a, const char *b);

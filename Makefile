@@ -144,12 +144,15 @@ $(BUILD)/stability: $(STABILITY_PARTS) $(BUILD)/tests/stability/main.o $(BUILD)/
 	@echo "LD $@"
 	@$(CC) $(CFLAGS) $(LDFLAGS) $^ -o $@ $(LIBS)
 
-# Random scenes by all engines and accuracies against truths found another way: broken promises of accuracy. About 15 minutes;
-# SCENES=n, SEED=s for others. The seed is the date unless given, printed with the command that repeats the run.
+# Random scenes by all engines and accuracies against truths found another way: broken promises of accuracy; then transients with an
+# electrical port and branches at which steps of ngspice once collapsed. About 20 minutes; SCENES=n, STALLS=n, SEED=s for others. The
+# seed is the date unless given, printed with the command that repeats the run.
 SCENES ?= 500
+STALLS ?= 200
 promises:
 	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/promises
-	@$(BUILD)/promises --scenes $(SCENES) $(if $(SEED),--seed $(SEED))
+	@$(BUILD)/promises --scenes $(SCENES) $(if $(SEED),--seed $(SEED)); status=$$?; \
+	$(BUILD)/promises --stalls --scenes $(STALLS) $(if $(SEED),--seed $(SEED)) && exit $$status
 
 PROMISES := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tests/promises/*.c)))
 $(BUILD)/promises: $(PROMISES) $(BUILD)/libdeaspice.a

@@ -17,6 +17,9 @@ static const double doubt = 1.5;       /* most that an error is taken for, over 
 static const double first_share = 0.1; /* from one tolerance to the next */
 static const double least_tolerance = 1e-14;
 static const double tight = 1e-11; /* a tolerance that sees every ring that rounding leaves */
+/* A loose step may carry a film out of its frame that turns back just before it: an end of the motion counts from this tolerance on,
+ * and others are tightened by so much towards it. */
+static const double certain = 1e-9, towards = 1e-2;
 
 /* Peak of the displacement over the samples, or a tenth of that over the run where the samples miss it [m]. */
 static double peak(const dea_trace *trace)
@@ -128,16 +131,16 @@ static bool refine(dea_flight *flight, const dea_scales *scales, double accuracy
         const double shrinks = pow(share, order);
         const gap apart = difference(flight, scales, &traces[0], &traces[1]);
         const bool failed = traces[1].end == DEA_STATE_FAILED;
-
+        const bool doubtful = traces[1].end == DEA_STATE_PULL_IN && tolerance > certain;
         const bool comparable = failed || traces[0].count == traces[1].count;
         const double trust = fmin(doubt, safety * shrinks), least = fmax(10.0 * tolerance, 0.1 * accuracy);
         const double worst = fmax(apart.answer * trust, least);
         summary->error = fmax(apart.displacement * trust, least);
         *rates = (dea_rate_errors){apart.rates.velocity * trust, apart.rates.current * trust};
-        if ((comparable && worst <= accuracy) || failed) {
+        if ((comparable && worst <= accuracy && !doubtful) || failed) {
             return worst <= accuracy;
         }
-        share = comparable ? next_share(apart.answer * shrinks, accuracy) : first_share;
+        share = doubtful ? towards : comparable ? next_share(apart.answer * shrinks, accuracy) : first_share;
     }
     return false;
 }

@@ -17,6 +17,8 @@ static const double doubt = 1.5;       /* most that an error is taken for, over 
 static const double first_share = 0.1; /* from one tolerance to the next */
 static const double least_tolerance = 1e-14;
 static const double tight = 1e-11; /* a tolerance that sees every ring that rounding leaves */
+/* Accuracies near the engine's best, where two runs share some of their error, so that their difference must lie further below. */
+static const double fine = 1e-8, margin = 0.3;
 /* A loose step may carry a film out of its frame that turns back just before it: an end of the motion counts from this tolerance on,
  * and others are tightened by so much towards it. */
 static const double certain = 1e-9, towards = 1e-2;
@@ -200,7 +202,8 @@ static void fly_on(dea_flight *flight, const dea_scales *scales, dea_trace trace
                    dea_error *error)
 {
     dea_rate_errors rates = {0.0, 0.0};
-    const bool reached = refine(flight, scales, flight->scene->accuracy, traces, summary, &rates);
+    const double accuracy = flight->scene->accuracy;
+    const bool reached = refine(flight, scales, accuracy > fine ? accuracy : margin * accuracy, traces, summary, &rates);
     if (!reached || traces[1].end == DEA_STATE_FAILED) {
         explain(flight, summary, error);
     }

@@ -47,10 +47,14 @@ static void omit(planner *p, dea_omission omission)
     p->reduction = dea_needs_reduction(p->needs->omissions, p->needs->count);
 }
 
-/* True of the first sample of a film at its bias: it rests, which dea_dynamics_sample() knows without the parts too. */
+/* True of the first sample of a film at its bias that a mass, a damper or a resistance holds there for the moment: it rests, which
+ * dea_dynamics_sample() knows without the parts too. Without them the film follows a sloping voltage at once. */
 static bool is_start(const planner *p, size_t probe)
 {
-    return p->surrogate.scene->transient.from_bias && probe == 0;
+    const dea_scene *scene = p->surrogate.scene;
+    const bool held = !isnan(scene->material.density) || scene->actuator.electrode_mass > 0.0 ||
+                      !isnan(scene->material.retardation) || scene->drive.series_resistance > 0.0;
+    return held && scene->transient.from_bias && probe == 0;
 }
 
 /* Change of the displacement at a probe over its peak, or of the velocity against what its column promises; the larger of the

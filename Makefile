@@ -114,7 +114,7 @@ $(BUILD)/fuzz/scene_fuzz: tests/fuzz/scene_fuzz.c $(LIBRARY_SOURCES)
 	@echo "CC $@"
 	@clang $(filter-out -MMD -MP,$(ALL_CFLAGS)) -O1 -g -fsanitize=fuzzer,address,undefined -DDEA_AXIS_VALUES_MAX=100000 $^ -o $@ $(LIBS)
 
-# Speed and error side by side, against the goals and against other programs where they are installed, then the diagrams of README.
+# Speed and error side by side, against the goals and against other programs where they are installed, then the diagrams of README and tests/README.
 # Takes about ten minutes.
 bench:
 	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/bench

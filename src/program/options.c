@@ -9,7 +9,7 @@
 
 #include "deaspice/fit.h"
 #include "program/program.h"
-#include "scene/quantity.h"
+#include "support/quantity.h"
 #include "support/text.h"
 
 enum { MOST_JOBS = 1024, MOST_SHARDS = 1000000, MOST_RUNS = 1000 };

@@ -52,8 +52,11 @@ const char *dea_points_fault(const dea_waveform *waveform, size_t index)
         return NULL;
     }
     const double before = waveform->times[index - 1];
-    if (!(time > before)) {
-        return "the times do not increase strictly";
+    if (!(time >= before)) {
+        return "the times decrease";
+    }
+    if (time == before) { /* a jump */
+        return index > 1 && waveform->times[index - 2] == time ? "more than two points of one time" : NULL;
     }
     return time - before >= DEA_EDGE_MIN ? NULL : "two times are closer than 1e-12 s";
 }

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/file.h"
 #include "scene/reader.h"
+#include "support/file.h"
 #include "support/table.h"
 
 enum { ROWS_MAX = 1000000 };
@@ -147,11 +147,14 @@ static dea_status table_read(dea_reader *reader, dea_table *table, const char *t
     }
     status = status ? status : dea_points_new(reader, lines < ROWS_MAX ? lines : ROWS_MAX);
     status = status ? status : rows_read(table, wave);
+    if (status == DEA_OK && wave->point_count == 0) {
+        status = dea_table_fail(table, 1, "no row of numbers below the header");
+    }
     if (status == DEA_OK) {
         settle_times(wave);
         const bool cut = wave->times[0] < 0.0;
         cut_before_zero(wave);
-        snprintf(wave->columns, sizeof wave->columns, "%s%s", table->told, cut ? "; what lies before time 0 is cut off" : "");
+        snprintf(wave->columns, sizeof wave->columns, "%.200s%s", table->told, cut ? "; what lies before time 0 is cut off" : "");
     }
     return status;
 }
@@ -159,7 +162,7 @@ static dea_status table_read(dea_reader *reader, dea_table *table, const char *t
 dea_status dea_read_wave_file(dea_reader *reader, const dea_ref *ref, const dea_node *node)
 {
     char shown[DEA_TEXT_ROOM];
-    char subject[DEA_NAME_LENGTH];
+    char subject[DEA_NAME_LENGTH + 2];
     char *text = NULL;
     size_t length = 0;
     const char *refused = NULL;
@@ -181,12 +184,13 @@ dea_status dea_read_wave_file(dea_reader *reader, const dea_ref *ref, const dea_
         return dea_place_fail(&node->place, reader->error, ref->path, "cannot read the file %s: %s", dea_reader_show(node, shown),
                               refused);
     }
-    snprintf(subject, sizeof subject, "%s: ", ref->path);
+    snprintf(subject, sizeof subject, "%.*s: ", DEA_NAME_LENGTH - 1, ref->path);
     dea_table table = {.name = origin->name,
                        .subject = subject,
                        .wanted = wanted,
                        .wanted_count = COLUMNS,
                        .headless = true,
+                       .guarded = true,
                        .units = reader->units,
                        .error = reader->error};
     const dea_status status = table_read(reader, &table, text, length);

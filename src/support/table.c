@@ -11,10 +11,10 @@
 #include "support/text.h"
 
 enum {
-    LOOK_AHEAD = 1000,     /* rows that tell whether numbers have a decimal comma */
-    HEADER_LINES = 40,     /* lines of title and header before the first row */
-    UNIT_ROOM = 32,        /* longest unit */
-    NUMERIC_LEAST = 2      /* numbers that make a line a row */
+    LOOK_AHEAD = 1000, /* rows that tell whether numbers have a decimal comma */
+    HEADER_LINES = 40, /* lines of title and header before the first row */
+    UNIT_ROOM = 32,    /* longest unit */
+    NUMERIC_LEAST = 2  /* numbers that make a line a row */
 };
 
 /* A line of the text. */
@@ -34,6 +34,9 @@ static dea_status fail_field(const dea_table *t, const dea_field *f, const char 
 {
     char shown[DEA_TEXT_ROOM];
     char whole[DEA_TEXT_ROOM + 300];
+    if (t->guarded) {
+        return dea_table_fail(t, f->column, problem);
+    }
     snprintf(whole, sizeof whole, "%s \"%s\"", problem, dea_text_clip(f->text, DEA_TEXT_SHOWN, shown, sizeof shown));
     return dea_table_fail(t, f->column, whole);
 }
@@ -168,6 +171,7 @@ static bool number_read(const dea_table *t, const char *text, char point, bool s
     if (end == plain || (size_t)(end - plain) > digits) {
         return false;
     }
+    end += *end == ' ';
     const double factor = *end == '\0' ? 1.0 : suffixes ? suffix_factor(end) : 0.0;
     *value = dea_unit_scale(*value, factor > 0.0 ? factor : 1.0);
     return factor > 0.0;
@@ -205,8 +209,8 @@ static size_t count_numbers(dea_table *t, char separator, const line *row, bool 
     return numbers;
 }
 
-/* The first row: a line of two numbers or more, followed, where there is another line, by one of the same kind. A first pass takes
- * only rows that are all numbers, so that "0,5 3000,2" is two numbers and not three fields. */
+/* The first row: a line of two numbers or more, followed, where there is another line, by one of the same kind. A first pass
+ * takes only rows that are all numbers, so that "0,5 3000,2" is two numbers and not three fields. */
 static bool first_row(dea_table *t, char separator, bool strict, line *first)
 {
     const char *next = t->next;
@@ -251,9 +255,26 @@ static char point_of(dea_table *t, const line *first)
     return '.';
 }
 
+static const char separators[] = {'\t', ';', ',', ' '};
+
+/* Any line of numbers alone, in whatever form. */
+static bool has_numbers(dea_table *t)
+{
+    const char *next = t->next;
+    line row = {.number = 0};
+    while (line_next(&next, t->end, &row)) {
+        for (size_t i = 0; i < sizeof separators; i++) {
+            bool all = false;
+            if (count_numbers(t, separators[i], &row, &all) >= NUMERIC_LEAST && all) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 static bool form_find(dea_table *t, line *first)
 {
-    static const char separators[] = {'\t', ';', ',', ' '};
     for (int strict = 1; strict >= 0; strict--) {
         for (size_t i = 0; i < sizeof separators; i++) {
             if (first_row(t, separators[i], strict, first)) {
@@ -327,15 +348,16 @@ static void unit_take(heading *h, const char *from, size_t length)
 /* "time_ms", "Voltage (kV)", "Strain [%]", "stress / MPa", "time ms", "(s)": the unit stands last. */
 static heading heading_read(const dea_table *t, const char *text)
 {
-    heading h = {.wanted = wanted_find(t, text, strlen(text))};
+    heading h = {.wanted = t->wanted_count};
     const char *mark = strpbrk(text, "([/");
-    for (size_t i = strlen(text); h.wanted == t->wanted_count && !mark && i > 0; i--) {
-        mark = text[i - 1] == '_' || text[i - 1] == ' ' ? text + i - 1 : NULL;
-        if (mark && wanted_find(t, text, (size_t)(mark - text)) == t->wanted_count) {
-            return h; /* a name of several words that is not looked for */
-        }
+    if (!mark) {
+        h.wanted = wanted_find(t, text, strlen(text));
     }
-    if (h.wanted == t->wanted_count && mark) {
+    if (!mark && h.wanted == t->wanted_count) {
+        const char *joint = strrchr(text, '_'), *blank = strrchr(text, ' ');
+        mark = joint > blank || !blank ? joint : blank;
+    }
+    if (mark) {
         h.wanted = wanted_find(t, text, (size_t)(mark - text));
         const size_t skip = *mark == '/' || *mark == '_';
         unit_take(&h, mark + skip, strlen(mark + skip));
@@ -343,25 +365,37 @@ static heading heading_read(const dea_table *t, const char *text)
     return h;
 }
 
-/* A row of units names nothing that is looked for, and at least one unit that is. */
-static bool is_units_row(const dea_table *t, const dea_field *fields, size_t count)
+/* Headings that name what is looked for; a line with a number in it has none. */
+static size_t count_wanted(const dea_table *t, const dea_field *fields)
 {
-    size_t units = 0;
-    for (size_t i = 0; i < count; i++) {
-        heading h = heading_read(t, fields[i].text);
+    size_t named = 0;
+    for (size_t i = 0; i < t->width; i++) {
+        if (is_numeric(t, fields[i].text)) {
+            return 0;
+        }
+        named += heading_read(t, fields[i].text).wanted < t->wanted_count;
+    }
+    return named;
+}
+
+/* A row of units holds nothing else, and one at least that is looked for. */
+static bool all_units(const dea_table *t, const dea_field *fields)
+{
+    size_t looked_for = 0;
+    for (size_t i = 0; i < t->width; i++) {
+        heading h;
         double factor;
-        if (h.wanted < t->wanted_count) {
+        bool known = !fields[i].text[0];
+        unit_take(&h, fields[i].text, strlen(fields[i].text));
+        for (size_t k = 0; k < t->wanted_count && !known; k++) {
+            known = converts(t, k, h.unit, &factor);
+            looked_for += known;
+        }
+        if (is_numeric(t, fields[i].text) || (!known && !dea_unit_factor(t->units, h.unit, h.unit, &factor))) {
             return false;
         }
-        unit_take(&h, fields[i].text, strlen(fields[i].text));
-        for (size_t k = 0; k < t->wanted_count; k++) {
-            if (converts(t, k, h.unit, &factor)) {
-                units++;
-                break;
-            }
-        }
     }
-    return units > 0;
+    return looked_for > 0;
 }
 
 /* A heading with blanks in it, split at them, is put together again: "Time (s)" and a bracket belong to the word before. */
@@ -478,8 +512,7 @@ static dea_status take_columns(dea_table *t, const dea_field *names, const dea_f
         if (!headings[i].unit[0] && units) {
             unit_take(&headings[i], units[i].text, strlen(units[i].text));
         }
-        const dea_status status =
-            headings[i].wanted < t->wanted_count ? note_column(t, i, &headings[i], &names[i]) : DEA_OK;
+        const dea_status status = headings[i].wanted < t->wanted_count ? note_column(t, i, &headings[i], &names[i]) : DEA_OK;
         if (status != DEA_OK) {
             return status;
         }
@@ -500,16 +533,24 @@ static void tell(dea_table *t, const dea_field *names, const dea_field *units)
             dea_text_clip(names[i].text, 24, shown, sizeof shown);
         }
         if (wanted < t->wanted_count && t->wanted[wanted].unit && (!names || (units && units[i].text[0]))) {
-            heading h = {.wanted = wanted};
-            unit_take(&h, names ? units[i].text : t->wanted[wanted].assumed, strlen(names ? units[i].text : t->wanted[wanted].assumed));
+            const char *text = names ? units[i].text : t->wanted[wanted].assumed;
+            heading h;
+            unit_take(&h, text, strlen(text));
             snprintf(unit, sizeof unit, " [%s]", h.unit);
         }
-        const int more = snprintf(t->told + used, sizeof t->told - used, "%scolumn %zu%s%s%s%s %s%s", i ? ", " : "", i + 1,
-                                  names ? " \"" : "", shown, names ? "\"" : "", unit,
-                                  wanted < t->wanted_count ? "is the " : "is left alone",
-                                  wanted < t->wanted_count ? t->wanted[wanted].name : "");
+        const int more =
+            snprintf(t->told + used, sizeof t->told - used, "%scolumn %zu%s%s%s%s %s%s", i ? ", " : "", i + 1, names ? " \"" : "",
+                     shown, names ? "\"" : "", unit, wanted < t->wanted_count ? "is the " : "is left alone",
+                     wanted < t->wanted_count ? t->wanted[wanted].name : "");
         used += more > 0 ? (size_t)more : 0;
     }
+}
+
+static dea_status take_told(dea_table *t, const dea_field *units)
+{
+    const dea_status status = take_columns(t, t->names, units);
+    tell(t, t->names, units);
+    return status;
 }
 
 static dea_status take_order(dea_table *t)
@@ -528,59 +569,96 @@ static dea_status take_order(dea_table *t)
 
 static dea_status without_header(dea_table *t, const head *found)
 {
-    dea_field names[DEA_TABLE_FIELDS];
-    if (found->commented && head_split(t, &found->comment, names)) {
-        const heading first = heading_read(t, names[0].text);
-        if (first.wanted < t->wanted_count) {
-            t->line = found->comment.number;
-            const dea_status status = take_columns(t, names, NULL);
-            tell(t, names, NULL);
-            return status;
-        }
-    }
     char problem[300] = "no header row that names the columns:";
     size_t used = strlen(problem);
+    if (found->commented && head_split(t, &found->comment, t->names) && count_wanted(t, t->names) > 0) {
+        t->line = found->comment.number;
+        return take_told(t, NULL);
+    }
     for (size_t i = 0; i < t->wanted_count; i++) {
-        const int more = snprintf(problem + used, sizeof problem - used, " %s", t->wanted[i].name);
+        const int more = snprintf(problem + used, sizeof problem - used, "%s %s", i ? "," : "", t->wanted[i].name);
         used += more > 0 && used + (size_t)more < sizeof problem ? (size_t)more : 0;
     }
     return t->headless ? take_order(t) : dea_table_fail(t, 1, problem);
 }
 
-static dea_status header_read(dea_table *t, const line *first)
+/* The line of the head that names most of what is looked for, and how its fields stand apart; false where none names anything. */
+static bool names_find(dea_table *t, line *names)
 {
-    dea_field names[DEA_TABLE_FIELDS], units[DEA_TABLE_FIELDS];
-    const head found = head_find(t, first);
-    const bool fits = found.lines > 0 && head_split(t, &found.above, names);
-    const size_t count = t->count;
-    t->line = found.above.number;
-    if (found.lines == 0 || (!fits && count < NUMERIC_LEAST)) { /* nothing above, or a title */
-        t->line = first->number;
-        return without_header(t, &found);
+    const char *next = t->next;
+    line row = {.number = 0};
+    size_t most = 0;
+    for (size_t lines = 0; lines < HEADER_LINES && line_next(&next, t->end, &row); lines++) {
+        for (size_t i = 0; i < sizeof separators && !row.comment; i++) {
+            dea_table trial = *t;
+            trial.separator = separators[i];
+            (void)head_split(&trial, &row, trial.names);
+            trial.width = trial.count;
+            const size_t named = count_wanted(&trial, trial.names);
+            if (named > most) {
+                most = named;
+                *names = row;
+                t->separator = separators[i];
+            }
+        }
     }
-    if (!fits) {
-        char problem[160];
-        snprintf(problem, sizeof problem, "%zu names where the rows have %zu fields%s", count, t->width,
-                 t->separator == ',' && t->width % count == 0 ? "; a decimal comma wants ; or a tab between the fields" : "");
-        return dea_table_fail(t, 1, problem);
+    return most > 0;
+}
+
+/* Rows follow the line of names, and a line of units where there is one. */
+static dea_status named_begin(dea_table *t, const line *names)
+{
+    dea_field units[DEA_TABLE_FIELDS];
+    const char *next = names->stop;
+    line row = {.number = names->number - 1};
+    (void)head_split(t, names, t->names);
+    t->width = t->count;
+    t->next = names->start;
+    (void)line_next(&t->next, t->end, &row); /* passes the names */
+    t->line = names->number;
+    next = t->next;
+    line below = row;
+    const bool has_units =
+        line_next(&next, t->end, &below) && !below.comment && head_split(t, &below, units) && all_units(t, units);
+    const dea_status status = take_told(t, has_units ? units : NULL);
+    if (has_units) {
+        t->next = next;
+        t->line = below.number;
     }
-    if (found.lines > 1 && is_units_row(t, names, t->width)) {
-        memcpy(units, names, sizeof units);
-        const bool named = head_split(t, &found.beyond, names);
-        t->line = named ? found.beyond.number : found.above.number;
-        const dea_status status = take_columns(t, named ? names : units, units);
-        tell(t, named ? names : units, units);
-        return status;
+    const line first = {.start = t->next};
+    t->point = point_of(t, &first);
+    return status;
+}
+
+/* Nothing is named: units, a comment above the rows, or the order of the columns tell them. */
+static dea_status nameless_begin(dea_table *t)
+{
+    line first;
+    if (!form_find(t, &first)) {
+        return dea_table_fail(t, 1, "no row of two or more numbers, apart by comma, semicolon, tab or blanks, and no header");
     }
-    const dea_status status = take_columns(t, names, NULL);
-    tell(t, names, NULL);
+    const head found = head_find(t, &first);
+    dea_status status;
+    t->line = found.lines > 0 ? found.above.number : first.number;
+    if (found.lines > 0 && head_split(t, &found.above, t->names) && all_units(t, t->names)) {
+        dea_field units[DEA_TABLE_FIELDS];
+        memcpy(units, t->names, sizeof units);
+        if (found.lines > 1 && !head_split(t, &found.beyond, t->names)) {
+            memcpy(t->names, units, sizeof units);
+        }
+        status = take_told(t, units);
+    } else {
+        status = without_header(t, &found);
+    }
+    t->next = first.start;
+    t->line = first.number - 1;
     return status;
 }
 
 dea_status dea_table_begin(dea_table *t, const char *text, size_t length)
 {
     static const char mark[] = "\xef\xbb\xbf";
-    line first;
+    line names;
     t->next = text + (length >= 3 && memcmp(text, mark, 3) == 0 ? 3 : 0);
     t->end = text + length;
     t->line = 1;
@@ -591,13 +669,8 @@ dea_status dea_table_begin(dea_table *t, const char *text, size_t length)
     for (size_t i = 0; i < DEA_TABLE_FIELDS; i++) {
         t->columns[i].wanted = t->wanted_count;
     }
-    if (!form_find(t, &first)) {
-        return dea_table_fail(t, 1, "no row of two or more numbers, apart by comma, semicolon, tab or blanks");
-    }
-    const dea_status status = header_read(t, &first);
-    t->next = first.start;
-    t->line = first.number - 1;
-    return status;
+    t->guarded = t->guarded && !has_numbers(t);
+    return names_find(t, &names) ? named_begin(t, &names) : nameless_begin(t);
 }
 
 void dea_table_end(dea_table *t)
@@ -639,7 +712,8 @@ static dea_status field_read(const dea_table *t, size_t column, double values[DE
         return dea_table_fail(t, field->column, "an empty field where a number belongs");
     }
     if (!number_read(t, field->text, t->point, wanted->suffixes, value)) {
-        return fail_field(t, field, t->point == ',' ? "not a number (with decimal comma, as in the first rows):" : "not a number:");
+        return fail_field(t, field,
+                          t->point == ',' ? "not a number (with decimal comma, as in the first rows):" : "not a number:");
     }
     *value = dea_unit_scale(*value, t->columns[column].factor);
     return isfinite(*value) ? DEA_OK : fail_field(t, field, "this number is too large:");
@@ -663,8 +737,9 @@ dea_status dea_table_row(dea_table *t, double values[DEA_TABLE_WANTED], bool *mo
         return dea_table_fail(t, t->count ? t->fields[t->count - 1].column : 1, wrong);
     }
     if (t->count != t->width) {
-        char problem[80];
-        snprintf(problem, sizeof problem, "%zu field%s where the rows above have %zu", t->count, t->count == 1 ? "" : "s", t->width);
+        char problem[140];
+        snprintf(problem, sizeof problem, "%zu field%s where the header has %zu%s", t->count, t->count == 1 ? "" : "s", t->width,
+                 t->separator == ',' && t->count == 2 * t->width ? "; a decimal comma wants ; or a tab between the fields" : "");
         return dea_table_fail(t, 1, problem);
     }
     dea_status status = DEA_OK;
@@ -674,18 +749,45 @@ dea_status dea_table_row(dea_table *t, double values[DEA_TABLE_WANTED], bool *mo
     return status;
 }
 
-dea_status dea_table_fail_at(const dea_table *t, size_t wanted, const char *problem)
+static const dea_field *field_of(const dea_table *t, size_t wanted)
 {
     size_t column = 0;
     while (column + 1 < t->width && t->columns[column].wanted != wanted) {
         column++;
     }
-    return fail_field(t, &t->fields[column], problem);
+    return &t->fields[column];
+}
+
+size_t dea_table_place(const dea_table *t, size_t wanted)
+{
+    return field_of(t, wanted)->column;
+}
+
+dea_status dea_table_fail_at(const dea_table *t, size_t wanted, const char *problem)
+{
+    return fail_field(t, field_of(t, wanted), problem);
 }
 
 dea_status dea_table_missing(const dea_table *t, size_t wanted, const char *advice)
 {
     char problem[DEA_TABLE_TOLD + 300];
-    snprintf(problem, sizeof problem, "no column of %s (%s)%s%s", t->wanted[wanted].name, t->told, advice[0] ? "; " : "", advice);
+    bool likely = false;
+    if (t->guarded) {
+        snprintf(problem, sizeof problem, "no column of %s; %s", t->wanted[wanted].name, advice);
+        return dea_table_fail(t, 1, problem);
+    }
+    for (size_t i = 0; i < t->width; i++) {
+        const char *name = t->names[i].text;
+        char bare[DEA_TABLE_FIELD];
+        snprintf(bare, sizeof bare, "%.*s", (int)strcspn(name, "_ (["), name);
+        if (t->columns[i].wanted == t->wanted_count && dea_text_likely(bare, dea_text_distance(bare, t->wanted[wanted].name))) {
+            likely = true;
+            snprintf(problem, sizeof problem, "no column of %s; did you mean \"%s\"? (%s)", t->wanted[wanted].name, bare,
+                     t->told);
+        }
+    }
+    if (!likely) {
+        snprintf(problem, sizeof problem, "no column of %s (%s); %s", t->wanted[wanted].name, t->told, advice);
+    }
     return dea_table_fail(t, 1, problem);
 }

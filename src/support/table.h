@@ -39,6 +39,7 @@ typedef struct dea_table {
     const dea_wanted *wanted;
     size_t wanted_count; /* at most DEA_TABLE_WANTED */
     bool headless;       /* a table without a header is taken too, its columns in the order of the wanted ones */
+    bool guarded;        /* a text without a row of numbers is none of the user's tables: nothing of it stands in a message */
     dea_units *units;
     dea_error *error;
     /* found by dea_table_begin() */
@@ -51,21 +52,23 @@ typedef struct dea_table {
         size_t wanted; /* wanted_count: none */
         double factor; /* from its unit to SI */
     } columns[DEA_TABLE_FIELDS];
-    bool seen[DEA_TABLE_WANTED];     /* the table has that column */
+    bool seen[DEA_TABLE_WANTED];       /* the table has that column */
+    dea_field names[DEA_TABLE_FIELDS]; /* of the header */
     dea_field fields[DEA_TABLE_FIELDS];
-    size_t count;                    /* fields of the row at hand */
-    char told[DEA_TABLE_TOLD];       /* what each column was taken for, in words */
-    locale_t numbers;                /* owned */
+    size_t count;              /* fields of the row at hand */
+    char told[DEA_TABLE_TOLD]; /* what each column was taken for, in words */
+    locale_t numbers;          /* owned */
 } dea_table;
 
 /* Finds form, header and columns of a text; the caller ends the table with dea_table_end(), also after a failure. What a wanted
- * column lacks is the caller's to refuse. DEA_ERROR_SCENE ("name:line:column: ..."; nothing of a text without a row of numbers is
- * quoted), DEA_ERROR_MEMORY. */
+ * column lacks is the caller's to refuse. DEA_ERROR_SCENE ("name:line:column: ..."), DEA_ERROR_MEMORY. */
 dea_status dea_table_begin(dea_table *table, const char *text, size_t length);
 void dea_table_end(dea_table *table);
-/* The next row: values[i] of wanted column i in SI, of a word its index, NAN where the table has no such column. *more is false at
- * the end of the text. */
+/* The next row: values[i] of wanted column i in SI, of a word its index, NAN where the table has no such column. *more is false
+ * at the end of the text. */
 dea_status dea_table_row(dea_table *table, double values[DEA_TABLE_WANTED], bool *more);
+/* Where in the line of the row at hand wanted column @p wanted begins, counted from 1. */
+size_t dea_table_place(const dea_table *table, size_t wanted);
 /* Fails at the field of the row at hand that holds wanted column @p wanted, its text in quotes. */
 dea_status dea_table_fail_at(const dea_table *table, size_t wanted, const char *problem);
 /* Fails because a wanted column is missing: names the columns that there are, and the nearest. @p advice says what to do. */

@@ -219,6 +219,14 @@ double dea_dynamics_stiffness(dea_dynamics *dynamics, double u, double voltage, 
     return e.area * (1.0 + held) * e.stress_slope + e.area_slope * e.stress - e.push_slope * voltage * voltage;
 }
 
+double dea_dynamics_hold(dea_dynamics *dynamics, double u, double voltage)
+{
+    const dea_edge e = dea_dynamics_edge(dynamics, u);
+    const double pull = 2.0 * e.push * voltage; /* dF/dU */
+    const double charge = dynamics->series > 0.0 ? pull * pull / e.capacitance : 0.0;
+    return dea_dynamics_stiffness(dynamics, u, voltage, false) + charge;
+}
+
 double dea_dynamics_scale(dea_dynamics *dynamics, double voltage)
 {
     const dea_edge e = dea_dynamics_edge(dynamics, 0.0);

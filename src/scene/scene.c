@@ -89,7 +89,8 @@ static dea_status scene_parse(const char *text, size_t length, const char *name,
                               dea_scene *scene, dea_error *error)
 {
     char shown[10 * 256 + 8];
-    const dea_origin origin = {.name = dea_text_clip(name, 256, shown, sizeof shown), .folder = folder};
+    const dea_origin origin = {
+        .name = dea_text_clip(name, 256, shown, sizeof shown), .folder = folder, .text = text, .length = length};
     dea_reader *reader = calloc(1, sizeof *reader);
     dea_units *units = dea_units_open();
     dea_status status = scene_clear(scene);

@@ -57,7 +57,14 @@ static dea_status value_parse(setting_reader *self, dea_node **node)
 {
     dea_reader *reader = self->reader;
     if (self->value[0] != '\0' && strchr("[{\"'", self->value[0])) {
-        return dea_tree_parse(self->value, strlen(self->value), self->origin, &reader->arena, node, reader->error);
+        dea_origin *origin = dea_arena_take(&reader->arena, sizeof *origin);
+        if (!origin) {
+            return dea_reader_memory(reader);
+        }
+        *origin = *self->origin;
+        origin->text = self->value; /* its places are worth a caret, that of a plain text is plain */
+        origin->length = strlen(self->value);
+        return dea_tree_parse(self->value, origin->length, origin, &reader->arena, node, reader->error);
     }
     *node = dea_tree_scalar(&reader->arena, self->origin, self->value);
     return *node ? DEA_OK : dea_reader_memory(reader);

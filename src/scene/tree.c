@@ -26,9 +26,14 @@ dea_status dea_place_fail(const dea_place *place, dea_error *error, const char *
     vsnprintf(what, sizeof what, format, arguments);
     va_end(arguments);
     if (place->origin->setting) {
-        return dea_fail(error, DEA_ERROR_SCENE, "%s: %s: %s", place->origin->name, subject, what);
+        dea_fail(error, DEA_ERROR_SCENE, "%s: %s: %s", place->origin->name, subject, what);
+    } else {
+        dea_fail(error, DEA_ERROR_SCENE, "%s:%d:%d: %s: %s", place->origin->name, place->line, place->column, subject, what);
     }
-    return dea_fail(error, DEA_ERROR_SCENE, "%s:%d:%d: %s: %s", place->origin->name, place->line, place->column, subject, what);
+    if (error) {
+        dea_place_excerpt(place, error->excerpt, sizeof error->excerpt);
+    }
+    return DEA_ERROR_SCENE;
 }
 
 static dea_status fail_memory(dea_error *error)

@@ -65,6 +65,14 @@ static void refuse(const char *text, const char *setting, const char *message)
     }
 }
 
+/* The scene must be refused, with these lines and this caret. */
+static void refuse_showing(const char *text, const char *setting, const char *excerpt)
+{
+    loaded it;
+    assert_int_equal(parse(&it, text, setting, NULL), DEA_ERROR_SCENE);
+    assert_string_equal(it.error.excerpt, excerpt);
+}
+
 static void frame_radius_reads(const char *quantity, double wanted)
 {
     char setting[128];
@@ -451,6 +459,39 @@ static void bad_settings_are_refused_by_name(void **state)
            "--set prestretch=1.3: actuator.prestretch: is swept by the scene; set study.sweep.actuator.prestretch=[1.3] instead");
     refuse(DOT "study: {sweep: {coverage: [0.5]}}\n", "electrode_radius=1 mm",
            "--set electrode_radius=1 mm: actuator.electrode_radius: contradicts actuator.coverage, which the scene sweeps");
+}
+
+static void mistake_is_shown_with_its_line_and_a_caret(void **state)
+{
+    (void)state;
+    refuse_showing("title: x\nactuator:\n  kind: dot\n  coverge: 0.5\n", NULL, "    4 |   coverge: 0.5\n      |   ^");
+    refuse_showing("title: x\r\nmodel:\t[lumpd]\r\n", NULL, "    2 | model:\t[lumpd]\n      |       \t ^");
+    refuse_showing("title: \"\u00b5m\"\nmodel: x # \u00b5m\u202e\n", NULL, "    2 | model: x # \u00b5m?\n      |        ^");
+    refuse_showing("title: x", "study.sweep.coverage=[0.5, 5]", "      | [0.5, 5]\n      |       ^");
+    refuse_showing("title: x", "coverage=5", "");
+    refuse_showing("", NULL, "");
+    refuse_showing("\x01\x02\x03\x04\x05", NULL, "");
+}
+
+static void long_line_is_shown_around_its_mistake(void **state)
+{
+    (void)state;
+    char text[1200];
+    char wanted[400];
+    snprintf(text, sizeof text, "{title: \"%0500d\", modle: lumped, x: %0100d}\n", 0, 0);
+    snprintf(wanted, sizeof wanted, "    1 | ...%057d\", modle: lumped, x: %022d...\n      | %63s^", 0, 0, "");
+    refuse_showing(text, NULL, wanted);
+}
+
+static void file_that_is_no_material_is_not_shown(void **state)
+{
+    (void)state;
+    static const char front[] = "actuator: {kind: dot}\nmaterial: ";
+    char text[200];
+    snprintf(text, sizeof text, "%s./word.csv\n", front);
+    refuse_showing(text, NULL, "");
+    snprintf(text, sizeof text, "%s./negative.yaml\n", front);
+    refuse_showing(text, NULL, "    2 |   C1: -5 Pa\n      |       ^");
 }
 
 static void model_argument_replaces_the_models_of_the_scene(void **state)
@@ -933,7 +974,8 @@ static void model_argument_is_checked_against_the_study(void **state)
     assert_int_equal(parse(&it, FILM SWITCHED TRANSIENT, NULL, "coverage,lame"), DEA_OK);
     dea_scene_free(&it.scene);
     assert_int_equal(parse(&it, FILM SWITCHED TRANSIENT, NULL, "lumped,field"), DEA_ERROR_SCENE);
-    assert_string_equal(it.error.message, "--model: model: cannot do a transient (field); accepted: lumped, coverage, lame, auto");
+    assert_string_equal(it.error.message,
+                        "--model: model: cannot do a transient (field); accepted: lumped, coverage, lame, auto");
     dea_scene_free(&it.scene);
 }
 
@@ -1096,6 +1138,9 @@ int main(void)
         cmocka_unit_test(coverage_and_radius_replace_each_other_by_setting),
         cmocka_unit_test(setting_of_an_axis_replaces_or_adds_it),
         cmocka_unit_test(bad_settings_are_refused_by_name),
+        cmocka_unit_test(mistake_is_shown_with_its_line_and_a_caret),
+        cmocka_unit_test(long_line_is_shown_around_its_mistake),
+        cmocka_unit_test(file_that_is_no_material_is_not_shown),
         cmocka_unit_test(model_argument_replaces_the_models_of_the_scene),
         cmocka_unit_test(material_is_written_out_or_built_on_another),
         cmocka_unit_test(material_file_is_found_beside_the_scene),

@@ -8,22 +8,6 @@
 /* Characters before the place, and of the line, where it is long; those that no terminal shows, more of which are no text. */
 enum { BEFORE = 60, SHOWN = 100, HIDDEN = 3 };
 
-/* Start of line @p number, counted from 1; its end in *stop. NULL where the text has no such line. */
-static const char *line_find(const char *text, size_t length, int number, const char **stop)
-{
-    const char *end = text + length;
-    for (int at = 1; at < number && text; at++) {
-        const char *mark = memchr(text, '\n', (size_t)(end - text));
-        text = mark ? mark + 1 : NULL;
-    }
-    if (text) {
-        const char *mark = memchr(text, '\n', (size_t)(end - text));
-        *stop = mark ? mark : end;
-        *stop -= *stop > text && (*stop)[-1] == '\r';
-    }
-    return text;
-}
-
 /* Steps over one character; one that a terminal would not show is a "?" in @p out, which holds a NUL at its end, and counted. */
 static size_t character_copy(const char *from, const char *stop, char out[5], size_t *hidden)
 {
@@ -51,7 +35,7 @@ void dea_place_excerpt(const dea_place *place, char *out, size_t room)
 {
     const dea_origin *origin = place->origin;
     const char *stop = NULL;
-    const char *line = origin->text ? line_find(origin->text, origin->length, place->line, &stop) : NULL;
+    const char *line = origin->text ? dea_text_line(origin->text, origin->length, place->line, &stop) : NULL;
     out[0] = '\0';
     if (!line || stop == line) {
         return;

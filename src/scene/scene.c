@@ -53,6 +53,7 @@ static dea_status model_override(dea_reader *reader)
     const dea_place place = {.origin = &reader->model_origin, .line = 1, .column = 1};
     dea_node list = {.kind = DEA_NODE_SEQUENCE, .place = place, .key_at = place};
     for (const char *name = reader->model; name; name = strchr(name, ',') ? strchr(name, ',') + 1 : NULL) {
+        name += strspn(name, " ");
         const char *text = dea_arena_copy(&reader->arena, name, strcspn(name, ","));
         dea_node *node = text ? dea_tree_scalar(&reader->arena, &reader->model_origin, text) : NULL;
         if (!node) {

@@ -1,6 +1,6 @@
 /* Eq. 18: hyperelastic disc and annulus, each under its own equi-biaxial stretch. */
 #include "model/film_balance.h"
-#include "network/formula.h"
+#include "expression/formula.h"
 #include "network/hyperelastic.h"
 #include "support/gauss.h"
 

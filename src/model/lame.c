@@ -1,6 +1,6 @@
 /* Plane elasticity about the pre-stretched film: Lame's disc and annulus, with electrostatic softening. */
 #include "model/film_balance.h"
-#include "network/formula.h"
+#include "expression/formula.h"
 #include "network/network.h"
 
 /* Are both nominal stresses positive at one place of a region with moduli a, b, under the changes d1, d2 of the radial and hoop

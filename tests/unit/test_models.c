@@ -445,10 +445,10 @@ static void lame_keeps_its_digits_before_pull_in(void **state)
     (void)state;
     for (int k = 0; k < 20; k++) {
         dea_scene scene = paper_scene(DEA_DOT, 1.05 + 0.02 * k, 0.5, 1.0);
-        scene.material.yeoh[1] = -0.1 * scene.material.yeoh[0];
+        scene.material.constants[1] = -0.1 * scene.material.constants[0];
         const long double l = scene.actuator.prestretch, y = l * l, j = 2.0L * y + 1.0L / (y * y) - 3.0L,
                           a = 2.0L * (l - 1.0L / (l * y * y));
-        const long double c1 = scene.material.yeoh[0], c2 = scene.material.yeoh[1], c3 = scene.material.yeoh[2];
+        const long double c1 = scene.material.constants[0], c2 = scene.material.constants[1], c3 = scene.material.constants[2];
         const long double w = c1 + 2.0L * c2 * j + 3.0L * c3 * j * j, q = 2.0L * c2 + 6.0L * c3 * j;
         const long double w11 = w * (2.0L + 6.0L / (y * y * y)) + q * a * a, held = 2.0L * w11 / 0.75L;
         const long double unit =
@@ -496,9 +496,9 @@ static void field_takes_no_jump_for_a_root(void **state)
     (void)state;
     dea_scene scene = paper_scene(DEA_LENS, 1.5895610256561299, 0.49023940686523815,
                                   978.26643008529243 * 59168127.18355266 / 61615555.18254153);
-    scene.material.yeoh[0] = 55662.985616793507;
-    scene.material.yeoh[1] = 4354.6293936129632;
-    scene.material.yeoh[2] = 443.80498486226236;
+    scene.material.constants[0] = 55662.985616793507;
+    scene.material.constants[1] = 4354.6293936129632;
+    scene.material.constants[2] = 443.80498486226236;
     scene.material.permittivity = 7.0070261164158074;
     scene.actuator.film_thickness = 1.3626718245572231e-05;
     const dea_row row = solve_direct(&scene, "field");

@@ -139,7 +139,7 @@ static bool material_choose(const char *name, dea_material *material, dea_exit *
 
 static dea_status show(const dea_material *material, const dea_arguments *arguments, double to, dea_error *error)
 {
-    const bool elastic = !isnan(material->yeoh[0]);
+    const bool elastic = !isnan(material->constants[0]);
     dea_status status = DEA_OK;
     if (!arguments->output && !arguments->plot) {
         print_constants(material);

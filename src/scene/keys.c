@@ -132,6 +132,8 @@ static const dea_key keys[] = {
     PART("drive.waveform.period", drive.waveform.period, "s", "_s", 0, INFINITY, true, 1, "drive.waveform",
          "a time, at least the last one of the waveform, e.g. 20 s"),
     OTHER("model", dea_read_model, "a model name or a list of them"),
+    SCALAR("model_error", model_error, "1", "", 0, 1, true, DEA_KEY_BOTH, 0, "a relative error > 0 and < 1, e.g. 1 %"),
+    OTHER("engine", dea_read_engine, "auto, an engine, or a list of engines in the order in which they are asked"),
     OTHER("study", dea_read_mapping, "a mapping with sweep, transient or ac, e.g. {sweep: {}} for the scene as one point"),
     OTHER("study.sweep", dea_read_later, "a mapping of axes, e.g. {coverage: [0.25, 0.5]}"),
     OTHER(TRANSIENT, dea_read_mapping, "a mapping with until, every, average, start and over, e.g. {until: 25 s, every: 10 ms}"),

@@ -140,7 +140,7 @@ static dea_exit run(const dea_arguments *arguments)
     if (arguments->output)
         status = write_curves(material, arguments->output, &error);
     if (arguments->plot && status == DEA_OK)
-        status = dea_plot_material(material, arguments->plot, &error);
+        status = dea_plot_material(material, arguments->plot, &arguments->picture, &error);
     return status == DEA_OK ? DEA_EXIT_DONE : dea_complain_error(&error);
 }
 
@@ -154,7 +154,8 @@ const dea_command dea_command_materials = {
             "\n"
             "  -o, --output FILE     write stress and modulus over stretch as CSV, - is standard\n"
             "                        output\n"
-            "      --plot FILE       draw them, FILE ends in .svg or .png\n"
+            "      --plot FILE       draw them, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)\n"
+            "      --size WxH        of the picture, for example 17x8cm (mm, cm, in, pt)\n"
             "      --force               a target may overwrite a file that was read\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"

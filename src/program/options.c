@@ -75,6 +75,51 @@ static bool set_plot(dea_arguments *arguments, const char *value)
     return set_text(&arguments->plot, "plot", value);
 }
 
+/* Metres of a unit of --size, NAN for a word that is none. */
+static double size_unit(const char *name)
+{
+    static const struct {
+        const char *name;
+        double length; /* [m] */
+    } units[] = {{"mm", 1e-3}, {"cm", 1e-2}, {"in", 0.0254}, {"pt", 0.0254 / 72.0}};
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        if (strcmp(name, units[i].name) == 0) {
+            return units[i].length;
+        }
+    }
+    return NAN;
+}
+
+static bool set_size(dea_arguments *arguments, const char *value)
+{
+    dea_plot_options *picture = &arguments->picture;
+    char first[3] = "", second[3] = "", more;
+    bool read = sscanf(value, "%lf %2[a-z] x %lf %2[a-z] %c", &picture->width, first, &picture->height, second, &more) == 4;
+    if (!read) { /* one unit for both */
+        read = sscanf(value, "%lf x %lf %2[a-z] %c", &picture->width, &picture->height, second, &more) == 3;
+        strcpy(first, second);
+    }
+    picture->width *= size_unit(first);
+    picture->height *= size_unit(second);
+    if (!read || !(picture->width >= DEA_PLOT_SIDE_LEAST && picture->width <= DEA_PLOT_SIDE_MOST) ||
+        !(picture->height >= DEA_PLOT_SIDE_LEAST && picture->height <= DEA_PLOT_SIDE_MOST)) {
+        dea_complain("--size %.40s: needs width x height in mm, cm, in or pt, each from 4 cm to 2 m, for example 8.5x6cm", value);
+        return false;
+    }
+    return true;
+}
+
+static bool set_log(dea_arguments *arguments, const char *value)
+{
+    arguments->picture.log_x = strcmp(value, "x") == 0 || strcmp(value, "xy") == 0;
+    arguments->picture.log_y = strcmp(value, "y") == 0 || strcmp(value, "xy") == 0;
+    if (!arguments->picture.log_x && !arguments->picture.log_y) {
+        dea_complain("--log %.40s: needs x, y or xy", value);
+        return false;
+    }
+    return true;
+}
+
 /* Whole number of at most @p most, -1 where it is none. */
 static long whole_number(const char *text, long most)
 {
@@ -276,6 +321,8 @@ static const option_entry entries[] = {
     {"output", 'o', true, DEA_TAKES_OUTPUT, set_output},
     {"format", 0, true, DEA_TAKES_FORMAT, set_format},
     {"plot", 0, true, DEA_TAKES_PLOT, set_plot},
+    {"size", 0, true, DEA_TAKES_PLOT, set_size},
+    {"log", 0, true, DEA_TAKES_LOG, set_log},
     {"force", 0, false, DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_PLOT, set_force},
     {"jobs", 'j', true, DEA_TAKES_JOBS, set_jobs},
     {"quiet", 'q', false, DEA_TAKES_QUIET, set_quiet},

@@ -5,6 +5,7 @@
 #define DEA_PROGRAM_PROGRAM_H
 
 #include "deaspice/engine.h"
+#include "deaspice/plot.h"
 #include "deaspice/scene.h"
 #include "support/files.h"
 
@@ -30,7 +31,8 @@ typedef enum dea_takes {
     DEA_TAKES_EXPORT = 1 << 9,   /**< --as, --dialect, --analogy, --name */
     DEA_TAKES_JOURNAL = 1 << 10, /**< --shard, --resume */
     DEA_TAKES_FULL = 1 << 11,    /**< --full */
-    DEA_TAKES_BENCH = 1 << 12    /**< --runs, --budget */
+    DEA_TAKES_BENCH = 1 << 12,   /**< --runs, --budget */
+    DEA_TAKES_LOG = 1 << 13      /**< --log */
 } dea_takes;
 
 /** Mode of a data file as the command line gives it. */
@@ -51,6 +53,7 @@ typedef struct dea_arguments {
     const char *output;
     const char *format;
     const char *plot;
+    dea_plot_options picture; /**< --size, --log; zeroed: not given */
     size_t jobs; /**< 0: not given; "auto" is already the number of cores */
     bool quiet;
     bool full;

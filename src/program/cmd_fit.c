@@ -155,7 +155,8 @@ static dea_status work_out(const dea_arguments *arguments, work *w, dea_error *e
         status = write_fit(w, arguments, arguments->output ? arguments->output : "-", error);
     }
     if (status == DEA_OK && arguments->plot) {
-        status = dea_plot_fit(w->yeoh_given, &w->stretch, w->prony_given, &w->relaxation, arguments->plot, error);
+        status = dea_plot_fit(w->yeoh_given, &w->stretch, w->prony_given, &w->relaxation, arguments->plot,
+                              &arguments->picture, error);
     }
     return status;
 }
@@ -217,7 +218,8 @@ const dea_command dea_command_fit = {
             "                          name the file as it is\n"
             "      --relative          relative instead of absolute errors count\n"
             "  -o, --output FILE       write the material to FILE, - is standard output\n"
-            "      --plot FILE         draw data and fit, FILE ends in .svg or .png\n"
+            "      --plot FILE         draw data and fit, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)\n"
+            "      --size WxH          of the picture, for example 8.5x6cm (mm, cm, in, pt)\n"
             "      --force             a target may overwrite a file that was read\n"
             "  -q, --quiet             no summary\n"
             "  -h, --help              this text\n"

@@ -76,6 +76,46 @@ static bool take_setting(const option_entry *entry, const char *value, dea_argum
     return true;
 }
 
+/* Metres of a unit of --size, NAN for a word that is none. */
+static double size_unit(const char *name)
+{
+    static const struct {
+        const char *name;
+        double length; /* [m] */
+    } units[] = {{"mm", 1e-3}, {"cm", 1e-2}, {"in", 0.0254}, {"pt", 0.0254 / 72.0}};
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        if (strcmp(name, units[i].name) == 0) {
+            return units[i].length;
+        }
+    }
+    return NAN;
+}
+
+static bool take_size(const option_entry *entry, const char *value, dea_arguments *arguments)
+{
+    dea_plot_options *picture = &arguments->picture;
+    char first[3] = "", second[3] = "", more;
+    bool read = sscanf(value, "%lf %2[a-z] x %lf %2[a-z] %c", &picture->width, first, &picture->height, second, &more) == 4;
+    if (!read) { /* one unit for both */
+        read = sscanf(value, "%lf x %lf %2[a-z] %c", &picture->width, &picture->height, second, &more) == 3;
+        strcpy(first, second);
+    }
+    picture->width *= size_unit(first);
+    picture->height *= size_unit(second);
+    if (!read || !(picture->width >= DEA_PLOT_SIDE_LEAST && picture->width <= DEA_PLOT_SIDE_MOST) ||
+        !(picture->height >= DEA_PLOT_SIDE_LEAST && picture->height <= DEA_PLOT_SIDE_MOST)) {
+        return complain_value(entry, value, NULL);
+    }
+    return true;
+}
+
+static bool take_log(const option_entry *entry, const char *value, dea_arguments *arguments)
+{
+    arguments->picture.log_x = strcmp(value, "x") == 0 || strcmp(value, "xy") == 0;
+    arguments->picture.log_y = strcmp(value, "y") == 0 || strcmp(value, "xy") == 0;
+    return arguments->picture.log_x || arguments->picture.log_y || complain_value(entry, value, NULL);
+}
+
 /* Whole number of at most @p most, -1 where it is none. */
 static long whole_number(const char *text, long most)
 {
@@ -186,6 +226,9 @@ static const option_entry entries[] = {
     TEXT("output", 'o', "FILE", DEA_TAKES_OUTPUT, take_text, output),
     TEXT("format", 0, "FORMAT", DEA_TAKES_FORMAT, take_text, format),
     TEXT("plot", 0, "FILE", DEA_TAKES_PLOT, take_text, plot),
+    COUNT("size", 0, "WxH", DEA_TAKES_PLOT, take_size, picture, 0,
+          "width x height in mm, cm, in or pt, each from 4 cm to 2 m, for example 8.5x6cm"),
+    COUNT("log", 0, "AXES", DEA_TAKES_LOG, take_log, picture, 0, "x, y or xy"),
     FLAG("force", 0, DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_PLOT, force),
     COUNT("jobs", 'j', "N", DEA_TAKES_JOBS, take_jobs, jobs, 1024, "a whole number up to 1024, or auto"),
     FLAG("quiet", 'q', DEA_TAKES_QUIET, quiet),

@@ -47,7 +47,7 @@ static bool complain_value(const option_entry *entry, const char *value, const c
 {
     char shown[DEA_TEXT_ROOM];
     dea_text_clip(value, DEA_TEXT_SHOWN, shown, sizeof shown);
-    dea_complain("--%s %s: %s%sneeds %s", entry->name, shown, why ? why : "", why ? "; " : "", entry->needs);
+    dea_complain("--%s %s: %s%s %s", entry->name, shown, why ? why : "", why ? "; accepted:" : "needs", entry->needs);
     return false;
 }
 
@@ -69,16 +69,51 @@ static bool take_text(const option_entry *entry, const char *value, dea_argument
     return true;
 }
 
-static bool take_engine(const option_entry *entry, const char *value, dea_arguments *arguments)
-{
-    return take_text(entry, value, arguments) && dea_engine_choose(value) != NULL;
-}
-
 static bool take_setting(const option_entry *entry, const char *value, dea_arguments *arguments)
 {
     (void)entry;
     arguments->settings[arguments->setting_count++].text = value;
     return true;
+}
+
+/* Metres of a unit of --size, NAN for a word that is none. */
+static double size_unit(const char *name)
+{
+    static const struct {
+        const char *name;
+        double length; /* [m] */
+    } units[] = {{"mm", 1e-3}, {"cm", 1e-2}, {"in", 0.0254}, {"pt", 0.0254 / 72.0}};
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        if (strcmp(name, units[i].name) == 0) {
+            return units[i].length;
+        }
+    }
+    return NAN;
+}
+
+static bool take_size(const option_entry *entry, const char *value, dea_arguments *arguments)
+{
+    dea_plot_options *picture = &arguments->picture;
+    char first[3] = "", second[3] = "", more;
+    bool read = sscanf(value, "%lf %2[a-z] x %lf %2[a-z] %c", &picture->width, first, &picture->height, second, &more) == 4;
+    if (!read) { /* one unit for both */
+        read = sscanf(value, "%lf x %lf %2[a-z] %c", &picture->width, &picture->height, second, &more) == 3;
+        strcpy(first, second);
+    }
+    picture->width *= size_unit(first);
+    picture->height *= size_unit(second);
+    if (!read || !(picture->width >= DEA_PLOT_SIDE_LEAST && picture->width <= DEA_PLOT_SIDE_MOST) ||
+        !(picture->height >= DEA_PLOT_SIDE_LEAST && picture->height <= DEA_PLOT_SIDE_MOST)) {
+        return complain_value(entry, value, NULL);
+    }
+    return true;
+}
+
+static bool take_log(const option_entry *entry, const char *value, dea_arguments *arguments)
+{
+    arguments->picture.log_x = strcmp(value, "x") == 0 || strcmp(value, "xy") == 0;
+    arguments->picture.log_y = strcmp(value, "y") == 0 || strcmp(value, "xy") == 0;
+    return arguments->picture.log_x || arguments->picture.log_y || complain_value(entry, value, NULL);
 }
 
 /* Whole number of at most @p most, -1 where it is none. */
@@ -184,13 +219,16 @@ static bool take_equibiaxial(const option_entry *entry, const char *value, dea_a
     }
 
 static const option_entry entries[] = {
-    TEXT("engine", 0, "ENGINE", DEA_TAKES_ENGINE, take_engine, engine),
+    TEXT("engine", 0, "ENGINE", DEA_TAKES_ENGINE, take_text, engine),
     TEXT("model", 0, "MODEL", DEA_TAKES_SCENE, take_text, model),
     TEXT("set", 0, "KEY=VALUE", DEA_TAKES_SCENE, take_setting, settings),
     FLAG("no-files", 0, DEA_TAKES_SCENE, no_files),
     TEXT("output", 'o', "FILE", DEA_TAKES_OUTPUT, take_text, output),
     TEXT("format", 0, "FORMAT", DEA_TAKES_FORMAT, take_text, format),
     TEXT("plot", 0, "FILE", DEA_TAKES_PLOT, take_text, plot),
+    COUNT("size", 0, "WxH", DEA_TAKES_PLOT, take_size, picture, 0,
+          "width x height in mm, cm, in or pt, each from 4 cm to 2 m, for example 8.5x6cm"),
+    COUNT("log", 0, "AXES", DEA_TAKES_LOG, take_log, picture, 0, "x, y or xy"),
     FLAG("force", 0, DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_PLOT, force),
     COUNT("jobs", 'j', "N", DEA_TAKES_JOBS, take_jobs, jobs, 1024, "a whole number up to 1024, or auto"),
     FLAG("quiet", 'q', DEA_TAKES_QUIET, quiet),
@@ -217,6 +255,12 @@ static const option_entry entries[] = {
     COUNT("shard", 0, "I/N", DEA_TAKES_JOURNAL, take_shard, shard, 1000000,
           "I/N with whole numbers 1 <= I <= N <= 1000000, for example 3/10"),
     FLAG("resume", 0, DEA_TAKES_JOURNAL, resume),
+    NUMBER("to", "STRETCH", DEA_TAKES_CURVES, to, "1", 1, false, 100, "a stretch above 1 and below 100, for example 4"),
+    NUMBER("permittivity", "NUMBER", DEA_TAKES_FIT, permittivity, "1", 0, false, INFINITY,
+           "a relative permittivity above 0, for example 2.8"),
+    NUMBER("density", "DENSITY", DEA_TAKES_FIT, density, "kg/m^3", 0, false, INFINITY,
+           "a density above 0, for example \"1080 kg/m^3\""),
+    NUMBER("breakdown", "FIELD", DEA_TAKES_FIT, breakdown, "V/m", 0, false, INFINITY, "a field above 0, for example \"80 V/um\""),
     {.name = "help", .letter = 'h'},
     {.name = "version", .letter = 'V'},
 };
@@ -314,7 +358,11 @@ dea_parsed dea_arguments_parse(const dea_command *command, int argc, char **argv
 {
     struct option longs[ENTRIES + 1];
     char letters[2 * ENTRIES + 2];
-    *arguments = (dea_arguments){.tolerance = NAN, .ramp = NAN, .budget = NAN};
+    *arguments = (dea_arguments){.tolerance = NAN};
+    for (size_t i = 0; i < ENTRIES; i++) {
+        if (entries[i].take == take_number)
+            *(double *)place_of(&entries[i], arguments) = NAN;
+    }
     arguments->settings = calloc((size_t)argc + 1, sizeof *arguments->settings);
     arguments->operands = calloc((size_t)argc + 1, sizeof *arguments->operands);
     if (!arguments->settings || !arguments->operands) {

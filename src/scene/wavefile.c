@@ -164,7 +164,7 @@ dea_status dea_read_wave_file(dea_reader *reader, const dea_ref *ref, const dea_
     char shown[DEA_TEXT_ROOM];
     char subject[DEA_NAME_LENGTH + 2];
     char *text = NULL;
-    size_t length = 0;
+    size_t length = 0, failed = 1;
     const char *refused = NULL;
     if (node->kind != DEA_NODE_SCALAR || !node->text[0]) {
         return dea_reader_refuse(reader, ref, node, node->kind == DEA_NODE_SCALAR ? "has no value" : "not a file name");
@@ -174,7 +174,7 @@ dea_status dea_read_wave_file(dea_reader *reader, const dea_ref *ref, const dea_
         return named;
     }
     char *path = dea_reader_path(reader, node);
-    const dea_origin *origin = path ? dea_reader_origin(reader, path) : NULL;
+    dea_origin *origin = path ? dea_reader_origin(reader, path) : NULL;
     const dea_status read =
         origin ? dea_file_read(path, false, DEA_WAVE_FILE_MAX, &text, &length, reader->scene->files, &refused) : DEA_ERROR_MEMORY;
     if (read == DEA_ERROR_MEMORY) {
@@ -192,8 +192,15 @@ dea_status dea_read_wave_file(dea_reader *reader, const dea_ref *ref, const dea_
                        .headless = true,
                        .guarded = true,
                        .units = reader->units,
-                       .error = reader->error};
+                       .error = reader->error,
+                       .failed = &failed};
     const dea_status status = table_read(reader, &table, text, length);
+    if (status == DEA_ERROR_SCENE && reader->error && !table.guarded) {
+        *origin = (dea_origin){.name = origin->name, .folder = origin->folder, .text = text, .length = length};
+        const dea_place place = {.origin = origin, .line = (int)table.line, .column = (int)failed};
+        dea_place_excerpt(&place, reader->error->excerpt, sizeof reader->error->excerpt);
+        origin->text = NULL; /* it ends here */
+    }
     dea_table_end(&table);
     free(text);
     return status;

@@ -26,6 +26,9 @@ typedef struct line {
 
 dea_status dea_table_fail(const dea_table *t, size_t column, const char *problem)
 {
+    if (t->failed) {
+        *t->failed = column;
+    }
     return dea_fail(t->error, DEA_ERROR_SCENE, "%.300s:%zu:%zu: %s%s", t->name, t->line, column, t->subject ? t->subject : "",
                     problem);
 }

@@ -42,6 +42,7 @@ typedef struct dea_table {
     bool guarded;        /* a text without a row of numbers is none of the user's tables: nothing of it stands in a message */
     dea_units *units;
     dea_error *error;
+    size_t *failed; /* set to the column of a failure, on the line of the table; may be NULL */
     /* found by dea_table_begin() */
     const char *next, *end; /* the rest of the text */
     size_t line;            /* of the row at hand */

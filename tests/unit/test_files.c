@@ -297,13 +297,13 @@ static void a_picture_with_a_hole_is_none(void **state)
     RUN("run", "sweep.yaml", "--plot", "res.png");
     assert_status(0);
     char *svg = file_read("res.svg", &sizes[0]), *png = file_read("res.png", &sizes[1]);
-    assert_true(dea_image_svg_whole(svg, sizes[0]) && dea_image_png_whole((unsigned char *)png, sizes[1]));
+    assert_true(dea_image_svg_whole(svg, sizes[0]) && dea_image_png_whole(png, sizes[1]));
     for (size_t length = 0; length < sizes[1]; length += 97) {
-        assert_false(dea_image_png_whole((unsigned char *)png, length));
+        assert_false(dea_image_png_whole(png, length));
     }
     for (size_t at = 0; at + PIECE < sizes[1]; at += PIECE, holes++) {
         png[at + 7] ^= 1;
-        assert_false(dea_image_png_whole((unsigned char *)png, sizes[1]));
+        assert_false(dea_image_png_whole(png, sizes[1]));
         png[at + 7] ^= 1;
     }
     for (size_t length = 0; length + 7 < sizes[0]; length += 97) {

@@ -98,7 +98,8 @@ static dea_scene scene_make(size_t axis_count, const size_t *counts, size_t mode
     scene.actuator = (dea_actuator){DEA_DOT, 0.03, 0.5, NAN, 1e-4, 1.2, NAN, NAN, NAN};
     scene.drive = (dea_drive){.voltage = 4500.0, .series_resistance = NAN, .leakage_resistance = NAN};
     scene.material =
-        (dea_material){.name = "test film", .source = "nowhere", .yeoh = {178426.0, -6023.0, 4234.0}, .permittivity = 2.8};
+        (dea_material){.name = "test film", .source = "nowhere", .law = dea_law_find("yeoh"),
+                       .constants = {178426.0, -6023.0, 4234.0}, .permittivity = 2.8};
     scene.material.density = scene.material.retardation = scene.material.modulus = scene.material.breakdown = NAN;
     return scene;
 }
@@ -657,7 +658,7 @@ static void netcdf_keeps_the_scalars_that_the_study_used(void **state)
 static dea_status study_draw(const dea_scene *scene, const char *path, dea_error *error)
 {
     dea_plot *plot;
-    dea_status status = dea_plot_begin(scene, path, &plot, error);
+    dea_status status = dea_plot_begin(scene, path, NULL, &plot, error);
     if (status != DEA_OK) {
         return status;
     }
@@ -722,9 +723,9 @@ static void pictures_without_content_are_refused(void **state)
     assert_int_equal(study_draw(&scene, in_folder("a.svg"), &error), DEA_ERROR_USAGE);
     assert_non_null(strstr(error.message, "60 curves"));
     scene = scene_make(1, some, 1);
-    assert_int_equal(study_draw(&scene, in_folder("a.pdf"), &error), DEA_ERROR_USAGE);
+    assert_int_equal(study_draw(&scene, in_folder("a.jpg"), &error), DEA_ERROR_USAGE);
     dea_plot *plot;
-    assert_int_equal(dea_plot_begin(&scene, in_folder("a.svg"), &plot, &error), DEA_OK);
+    assert_int_equal(dea_plot_begin(&scene, in_folder("a.svg"), NULL, &plot, &error), DEA_OK);
     assert_int_equal(dea_plot_finish(plot, true, &error), DEA_ERROR_USAGE);
     assert_int_equal(folder_count(), 0);
 }
@@ -734,7 +735,7 @@ static dea_status points_draw(const dea_scene *scene, const char *path, dea_erro
 {
     const dea_layout layout = dea_layout_of(scene);
     dea_plot *plot;
-    const dea_status status = dea_plot_begin(scene, path, &plot, error);
+    const dea_status status = dea_plot_begin(scene, path, NULL, &plot, error);
     if (status != DEA_OK) {
         return status;
     }
@@ -754,7 +755,7 @@ static void pictures_of_runs_appear_whole(void **state)
     const size_t counts[] = {3};
     const dea_scene scenes[] = {transient_make(1, counts, 2, 500), response_make(1, counts, 2, 4)};
     static const char *const shown[][4] = {{"Strain s [%]", "U [kV]", "i [µA]", "Time [s]"},
-                                           {"Displacement per volt [m/V]", "Impedance [Ω]", "Phase [°]", "Frequency [Hz]"}};
+                                           {"Displacement per volt [µm/V]", "Impedance [Ω]", "Phase [°]", "Frequency [Hz]"}};
     for (size_t i = 0; i < 2; i++) {
         dea_error error = {0};
         assert_int_equal(points_draw(&scenes[i], in_folder("a.svg"), &error), DEA_OK);
@@ -882,7 +883,7 @@ static void runs_that_no_picture_can_show_are_refused(void **state)
     const dea_layout layout = dea_layout_of(&scene);
     char *point = calloc(1, layout.point_size);
     dea_plot *plot;
-    assert_int_equal(dea_plot_begin(&scene, in_folder("a.svg"), &plot, &error), DEA_OK);
+    assert_int_equal(dea_plot_begin(&scene, in_folder("a.svg"), NULL, &plot, &error), DEA_OK);
     dea_layout_fail(&scene, &layout, point);
     dea_plot_points(plot, 0, point, 1);
     assert_int_equal(dea_plot_finish(plot, true, &error), DEA_ERROR_USAGE);

@@ -95,7 +95,9 @@ dea_status dea_gnuplot_begin(dea_gnuplot *picture, const char *path, const dea_p
 {
     *picture = (dea_gnuplot){.file.fd = -1, .kind = kind_of(path), .canvas = canvas_of(options)};
     if (!picture->kind) {
-        return dea_fail(error, DEA_ERROR_USAGE, "%.400s: a picture ends in .svg, .png, .pdf, .eps or .gp", path);
+        const char *name = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
+        return dea_fail(error, DEA_ERROR_USAGE, "%.400s: a picture ends in .svg, .png, .pdf, .eps or .gp; write for example %.*s.svg",
+                        path, (int)strcspn(name, "."), name);
     }
     if (options && (options->width != 0.0 || options->height != 0.0) && !(is_side(options->width) && is_side(options->height))) {
         return dea_fail(error, DEA_ERROR_USAGE, "a picture of %g m x %g m: each side needs 0.04 m to 2 m", options->width,

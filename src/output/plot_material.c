@@ -60,38 +60,41 @@ static void write_measured(FILE *script, const char *before, const char *block, 
 }
 
 /* Data block $fit<load> of nominal stress [kPa] over stretch. */
-static void write_stress(FILE *script, const double yeoh[DEA_YEOH_TERMS], dea_load load, double from, double to)
+static void write_stress(FILE *script, const dea_law *law, const double *constants, dea_load load, double from, double to)
 {
     fprintf(script, "$fit%d << END\n", (int)load);
     for (int i = 0; i <= CURVE_STEPS; i++) {
         const double stretch = from + (to - from) * i / CURVE_STEPS;
-        write_pair(script, stretch, 1e-3 * dea_fit_stress(yeoh, load, stretch));
+        write_pair(script, stretch, 1e-3 * dea_fit_stress(law, constants, load, stretch));
     }
     fputs("END\n", script);
 }
 
-static void write_material_data(const dea_material *material, FILE *script)
+static void write_material_data(const dea_material *material, double to, FILE *script)
 {
-    double yeoh[DEA_YEOH_TERMS];
-    dea_material_long_term(material, yeoh);
+    double constants[DEA_LAW_CONSTANTS];
+    dea_material_long_term(material, constants);
     for (int load = 0; load < DEA_LOAD_COUNT; load++) {
-        write_stress(script, yeoh, (dea_load)load, 1.0, 2.0);
+        write_stress(script, material->law, constants, (dea_load)load, 1.0, to);
     }
     fputs("$modulus0 << END\n", script);
     for (int i = 0; i <= CURVE_STEPS; i++) {
-        const double stretch = 1.0 + (double)i / CURVE_STEPS;
-        write_pair(script, stretch, 1e-6 * dea_yeoh_modulus(yeoh, stretch));
+        const double stretch = 1.0 + (to - 1.0) * i / CURVE_STEPS;
+        write_pair(script, stretch, 1e-6 * dea_law_modulus(material->law, constants, stretch));
     }
     fputs("END\n", script);
 }
 
-static void write_material(const dea_material *material, const dea_gnuplot *picture, const dea_pair *pair, const dea_legend *legend)
+static void write_material(const dea_material *material, double to, const dea_gnuplot *picture, const dea_pair *pair,
+                           const dea_legend *legend)
 {
     FILE *script = picture->script;
-    write_material_data(material, script);
+    write_material_data(material, to, script);
     dea_plot_style(script);
     dea_plot_title(script, material->name, picture->canvas.width, pair->height);
-    fputs("set xrange [1:2]\nset yrange [0:*]\nset offsets graph 0, graph 0, graph 0.06, graph 0\n"
+    fputs("set xrange [1:", script);
+    dea_gnuplot_number(script, to);
+    fputs("]\nset yrange [0:*]\nset offsets graph 0, graph 0, graph 0.06, graph 0\n"
           "set label 1 '(a)' at graph 0, graph 1 offset character 0, character 0.8\n",
           script);
     write_setting(script, "xlabel", "Stretch λ");
@@ -109,7 +112,8 @@ static void write_material(const dea_material *material, const dea_gnuplot *pict
     fputs("unset multiplot\nunset output\n", script);
 }
 
-dea_status dea_plot_material(const dea_material *material, const char *path, const dea_plot_options *options, dea_error *error)
+dea_status dea_plot_material(const dea_material *material, double to, const char *path, const dea_plot_options *options,
+                             dea_error *error)
 {
     dea_gnuplot picture;
     dea_pair pair;
@@ -124,7 +128,7 @@ dea_status dea_plot_material(const dea_material *material, const char *path, con
     status = dea_plot_pair(picture.canvas, material->name, 0.0, lay_legend(&legend, picture.canvas.width), &pair, error);
     if (status == DEA_OK) {
         dea_gnuplot_size(&picture, pair.height);
-        write_material(material, &picture, &pair, &legend);
+        write_material(material, to, &picture, &pair, &legend);
     }
     const dea_status drawn = dea_gnuplot_finish(&picture, status == DEA_OK, status == DEA_OK ? error : NULL);
     return status != DEA_OK ? status : drawn;
@@ -171,7 +175,7 @@ static void write_fit(const dea_fit *fit, const dea_fit_data *data, const panel 
     write_panel(script, at, from, to, "Stretch λ");
     for (int load = 0; load < DEA_LOAD_COUNT; load++) {
         if (fit->count[load] > 0) {
-            write_stress(script, fit->yeoh, (dea_load)load, from, to);
+            write_stress(script, fit->law, fit->constants, (dea_load)load, from, to);
             write_points(script, data, fit, (dea_load)load);
         }
     }

@@ -139,7 +139,8 @@ static void write_head(const dea_gnuplot *picture)
 static void write_side(FILE *script, double units, const dea_gnuplot *picture, const char *end)
 {
     const double inches = units * picture->canvas.unit;
-    dea_gnuplot_number(script, picture->kind->inches ? inches : round(inches / picture->kind->pixel[picture->canvas.height > 0]));
+    const double whole = round(inches / picture->kind->pixel[picture->canvas.height > 0]);
+    dea_gnuplot_number(script, picture->kind->inches ? (whole + 0.01) / 72.0 : whole); /* of which it cuts the points */
     fprintf(script, "%s%s", picture->kind->inches ? "in" : "", end);
 }
 

@@ -80,6 +80,12 @@ void dea_span_pad(dea_span *span, bool floats);
 void dea_span_write(FILE *script, const char *axis, const dea_span *span, double length, dea_name *name);
 /* Writes those tics alone, at the logarithms of their numbers where @p placed. */
 void dea_span_tics(FILE *script, const char *axis, const dea_span *span, double length, dea_name *name, bool placed);
+/* Sets tics of a linear axis in steps of 1, 2 or 5 times a power of ten, @p count steps at most and two tics at least. */
+void dea_span_steps(FILE *script, const char *axis, const dea_span *span, double count);
+/* Smallest of 1, 2, 5 times a power of ten that is not below @p least > 0. */
+double dea_step_choose(double least);
+/* Drops what lies more than eight decades below the top of a logarithmic span: rounding has numbers there too. */
+void dea_span_limit(dea_span *span);
 /* Names of tics: none, "10⁻²", "0.01", and with a prefix, "2k". */
 void dea_name_power(double value, char text[DEA_LABEL_LENGTH]);
 void dea_name_none(double value, char text[DEA_LABEL_LENGTH]);

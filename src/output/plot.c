@@ -12,7 +12,7 @@ enum {
     STOPS = 9,          /* of a palette */
     NATURAL = 300,      /* height of a panel [units] */
     LEFT = 82,          /* of a panel: its labels */
-    NARROW = 66,        /* the same where there is little room */
+    NARROW = 78,        /* the same where there is little room */
     RIGHT = 24,         /* behind it */
     LABELS = 58,        /* below it */
     TAG = 26,           /* above it: (a) */
@@ -148,7 +148,7 @@ void dea_plot_title(FILE *script, const char *title, int width, int height)
     for (const char *byte = title; *byte; byte++) {
         letters += ((unsigned char)*byte & 0xc0) != 0x80;
     }
-    const double fitting = (width - 16.0) / (0.62 * (double)(letters + 1));
+    const double fitting = (width - 16.0) / (0.66 * (double)(letters + 1));
     if (*title) {
         fputs("set label 2 ", script);
         dea_gnuplot_text(script, title);
@@ -218,6 +218,11 @@ void dea_span_pad(dea_span *span, bool floats)
     span->high += span->high != 0.0 || floats || !(width > 0.0) ? pad : 0.0;
 }
 
+void dea_span_limit(dea_span *span)
+{
+    span->low = span->logarithmic ? fmax(span->low, 1e-8 * span->high) : span->low;
+}
+
 void dea_name_none(double value, char text[DEA_LABEL_LENGTH])
 {
     (void)value;
@@ -267,6 +272,25 @@ static bool is_named(int number, int decade, int step, double room, double decad
     return room >= 12.0 || (room >= 3.0 && (number == 2 || number == 5));
 }
 
+double dea_step_choose(double least)
+{
+    const double power = pow(10.0, floor(log10(least)));
+    const double rest = least / power;
+    return power * (rest <= 1.0 ? 1.0 : rest <= 2.0 ? 2.0 : rest <= 5.0 ? 5.0 : 10.0);
+}
+
+void dea_span_steps(FILE *script, const char *axis, const dea_span *span, double count)
+{
+    double step = dea_step_choose((span->high - span->low) / fmax(1.0, count));
+    while (floor(span->high / step) - ceil(span->low / step) < 1.0) {
+        const double digit = step / pow(10.0, floor(log10(step) + 1e-9));
+        step *= digit > 4.5 ? 0.8 : 0.5;
+    }
+    fprintf(script, "set %stics ", axis);
+    dea_gnuplot_number(script, step);
+    fputc('\n', script);
+}
+
 static bool needs_tenths(const dea_span *span)
 {
     return log10(span->high / span->low) < 0.3;
@@ -311,8 +335,10 @@ void dea_span_write(FILE *script, const char *axis, const dea_span *span, double
     fprintf(script, "]\nset format %s '%%h'\n%sset logscale %s\n", axis, span->logarithmic ? "" : "un", axis);
     if (span->logarithmic && !needs_tenths(span)) {
         dea_span_tics(script, axis, span, length, name, false);
-    } else {
+    } else if (span->logarithmic) {
         fprintf(script, "set %stics autofreq\n", axis);
+    } else {
+        dea_span_steps(script, axis, span, length / (*axis == 'x' ? 1.3 * ACROSS : 2.0 * UP));
     }
 }
 

@@ -14,7 +14,7 @@ enum {
     PANEL = 380,
     LABELS = 68, /* below the panels */
     LEAST = 100, /* panel that can be read */
-    WORDS = 128, /* labels at marks */
+    WORDS = 1024, /* marks, and labels at them */
     KINDS = 3    /* of legend entries: models, engines, marks */
 };
 
@@ -32,7 +32,7 @@ typedef struct sheet {
     panel work, models;
     double floor; /* where references are drawn, as an error */
     bool references, statics;
-    dea_box words[WORDS]; /* where labels stand */
+    dea_box words[WORDS]; /* where marks and labels stand */
     size_t word_count;
     dea_canvas canvas;
     int height;
@@ -156,7 +156,17 @@ static bool overlap(const dea_box *a, const dea_box *b)
     return fabs(a->left - b->left) < 0.5 * (a->width + b->width) && fabs(a->top - b->top) < 0.5 * (a->height + b->height);
 }
 
-/* Writes a label beside a mark, where none stands: left and top of a box are its middle. */
+/* Takes the place of a mark: left and top of such boxes are their middle. */
+static void take_mark(sheet *page, const panel *part, double x, double y)
+{
+    enum { MARK = 10 };
+    if (page->word_count < WORDS) {
+        page->words[page->word_count++] = (dea_box){part->box.left + place_in(&part->x, x) * part->box.width,
+                                                    part->box.top + (1.0 - place_in(&part->y, y)) * part->box.height, MARK, MARK};
+    }
+}
+
+/* Writes a label beside a mark, where nothing stands. */
 static void write_word(sheet *page, FILE *script, const panel *part, double x, double y, const char *text, const char *colour)
 {
     size_t letters = 0;
@@ -195,6 +205,11 @@ static bool begins_curve(const dea_bench *bench, size_t i)
 static void write_accuracies(sheet *page, FILE *script)
 {
     const dea_bench *bench = page->bench;
+    for (size_t i = 0; i < bench->setting_count; i++) {
+        if (is_drawn(&bench->settings[i])) {
+            take_mark(page, &page->work, time_of(bench, &bench->settings[i]), error_of(page, &bench->settings[i]));
+        }
+    }
     for (size_t i = 0; i < bench->setting_count; i++) {
         const dea_bench_setting *setting = &bench->settings[i];
         const bool end = begins_curve(bench, i) || i + 1 == bench->setting_count || begins_curve(bench, i + 1);

@@ -220,6 +220,7 @@ static void sheet_settle(sheet *page)
         if (!span->logarithmic) {
             dea_span_take(span, 0.0);
         }
+        dea_span_limit(span);
         dea_span_pad(span, false);
     }
     if (!(page->along.high > page->along.low)) {

@@ -184,7 +184,9 @@ static void write_side(FILE *script, const side *edge, const char *letter, doubl
     fputc(':', script);
     dea_gnuplot_number(script, side_place(edge, edge->to));
     fputs("]\n", script);
-    if (edge->logarithmic) {
+    if (!edge->logarithmic) {
+        dea_span_steps(script, letter, &span, length / (*letter == 'x' ? 50.0 : 36.0));
+    } else {
         dea_span_tics(script, letter, &span, length, dea_name_plain, true);
     }
 }

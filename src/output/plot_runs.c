@@ -12,13 +12,12 @@ enum {
     CLOSE = 24,   /* behind one without */
     MAIN = 270,   /* height of the first panel */
     SMALL = 84,   /* of those below it */
+    CURRENTS = 130, /* of one with the currents of several runs */
     GAP = 18,     /* between panels */
     LABELS = 58,  /* below the last panel of a column */
     LEAST = 24,   /* height of a panel that can be read */
     HALVES = 620  /* width that two columns need */
 };
-
-static const double filled = 0.88; /* of a panel, by its numbers */
 
 typedef struct panel {
     size_t quantity;
@@ -28,7 +27,7 @@ typedef struct panel {
     bool peaks;    /* curves are told apart at their peaks, the smaller ones lie above the larger */
     bool absolute; /* is drawn without its sign */
     bool zero;     /* shows zero */
-    int intervals; /* of its tics, about */
+    int intervals; /* of its tics, at most */
     double factor; /* from SI to what is drawn */
     double second; /* second axis: its numbers over the drawn ones, 0: none */
     char label[DEA_LABEL_LENGTH], second_label[DEA_LABEL_LENGTH];
@@ -118,7 +117,7 @@ static panel *compose_small(sheet *page, size_t offset, const char *words, const
         const dea_scale scale = dea_scale_choose(dea_runs_largest(page->runs, small->quantity), unit);
         small->factor = scale.factor;
         small->zero = zero;
-        small->intervals = 3;
+        small->intervals = 4;
         snprintf(small->label, sizeof small->label, "%s [%s]", words, scale.unit);
     }
     return small;
@@ -176,13 +175,21 @@ static void compose_pair(sheet *page, size_t magnitude, size_t phase, const char
     }
 }
 
+static double natural_height(const sheet *page, size_t number)
+{
+    if (page->response) {
+        return page->panels[number].step > 0.0 ? MAIN * 2.0 / 3.0 : MAIN;
+    }
+    return number == 0 ? MAIN : page->panels[number].peaks && page->runs->count > 1 ? CURRENTS : SMALL;
+}
+
 /* The panels of one column, from its first to the one before @p end, and how high they are; @p stretch times their natural
  * heights. */
 static double lay_column(sheet *page, size_t first, size_t end, double left, double width, double top, double stretch)
 {
     double panels = 0.0;
     for (size_t i = first; i < end; i++) {
-        const double natural = !page->response ? (i == 0 ? MAIN : SMALL) : page->panels[i].step > 0.0 ? MAIN * 2.0 / 3.0 : MAIN;
+        const double natural = natural_height(page, i);
         page->panels[i].box = (dea_box){left, top, width, stretch * natural};
         page->panels[i].bottom = i + 1 == end;
         top += stretch * natural + GAP;
@@ -390,14 +397,6 @@ static void write_curves(const sheet *page, FILE *script, size_t number)
     fputc('\n', script);
 }
 
-/* Smallest of 1, 2, 5 times a power of ten that is not below @p least. */
-static double step_choose(double least)
-{
-    const double power = pow(10.0, floor(log10(least)));
-    const double rest = least / power;
-    return power * (rest <= 1.0 ? 1.0 : rest <= 2.0 ? 2.0 : rest <= 5.0 ? 5.0 : 10.0);
-}
-
 /* What the panels show, with room beyond it: a flat drive does not lie on the frame. */
 static void measure_panels(sheet *page)
 {
@@ -412,6 +411,9 @@ static void measure_panels(sheet *page)
         if (part->zero) {
             dea_span_take(&part->span, 0.0);
         }
+        if (!page->response) {
+            dea_span_limit(&part->span);
+        }
         dea_span_pad(&part->span, true);
     }
 }
@@ -424,9 +426,7 @@ static void write_second_axis(FILE *script, const panel *part)
     span.high *= part->second;
     dea_span_write(script, "y2", &span, part->box.height, part->name);
     if (!span.logarithmic) {
-        fputs("set y2tics ", script);
-        dea_gnuplot_number(script, step_choose(filled * (span.high - span.low) / part->intervals));
-        fputc('\n', script);
+        dea_span_steps(script, "y2", &span, part->intervals);
     }
     fputs("set y2label ", script);
     dea_gnuplot_text(script, part->second_label);
@@ -437,11 +437,10 @@ static void write_second_axis(FILE *script, const panel *part)
 static void write_upward(FILE *script, const panel *part)
 {
     dea_span_write(script, "y", &part->span, part->box.height, part->name);
-    if (!part->span.logarithmic) {
-        const double step = part->step > 0.0 ? part->step : step_choose(filled * (part->span.high - part->span.low) / part->intervals);
-        fputs("set ytics ", script);
-        dea_gnuplot_number(script, step);
-        fputc('\n', script);
+    if (part->step > 0.0) {
+        fprintf(script, "set ytics %g\n", part->step);
+    } else if (!part->span.logarithmic) {
+        dea_span_steps(script, "y", &part->span, part->intervals);
     }
     if (part->second > 0.0) {
         write_second_axis(script, part);

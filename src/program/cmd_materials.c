@@ -12,6 +12,12 @@ enum { CURVE_POINTS = 101, MOST_MATERIALS = 64, CURVE_COLUMNS = 4 };
 
 static const double usual_end = 2; /* stretch of curves and tables */
 
+static const char *material_word(size_t index)
+{
+    const dea_material *material = dea_material_builtin(index);
+    return material ? material->name : NULL;
+}
+
 static void print_list(void)
 {
     int width = 0;
@@ -206,5 +212,7 @@ const dea_command dea_command_materials = {
     .takes = DEA_TAKES_OUTPUT | DEA_TAKES_PLOT | DEA_TAKES_CURVES,
     .least = 0,
     .most = 1,
+    .words = material_word,
+    .files = ".yaml",
     .run = run,
 };

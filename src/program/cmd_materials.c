@@ -52,14 +52,31 @@ static void print_relaxation(const dea_material *material)
         printf("prony %zu                g = %.9g, tau = %.9g s\n", i + 1, material->prony[i].g, material->prony[i].tau);
 }
 
+/* Constants of the law; those of a list by their paths. */
+static void print_law(const dea_material *material)
+{
+    const dea_law *law = material->law;
+    printf("%-22s %s, %s\n", "law", law->title, law->energy_text);
+    for (size_t i = 0; i < law->constant_count * law->entries; i++) {
+        const dea_constant *constant = &law->constants[i % law->constant_count];
+        const size_t entry = i / law->constant_count;
+        char label[DEA_NAME_LENGTH];
+        if (entry > 0 && fabs(material->constants[entry * law->constant_count]) <= 0)
+            break; /* of the entries in use */
+        if (law->entries > 1)
+            snprintf(label, sizeof label, "%s.%zu.%s", law->name, entry, constant->name);
+        else
+            snprintf(label, sizeof label, "%s", constant->name);
+        print_number(label, material->constants[i], strcmp(constant->unit, "1") == 0 ? "" : " Pa");
+    }
+}
+
 static void print_constants(const dea_material *material)
 {
     printf("%-22s %s\n", "name", material->name);
     if (material->source[0] != '\0')
         printf("%-22s %s\n", "source", material->source);
-    print_number("C1", material->yeoh[0], " Pa");
-    print_number("C2", material->yeoh[1], " Pa");
-    print_number("C3", material->yeoh[2], " Pa");
+    print_law(material);
     if (material->stretches[1] > 0)
         printf("%-22s %.9g to %.9g\n", "data of stretches", material->stretches[0], material->stretches[1]);
     if (fabs(material->permittivity_per_stretch) > 0)
@@ -78,21 +95,23 @@ static void print_constants(const dea_material *material)
 static void print_moduli(const dea_material *material, double to)
 {
     static const double stretches[] = {1.0, 1.1, 1.2, 1.3, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0, 10.0};
-    double yeoh[DEA_YEOH_TERMS];
-    dea_material_long_term(material, yeoh);
+    double constants[DEA_LAW_CONSTANTS];
+    dea_material_long_term(material, constants);
     printf("\n%10s %12s %12s %12s %12s\n", "prestretch", "stress_Pa", "Y_Pa", "W11_Pa", "W12_Pa");
     for (size_t i = 0; i < sizeof stretches / sizeof stretches[0] && stretches[i] <= to; i++) {
         double stretch = stretches[i];
-        dea_stress stress = dea_yeoh_stress(yeoh, stretch, stretch);
-        printf("%10g %12.1f %12.1f %12.1f %12.1f\n", stretch, stress.p1, dea_yeoh_modulus(yeoh, stretch), stress.w11, stress.w12);
+        const dea_stress stress = dea_law_stress(material->law, constants, stretch, stretch);
+        printf("%10g %12.1f %12.1f %12.1f %12.1f\n", stretch, stress.p1, dea_law_modulus(material->law, constants, stretch),
+               stress.w11, stress.w12);
     }
 }
 
 /* A film pulled one way only narrows by stretch^-1/2 in both other directions. */
-static dea_status write_curve_row(dea_atomic *file, const double yeoh[DEA_YEOH_TERMS], double stretch, dea_error *error)
+static dea_status write_curve_row(dea_atomic *file, const dea_law *law, const double *constants, double stretch, dea_error *error)
 {
-    const double values[CURVE_COLUMNS] = {stretch, dea_yeoh_stress(yeoh, stretch, 1 / sqrt(stretch)).p1,
-                                          dea_yeoh_stress(yeoh, stretch, stretch).p1, dea_yeoh_modulus(yeoh, stretch)};
+    const double values[CURVE_COLUMNS] = {stretch, dea_law_stress(law, constants, stretch, 1 / sqrt(stretch)).p1,
+                                          dea_law_stress(law, constants, stretch, stretch).p1,
+                                          dea_law_modulus(law, constants, stretch)};
     char line[CURVE_COLUMNS * (DEA_NUMBER_LENGTH + 1)];
     size_t used = 0;
     for (size_t i = 0; i < CURVE_COLUMNS; i++) {
@@ -105,15 +124,15 @@ static dea_status write_curve_row(dea_atomic *file, const double yeoh[DEA_YEOH_T
 static dea_status write_curves(const dea_material *material, double to, const char *path, dea_error *error)
 {
     static const char header[] = "stretch,uniaxial_Pa,equibiaxial_Pa,modulus_Pa\n";
-    double yeoh[DEA_YEOH_TERMS];
+    double constants[DEA_LAW_CONSTANTS];
     dea_atomic file;
-    dea_material_long_term(material, yeoh);
+    dea_material_long_term(material, constants);
     dea_status status = dea_atomic_open(&file, path, error);
     if (status != DEA_OK)
         return status;
     status = dea_atomic_write(&file, header, sizeof header - 1, error);
     for (int i = 0; i < CURVE_POINTS && status == DEA_OK; i++)
-        status = write_curve_row(&file, yeoh, 1 + (to - 1) * i / (CURVE_POINTS - 1), error);
+        status = write_curve_row(&file, material->law, constants, 1 + (to - 1) * i / (CURVE_POINTS - 1), error);
     dea_status closed = dea_atomic_close(&file, status == DEA_OK, status == DEA_OK ? error : NULL);
     return status != DEA_OK ? status : closed;
 }
@@ -144,7 +163,7 @@ static bool material_choose(const char *name, dea_material *material, dea_exit *
 
 static dea_status show(const dea_material *material, const dea_arguments *arguments, double to, dea_error *error)
 {
-    const bool elastic = !isnan(material->yeoh[0]);
+    const bool elastic = !isnan(material->constants[0]);
     dea_status status = DEA_OK;
     if (!arguments->output && !arguments->plot) {
         print_constants(material);

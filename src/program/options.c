@@ -57,11 +57,6 @@ static bool take_text(const dea_option *entry, const char *value, dea_arguments 
     return true;
 }
 
-static bool take_engine(const dea_option *entry, const char *value, dea_arguments *arguments)
-{
-    return take_text(entry, value, arguments) && dea_engine_choose(value) != NULL;
-}
-
 static bool take_setting(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
     (void)entry;
@@ -153,7 +148,7 @@ static bool take_equibiaxial(const dea_option *entry, const char *value, dea_arg
 static const char *engine_word(size_t index)
 {
     const dea_engine *engine = dea_engine_at(index);
-    return engine ? engine->name : NULL;
+    return engine ? engine->name : index == dea_engine_count() ? "auto" : NULL;
 }
 
 static const char *model_word(size_t index)
@@ -214,7 +209,7 @@ static const char *analogy_word(size_t index)
     }
 
 static const dea_option entries[] = {
-    TEXT("engine", 0, "ENGINE", engine_word, DEA_TAKES_ENGINE, take_engine, engine, "engine that solves"),
+    TEXT("engine", 0, "ENGINE", engine_word, DEA_TAKES_ENGINE, take_text, engine, "engine that solves"),
     TEXT("model", 0, "MODEL", model_word, DEA_TAKES_SCENE, take_text, model, "model instead of that of the scene"),
     TEXT("set", 0, "KEY=VALUE", key_word, DEA_TAKES_SCENE, take_setting, settings, "change a value of the scene"),
     FLAG("no-files", 0, DEA_TAKES_SCENE, no_files, "refuse a scene that names other files"),

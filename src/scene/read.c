@@ -389,3 +389,59 @@ dea_status dea_read_model(dea_reader *reader, const dea_ref *ref, const dea_node
     }
     return DEA_OK;
 }
+
+static dea_status engine_fail(dea_reader *reader, const dea_node *node, const char *what)
+{
+    char shown[DEA_TEXT_ROOM];
+    char names[DEA_KEY_ROOM] = "";
+    char meant[DEA_KEY_ROOM] = "";
+    size_t used = 0;
+    for (size_t i = 0; i < dea_engine_count() && used < sizeof names; i++) {
+        const char *name = dea_engine_at(i)->name;
+        const size_t distance = node->kind == DEA_NODE_SCALAR ? dea_text_distance(name, node->text) : 0;
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s, ", name);
+        if (distance > 0 && dea_text_likely(name, distance)) {
+            snprintf(meant, sizeof meant, "did you mean %s? ", name);
+        }
+    }
+    return dea_place_fail(&node->place, reader->error, "engine", "%s (%s); %saccepted: %s%s", what, dea_reader_show(node, shown),
+                          meant, names, automatic);
+}
+
+static dea_status engine_add(dea_reader *reader, const dea_node *node)
+{
+    dea_scene *scene = reader->scene;
+    const dea_engine *engine = node->kind == DEA_NODE_SCALAR ? dea_engine_find(node->text) : NULL;
+    if (!engine) {
+        const bool all = node->kind == DEA_NODE_SCALAR && strcmp(node->text, automatic) == 0;
+        return engine_fail(reader, node, all ? "auto stands alone" : "unknown engine");
+    }
+    for (size_t i = 0; i < scene->engine_count; i++) {
+        if (scene->engines[i] == engine) {
+            return engine_fail(reader, node, "named twice");
+        }
+    }
+    scene->engines[scene->engine_count++] = engine;
+    return DEA_OK;
+}
+
+dea_status dea_read_engine(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    (void)ref;
+    if (reader->engine && node->place.origin != &reader->engine_origin) {
+        return DEA_OK;
+    }
+    const dea_node *alone = node->kind == DEA_NODE_SCALAR ? node : node->count == 1 ? node->first : NULL;
+    reader->scene->engine_count = 0;
+    if (alone && alone->kind == DEA_NODE_SCALAR && strcmp(alone->text, automatic) == 0) {
+        return DEA_OK;
+    }
+    if (node->kind == DEA_NODE_MAPPING || (node->kind == DEA_NODE_SEQUENCE && node->count == 0)) {
+        return engine_fail(reader, node, "not an engine");
+    }
+    dea_status status = node->kind == DEA_NODE_SCALAR ? engine_add(reader, node) : DEA_OK;
+    for (const dea_node *name = node->kind == DEA_NODE_SEQUENCE ? node->first : NULL; name && !status; name = name->next) {
+        status = engine_add(reader, name);
+    }
+    return status;
+}

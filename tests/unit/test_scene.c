@@ -108,7 +108,7 @@ static void scene_of_the_documentation_is_read(void **state)
     assert_true(it.scene.drive.voltage == 4500.0);
     assert_true(it.scene.accuracy == 1e-7);
     assert_string_equal(it.scene.material.name, "elastosil-2030");
-    assert_true(it.scene.material.yeoh[1] == -6023.0);
+    assert_true(it.scene.material.constants[1] == -6023.0);
     assert_ptr_equal(it.scene.models[0], dea_model_find("lumped"));
     assert_int_equal(it.scene.axis_count, 3);
     assert_int_equal(dea_scene_point_count(&it.scene), 181 * 3 * 10);
@@ -143,7 +143,7 @@ static void axis_knows_its_key_column_unit_and_place(void **state)
         {"frame_radius: [3 cm]", "actuator.frame_radius", "frame_radius_m", "m", offsetof(dea_scene, actuator.frame_radius),
          false},
         {"prestretch: [1.1]", "actuator.prestretch", "prestretch", "1", offsetof(dea_scene, actuator.prestretch), true},
-        {"yeoh.C1: [1 kPa]", "material.yeoh.C1", "C1_Pa", "Pa", offsetof(dea_scene, material.yeoh[0]), true},
+        {"yeoh.C1: [1 kPa]", "material.yeoh.C1", "C1_Pa", "Pa", offsetof(dea_scene, material.constants[0]), true},
         {"breakdown: [80 V/um]", "material.breakdown", "breakdown_V_per_m", "V/m", offsetof(dea_scene, material.breakdown), true},
         {"series_resistance: [1 MOhm]", "drive.series_resistance", "series_resistance_Ohm", "ohm",
          offsetof(dea_scene, drive.series_resistance), false},
@@ -299,7 +299,7 @@ static void quantities_of_every_dimension_are_read(void **state)
         {"series_resistance=1 k\xCE\xA9", offsetof(dea_scene, drive.series_resistance), 1e3},
         {"leakage_resistance=100 GOhm", offsetof(dea_scene, drive.leakage_resistance), 1e11},
         {"voltage=-4.5 kV", offsetof(dea_scene, drive.voltage), -4500.0},
-        {"C2=-6.023 kPa", offsetof(dea_scene, material.yeoh[1]), -6023.0},
+        {"C2=-6.023 kPa", offsetof(dea_scene, material.constants[1]), -6023.0},
         {"accuracy=1e-3", offsetof(dea_scene, accuracy), 1e-3},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -531,11 +531,11 @@ static void material_is_written_out_or_built_on_another(void **state)
     loaded it;
     load(&it, DOT ONE, "material={yeoh: {C1: 20 kPa}, permittivity: 4.7, density: 960 kg/m^3}");
     assert_string_equal(it.scene.material.name, "scene");
-    assert_true(it.scene.material.yeoh[0] == 20e3 && it.scene.material.yeoh[1] == 0.0 && it.scene.material.yeoh[2] == 0.0);
+    assert_true(it.scene.material.constants[0] == 20e3 && it.scene.material.constants[1] == 0.0 && it.scene.material.constants[2] == 0.0);
     assert_true(isnan(it.scene.material.breakdown));
     dea_scene_free(&it.scene);
     load(&it, DOT ONE, "material={base: elastosil-2030-solano, yeoh: {C2: 0 Pa}}");
-    assert_true(it.scene.material.yeoh[0] == 180700.0 && it.scene.material.yeoh[1] == 0.0 && it.scene.material.yeoh[2] == 6600.0);
+    assert_true(it.scene.material.constants[0] == 180700.0 && it.scene.material.constants[1] == 0.0 && it.scene.material.constants[2] == 6600.0);
     assert_true(it.scene.material.permittivity == 2.76 && it.scene.material.permittivity_per_stretch == -0.28);
     assert_string_equal(it.scene.material.source, "elastosil-2030-solano, with changes");
     dea_scene_free(&it.scene);
@@ -544,7 +544,7 @@ static void material_is_written_out_or_built_on_another(void **state)
     dea_scene_free(&it.scene);
     load(&it, DOT ONE, "material.moduli=instantaneous");
     assert_true(it.scene.material.instantaneous);
-    assert_true(it.scene.material.yeoh[0] == 178426.0);
+    assert_true(it.scene.material.constants[0] == 178426.0);
     dea_scene_free(&it.scene);
 }
 
@@ -555,11 +555,11 @@ static void material_file_is_found_beside_the_scene(void **state)
     load(&it, DOT ONE, "material=soft.yaml");
     assert_string_equal(it.scene.material.name, "soft.yaml");
     assert_string_equal(it.scene.material.source, "made up for the tests");
-    assert_true(it.scene.material.yeoh[0] == 25e3);
+    assert_true(it.scene.material.constants[0] == 25e3);
     assert_int_equal(it.scene.material.prony_count, 1);
     dea_scene_free(&it.scene);
     load(&it, DOT ONE, "material={base: ./soft.yaml, density: 900 kg/m^3}");
-    assert_true(it.scene.material.yeoh[0] == 25e3 && it.scene.material.density == 900.0);
+    assert_true(it.scene.material.constants[0] == 25e3 && it.scene.material.density == 900.0);
     dea_scene_free(&it.scene);
 }
 
@@ -580,13 +580,13 @@ static void builtin_materials_carry_their_source(void **state)
         const dea_material *material = dea_material_builtin(i);
         assert_ptr_equal(dea_material_find(material->name), material);
         assert_true(strlen(material->source) > 10);
-        assert_true(material->yeoh[0] > 0.0 && material->permittivity > 0.0);
+        assert_true(material->constants[0] > 0.0 && material->permittivity > 0.0);
     }
     const dea_material *vhb = dea_material_find("vhb-4910");
     assert_non_null(vhb);
     assert_null(dea_material_builtin(dea_material_count()));
     assert_null(dea_material_find("vhb"));
-    assert_true(fabs(2.0 * vhb->yeoh[0] / (1.0 - vhb->prony[0].g - vhb->prony[1].g - vhb->prony[2].g) - 78.78e3) <= 1e-9);
+    assert_true(fabs(2.0 * vhb->constants[0] / (1.0 - vhb->prony[0].g - vhb->prony[1].g - vhb->prony[2].g) - 78.78e3) <= 1e-9);
 }
 
 static void lens_takes_its_own_keys(void **state)

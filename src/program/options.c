@@ -9,7 +9,7 @@
 
 #include "deaspice/fit.h"
 #include "program/program.h"
-#include "scene/quantity.h"
+#include "support/quantity.h"
 #include "support/text.h"
 
 _Static_assert(DEA_RELAXATION_MOST == 10 && DEA_YEOH_TERMS == 3, "the messages of --branches and --terms name them");
@@ -240,6 +240,10 @@ static const option_entry entries[] = {
     TEXT("relaxation", 0, "FILE", DEA_TAKES_FIT, take_text, relaxation),
     NUMBER("ramp", "TIME", DEA_TAKES_FIT, ramp, "s", 0, true, INFINITY,
            "a time, for example \"2 s\", or \"0 s\" for an ideal step"),
+    NUMBER("length", "LENGTH", DEA_TAKES_FIT, specimen.length, "m", 0, false, INFINITY,
+           "the length of the specimen at rest, for example \"80 mm\""),
+    NUMBER("area", "AREA", DEA_TAKES_FIT, specimen.area, "m^2", 0, false, INFINITY,
+           "the cross-section of the specimen at rest, for example \"22 mm^2\""),
     COUNT("branches", 0, "N", DEA_TAKES_FIT, take_count, branches, DEA_RELAXATION_MOST, "a whole number from 1 to 10"),
     FLAG("relative", 0, DEA_TAKES_FIT, relative),
     TEXT("as", 0, "KIND", DEA_TAKES_EXPORT, take_text, as),

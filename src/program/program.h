@@ -5,6 +5,7 @@
 #define DEA_PROGRAM_PROGRAM_H
 
 #include "deaspice/engine.h"
+#include "deaspice/fit.h"
 #include "deaspice/plot.h"
 #include "deaspice/scene.h"
 #include "support/files.h"
@@ -65,6 +66,7 @@ typedef struct dea_arguments {
     bool relative;
     const char *relaxation; /**< NULL: not given */
     double ramp;            /**< [s], NAN: not given */
+    dea_specimen specimen;  /* of the fit's tables, 0: not given */
     size_t branches;        /**< 0: not given */
     const char *as;         /**< NULL: not given */
     const char *dialect;    /**< NULL: not given */

@@ -1,0 +1,204 @@
+/* Disc and annulus as one ring of film each, under their mean stretches, both linear in the displacement of the edge u = s r_a
+ * (physics: section 7). With e the relative change of a stretch, A = r_a/lambda_pre and F = r/lambda_pre:
+ *
+ *     disc  e = s,    annulus  e1 = -s B/(1 - B),  e2 = s B/(1 + B),    lambda = lambda_pre (1 + e)
+ *     2 pi A H s_disc + pi H [ (F - A) s_hoop - (F + A) s_radial ]_annulus = 0
+ *
+ * with the nominal stresses s_a = P_a - eps (U/H)^2 (lambda_1 lambda_2)^2/lambda_a where electroded: the gradient of one energy.
+ */
+#include "model/models.h"
+#include "model/path.h"
+
+/* Changes of the nominal stresses from the pre-stretch, and the tangent moduli [Pa]. */
+typedef struct ring_change {
+    double p1, p2;
+    double w11, w12, w22;
+} ring_change;
+
+/* At the stretches lambda_pre (1 + e1), lambda_pre (1 + e2), factored so that a strain of 1e-12 keeps its digits. With y =
+ * lambda^2 and v = (y1 y2)^-1: J = y1 + y2 + v - 3, P1 = 2 w (lambda1 - v/lambda1). */
+static inline ring_change change_at(const dea_film *film, double e1, double e2)
+{
+    const double l0 = film->prestretch, y0 = film->square;
+    const double inverse0 = l0 * y0 * film->inverse_fourth; /* 1/lambda_pre */
+    const double l1 = l0 * (1.0 + e1), l2 = l0 * (1.0 + e2);
+    const double d1 = y0 * e1 * (2.0 + e1), d2 = y0 * e2 * (2.0 + e2); /* of y1, y2 */
+    const double over = 1.0 / (l1 * l2), v = over * over;
+    const double inverse1 = over * l2, inverse2 = over * l1;
+    const double dv = -v * film->inverse_fourth * (y0 * (d1 + d2) + d1 * d2);
+    const double dj = d1 + d2 + dv;
+    const double c2 = 2.0 * film->yeoh[1], c3 = 3.0 * film->yeoh[2];
+    const double dw = dj * (c2 + c3 * (2.0 * film->j + dj));
+    const double w = 2.0 * (film->w + dw);
+    const double q = 4.0 * (c2 + 2.0 * c3 * (film->j + dj));
+    const double rest = film->g * inverse0; /* lambda - v/lambda at the pre-stretch */
+    const double da1 = l0 * e1 - (dv - film->inverse_fourth * e1) * inverse1;
+    const double da2 = l0 * e2 - (dv - film->inverse_fourth * e2) * inverse2;
+    const double a1 = rest + da1, a2 = rest + da2;
+    return (ring_change){
+        .p1 = w * da1 + 2.0 * rest * dw,
+        .p2 = w * da2 + 2.0 * rest * dw,
+        .w11 = w * (1.0 + 3.0 * v * inverse1 * inverse1) + q * a1 * a1,
+        .w12 = 2.0 * w * v * over + q * a1 * a2,
+        .w22 = w * (1.0 + 3.0 * v * inverse2 * inverse2) + q * a2 * a2,
+    };
+}
+
+/* One place of an iteration: the excess held - m weight, and its slope. */
+typedef struct guess {
+    double x, excess, slope;
+} guess;
+
+/* What does not change along the path of one point. */
+typedef struct rings {
+    const dea_film *film;
+    bool dot;
+    double radial, hoop; /* e1/s and e2/s of the annulus */
+    double outer, inner; /* (F + A)/2A, (F - A)/2A */
+    double aspect;       /* (F + A)/(F - A) */
+} rings;
+
+/* Area stretch of the electroded film over lambda_pre^2. */
+static inline double area_at(const rings *r, double s)
+{
+    return r->dot ? (1.0 + s) * (1.0 + s) : (1.0 + r->radial * s) * (1.0 + r->hoop * s);
+}
+
+/* One place of the path: both sides of the balance over 2 pi A H, against x = |s|. */
+typedef struct ring_place {
+    dea_path_place path;
+    double x;
+    ring_change disc, annulus;
+} ring_place;
+
+/* The weight of the load is the edge's radius over r_a times the area stretch of the electroded film. */
+static inline ring_place place_at(const rings *r, double x)
+{
+    const double s = r->dot ? x : -x;
+    const double e1 = r->radial * s, e2 = r->hoop * s, edge = 1.0 + s;
+    ring_place place = {.x = x, .disc = change_at(r->film, s, s), .annulus = change_at(r->film, e1, e2)};
+    const ring_change *disc = &place.disc, *annulus = &place.annulus;
+    const double held = disc->p1 + r->inner * annulus->p2 - r->outer * annulus->p1;
+    place.path.held = r->dot ? held : -held;
+    place.path.slope = r->film->prestretch *
+                       (disc->w11 + disc->w12 + 0.5 * (annulus->w11 * r->aspect + annulus->w22 / r->aspect) - annulus->w12);
+    const double area = area_at(r, s);
+    place.path.weight = edge * area;
+    place.path.weight_slope = r->dot ? 3.0 * area : -(area + edge * (r->radial * (1.0 + e2) + r->hoop * (1.0 + e1)));
+    return place;
+}
+
+static dea_path_place path_place(const void *user, double x)
+{
+    return place_at(user, x).path;
+}
+
+/* Zero of the cubic that has the values and slopes of x over the excess at two places. */
+static double between(const guess *a, const guess *b)
+{
+    const double over = 1.0 / (b->excess - a->excess);
+    const double chord = (b->x - a->x) * over, slope = 1.0 / b->slope;
+    const double second = (slope - chord) * over, first = (chord - 1.0 / a->slope) * over;
+    return b->x - b->excess * (slope - b->excess * (second - a->excess * (second - first) * over));
+}
+
+/* False where the iteration from rest does not settle; @p at is the last place but the root, which lies next to it. The error of
+ * the cubic goes with the square of both last steps: where that is below rounding no further one is needed. */
+static bool settle(const rings *r, const dea_path *path, double m, double *x, ring_place *at)
+{
+    guess a = {0.0, -m, path->rest - m * (r->dot ? 3.0 : -1.0 - r->radial - r->hoop)};
+    double next = m / a.slope, last = next;
+    for (int i = 0; i < 12 && next >= 0.0 && next < path->end; i++) {
+        *at = place_at(r, next);
+        const guess b = {next, at->path.held - m * at->path.weight, at->path.slope - m * at->path.weight_slope};
+        if (!(b.slope > 0.0)) {
+            return false;
+        }
+        *x = next = b.excess != a.excess ? between(&a, &b) : b.x - b.excess / b.slope;
+        const double step = next - b.x;
+        const double left = step * last / path->share;
+        const bool is_root = fabs(b.excess) <= 2.0 * fabs(b.slope * step); /* next to the end steps are short, too */
+        if (is_root && fabs(step) <= 1e-3 * next && left * left <= 1e-17 * next * path->share) {
+            return next < path->end;
+        }
+        a = b;
+        last = step;
+    }
+    return false;
+}
+
+/* True where the slope of U^2 keeps far from zero from rest to x: over so short a way its values at both ends and its mean that
+ * stay within a factor of two leave no room for a fold between. Spares the samples of dea_path_grows(). */
+static bool cannot_fold(const dea_path *path, double m, double x, const dea_path_place *at)
+{
+    const double mean = m / x, end = dea_path_fold(at) / at->weight;
+    return x <= 3.0 * dea_path_width(path, 0.0) && fmin(fmin(mean, end), path->rest) > 0.5 * fmax(fmax(mean, end), path->rest);
+}
+
+/* Equilibrium x = |s| under the load m = eps (U/H)^2 lambda_pre^3 and the place there; false where none is connected to rest. */
+static bool balance(const rings *r, double m, double *x, ring_place *at)
+{
+    const dea_film *film = r->film;
+    const double lame = film->w11 + 0.5 * film->w11 * (r->aspect + 1.0 / r->aspect);
+    const dea_path path = {path_place, r, film->prestretch * lame, r->dot ? 2.0 * r->inner : 1.0, r->inner / (r->inner + 0.5)};
+    if (!isfinite(m) || !(path.rest > 0.0)) {
+        return false;
+    }
+    if (settle(r, &path, m, x, at) && (cannot_fold(&path, m, *x, &at->path) || dea_path_grows(&path, *x))) {
+        return true;
+    }
+    const bool found = dea_path_trace(&path, m, x);
+    *at = place_at(r, *x);
+    return found;
+}
+
+/* Smallest in-plane nominal stress of disc and annulus, each with its electrical part eps (U/H)^2 (l1 l2)^2/l_a, is positive. The
+ * stresses are those of a place so near that its tangents lead to x. */
+static bool is_taut(const rings *r, double k, double x, double area, const ring_place *at)
+{
+    const double s = r->dot ? x : -x, l0 = r->film->prestretch;
+    const double change = l0 * (r->dot ? x - at->x : at->x - x), pull = k * l0 * l0 * l0 * area * area;
+    const ring_change *disc = &at->disc, *annulus = &at->annulus;
+    double p = disc->p1 + (disc->w11 + disc->w12) * change;
+    double radial = annulus->p1 + (annulus->w11 * r->radial + annulus->w12 * r->hoop) * change;
+    double hoop = annulus->p2 + (annulus->w12 * r->radial + annulus->w22 * r->hoop) * change;
+    if (r->dot) {
+        p -= pull / (1.0 + s);
+    } else {
+        radial -= pull / (1.0 + r->radial * s);
+        hoop -= pull / (1.0 + r->hoop * s);
+    }
+    return r->film->tension + fmin(p, fmin(radial, hoop)) > 0.0;
+}
+
+static void solve(const dea_point *point, double accuracy, dea_row *row)
+{
+    (void)accuracy;
+    const dea_film *film = &point->film;
+    const double b = point->coverage, nominal = dea_point_nominal_field(point);
+    const rings r = {.film = film,
+                     .dot = point->kind == DEA_DOT,
+                     .radial = -b / (1.0 - b),
+                     .hoop = b / (1.0 + b),
+                     .outer = 0.5 * (1.0 + b) / b,
+                     .inner = 0.5 * (1.0 - b) / b,
+                     .aspect = (1.0 + b) / (1.0 - b)};
+    const double k = film->permittivity * nominal * nominal, m = k * film->square * film->prestretch;
+    double x = 0.0;
+    ring_place at = {0};
+    if (m != 0.0 && !balance(&r, m, &x, &at)) {
+        dea_row_refuse(row, DEA_STATE_PULL_IN);
+        return;
+    }
+    const double sign = dea_point_sign(point), s = sign * x, area = area_at(&r, s);
+    const double force = 2.0 * DEA_PI * point->film_thickness * (dea_point_divide(point) / film->prestretch) * m;
+    dea_row_fill(row, point, s, sign * force * (1.0 + s) * area, film->square * area, is_taut(&r, k, x, area, &at));
+}
+
+const dea_model dea_model_ring = {
+    .name = "ring",
+    .equation = "one ring of film each for disc and annulus",
+    .leaves_out = "how stress and stretch vary across the annulus",
+    .lens = true,
+    .solve = solve,
+};

@@ -8,6 +8,8 @@
  */
 #include "model/models.h"
 #include "model/path.h"
+#include "network/formula.h"
+#include "network/hyperelastic.h"
 
 /* Changes of the nominal stresses from the pre-stretch, and the tangent moduli [Pa]. */
 typedef struct ring_change {
@@ -195,10 +197,82 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     dea_row_fill(row, point, s, sign * force * (1.0 + s) * area, film->square * area, is_taut(&r, k, x, area, &at));
 }
 
+/* Relative changes of the stretches, and what area stretch the electroded film has over lambda_pre^2. */
+typedef struct ring_strains {
+    dea_expr disc, radial, hoop, area;
+} ring_strains;
+
+static ring_strains strains_of(const dea_symbols *symbols, dea_expr disc)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_expr one = NUM(1.0), width = MUL(symbols->frame_radius, ADD(one, symbols->coverage)); /* r + r_a */
+    ring_strains e = {disc, dea_symbols_annulus_strain(symbols), DIV(dea_expr_node(pool, 0), width), 0};
+    e.area = symbols->kind == DEA_DOT ? SQUARE(ADD(one, disc)) : MUL(ADD(one, e.radial), ADD(one, e.hoop));
+    return e;
+}
+
+/* The Cauchy stress at rest on levers that change: with sigma = sigma_pre everywhere their forces at rest cancel, and
+ *
+ *     G = -u pi H sigma_pre/lambda_pre^2 [ 2/(1 + e) + c/(1 + e1) + 1/(c (1 + e2)) ],   c = (1 + B)/(1 - B). */
+static dea_expr tension_of(const dea_symbols *symbols, const ring_strains *e)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_yeoh_terms t = dea_symbols_yeoh(symbols);
+    const dea_expr one = NUM(1.0);
+    const dea_expr c = DIV(ADD(one, symbols->coverage), SUB(one, symbols->coverage));
+    const dea_expr front = SCALE(2.0 * DEA_PI, MUL(symbols->film_thickness, DIV(MUL(t.g, t.w), t.square)));
+    const dea_expr sum =
+        ADD(DIV(NUM(2.0), ADD(one, e->disc)), ADD(DIV(c, ADD(one, e->radial)), DIV(one, MUL(c, ADD(one, e->hoop)))));
+    return NEG(MUL(MUL(front, sum), dea_expr_node(pool, 0)));
+}
+
+static void limit_tension(const dea_symbols *symbols, dea_network *network, const ring_strains *e)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_yeoh_terms t = dea_symbols_yeoh(symbols);
+    const dea_expr rest = SCALE(2.0, MUL(t.g, t.w)); /* sigma_pre */
+    const dea_expr pull = MUL(dea_symbols_pressure(symbols), SQUARE(MUL(t.square, e->area)));
+    const bool dot = symbols->kind == DEA_DOT;
+    const dea_expr disc = ADD(rest, dea_hyperelastic_change(symbols, e->disc));
+    const dea_expr radial = ADD(rest, dea_hyperelastic_principal(symbols, e->radial, e->hoop));
+    const dea_expr hoop = ADD(rest, dea_hyperelastic_principal(symbols, e->hoop, e->radial));
+    dea_network_taut(network, dot ? SUB(disc, pull) : disc);
+    dea_network_taut(network, dot ? radial : SUB(radial, pull));
+    dea_network_taut(network, dot ? hoop : SUB(hoop, pull));
+}
+
+/* The principal Cauchy stresses with their levers, 2 pi A H/lambda and pi H (F +- A)/lambda_a. */
+static void build(const dea_symbols *symbols, dea_network *network)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_expr one = NUM(1.0);
+    const ring_strains e = strains_of(symbols, network->strain);
+    const dea_expr unit = SCALE(DEA_PI, DIV(MUL(symbols->frame_radius, symbols->film_thickness), SQUARE(symbols->prestretch)));
+    const dea_expr outer = MUL(unit, ADD(one, symbols->coverage)), inner = MUL(unit, SUB(one, symbols->coverage));
+    dea_network_add_stress(network, "n_disc", "disc, sigma - sigma_pre [Pa] on 2 pi A H/lambda",
+                           dea_hyperelastic_change(symbols, e.disc), dea_hyperelastic_area(symbols, e.disc));
+    dea_network_add_stress(network, "n_radial", "annulus, radial sigma_pre - sigma [Pa] on pi H (F + A)/lambda",
+                           NEG(dea_hyperelastic_principal(symbols, e.radial, e.hoop)), DIV(outer, ADD(one, e.radial)));
+    dea_network_add_stress(network, "n_hoop", "annulus, hoop sigma - sigma_pre [Pa] on pi H (F - A)/lambda",
+                           dea_hyperelastic_principal(symbols, e.hoop, e.radial), DIV(inner, ADD(one, e.hoop)));
+    dea_network_add(network, DEA_ROLE_TENSION, "n_tension", "pre-stress sigma_pre on the change of these areas [N]",
+                    tension_of(symbols, &e));
+    const dea_expr rest = MUL(dea_symbols_pressure(symbols), SQUARE(SQUARE(symbols->prestretch)));
+    const dea_expr force = MUL(MUL(dea_symbols_cross_section(symbols), rest), MUL(ADD(one, e.disc), e.area));
+    dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force U^2/2 dC/du of the true area [N]",
+                    SCALE(network->sign, force));
+    network->capacitance = MUL(dea_symbols_capacitance(symbols), SQUARE(e.area));
+    network->end = symbols->kind == DEA_DOT ? dea_symbols_annulus_width(symbols) : MUL(symbols->coverage, symbols->frame_radius);
+    network->field = MUL(MUL(DIV(symbols->voltage, symbols->film_thickness), SQUARE(symbols->prestretch)), e.area);
+    limit_tension(symbols, network, &e);
+}
+
 const dea_model dea_model_ring = {
     .name = "ring",
     .equation = "one ring of film each for disc and annulus",
     .leaves_out = "how stress and stretch vary across the annulus",
     .lens = true,
     .solve = solve,
+    .network = build,
+    .dynamic = true,
 };

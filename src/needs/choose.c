@@ -241,12 +241,12 @@ static bool fits(const dea_scene *scene, const dea_engine *engine, const dea_mod
     return kind && (!engine || !dea_engine_refuses(engine, scene, model));
 }
 
-/* Models that fit, the cheapest first. */
+/* Models that fit, the cheapest first, and of those that cost the same the nearest to the membrane: the last of the table. */
 static size_t list_models(const dea_scene *scene, const dea_engine *engine, const dea_model *list[MOST_MODELS])
 {
     size_t count = 0;
     for (int cost = 0; cost <= 3; cost++) {
-        for (size_t i = 0; i < dea_model_count() && count < MOST_MODELS; i++) {
+        for (size_t i = dea_model_count(); i-- > 0 && count < MOST_MODELS;) {
             const dea_model *model = dea_model_at(i);
             if (rank(model) == cost && fits(scene, engine, model)) {
                 list[count++] = model;
@@ -271,7 +271,7 @@ const dea_model *dea_needs_truth(dea_study_kind study)
     const dea_model *truth = NULL;
     for (size_t i = 0; i < dea_model_count(); i++) {
         const dea_model *model = dea_model_at(i);
-        const bool finer = !truth || rank(model) > rank(truth);
+        const bool finer = !truth || rank(model) >= rank(truth);
         truth = finer && (study == DEA_STUDY_SWEEP || model->dynamic) ? model : truth;
     }
     return truth;

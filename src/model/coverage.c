@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "model/film_balance.h"
-#include "network/formula.h"
+#include "expression/formula.h"
 #include "network/hyperelastic.h"
 #include "support/gauss.h"
 

@@ -8,43 +8,8 @@
  */
 #include "model/models.h"
 #include "model/path.h"
-#include "network/formula.h"
+#include "expression/formula.h"
 #include "network/hyperelastic.h"
-
-/* Changes of the nominal stresses from the pre-stretch, and the tangent moduli [Pa]. */
-typedef struct ring_change {
-    double p1, p2;
-    double w11, w12, w22;
-} ring_change;
-
-/* At the stretches lambda_pre (1 + e1), lambda_pre (1 + e2), factored so that a strain of 1e-12 keeps its digits. With y =
- * lambda^2 and v = (y1 y2)^-1: J = y1 + y2 + v - 3, P1 = 2 w (lambda1 - v/lambda1). */
-static inline ring_change change_at(const dea_film *film, double e1, double e2)
-{
-    const double l0 = film->prestretch, y0 = film->square;
-    const double inverse0 = l0 * y0 * film->inverse_fourth; /* 1/lambda_pre */
-    const double l1 = l0 * (1.0 + e1), l2 = l0 * (1.0 + e2);
-    const double d1 = y0 * e1 * (2.0 + e1), d2 = y0 * e2 * (2.0 + e2); /* of y1, y2 */
-    const double over = 1.0 / (l1 * l2), v = over * over;
-    const double inverse1 = over * l2, inverse2 = over * l1;
-    const double dv = -v * film->inverse_fourth * (y0 * (d1 + d2) + d1 * d2);
-    const double dj = d1 + d2 + dv;
-    const double c2 = 2.0 * film->yeoh[1], c3 = 3.0 * film->yeoh[2];
-    const double dw = dj * (c2 + c3 * (2.0 * film->j + dj));
-    const double w = 2.0 * (film->w + dw);
-    const double q = 4.0 * (c2 + 2.0 * c3 * (film->j + dj));
-    const double rest = film->g * inverse0; /* lambda - v/lambda at the pre-stretch */
-    const double da1 = l0 * e1 - (dv - film->inverse_fourth * e1) * inverse1;
-    const double da2 = l0 * e2 - (dv - film->inverse_fourth * e2) * inverse2;
-    const double a1 = rest + da1, a2 = rest + da2;
-    return (ring_change){
-        .p1 = w * da1 + 2.0 * rest * dw,
-        .p2 = w * da2 + 2.0 * rest * dw,
-        .w11 = w * (1.0 + 3.0 * v * inverse1 * inverse1) + q * a1 * a1,
-        .w12 = 2.0 * w * v * over + q * a1 * a2,
-        .w22 = w * (1.0 + 3.0 * v * inverse2 * inverse2) + q * a2 * a2,
-    };
-}
 
 /* One place of an iteration: the excess held - m weight, and its slope. */
 typedef struct guess {
@@ -70,7 +35,7 @@ static inline double area_at(const rings *r, double s)
 typedef struct ring_place {
     dea_path_place path;
     double x;
-    ring_change disc, annulus;
+    dea_biaxial disc, annulus;
 } ring_place;
 
 /* The weight of the load is the edge's radius over r_a times the area stretch of the electroded film. */
@@ -78,8 +43,8 @@ static inline ring_place place_at(const rings *r, double x)
 {
     const double s = r->dot ? x : -x;
     const double e1 = r->radial * s, e2 = r->hoop * s, edge = 1.0 + s;
-    ring_place place = {.x = x, .disc = change_at(r->film, s, s), .annulus = change_at(r->film, e1, e2)};
-    const ring_change *disc = &place.disc, *annulus = &place.annulus;
+    ring_place place = {.x = x, .disc = dea_film_biaxial(r->film, s, s), .annulus = dea_film_biaxial(r->film, e1, e2)};
+    const dea_biaxial *disc = &place.disc, *annulus = &place.annulus;
     const double held = disc->p1 + r->inner * annulus->p2 - r->outer * annulus->p1;
     place.path.held = r->dot ? held : -held;
     place.path.slope = r->film->prestretch *
@@ -160,7 +125,7 @@ static bool is_taut(const rings *r, double k, double x, double area, const ring_
 {
     const double s = r->dot ? x : -x, l0 = r->film->prestretch;
     const double change = l0 * (r->dot ? x - at->x : at->x - x), pull = k * l0 * l0 * l0 * area * area;
-    const ring_change *disc = &at->disc, *annulus = &at->annulus;
+    const dea_biaxial *disc = &at->disc, *annulus = &at->annulus;
     double p = disc->p1 + (disc->w11 + disc->w12) * change;
     double radial = annulus->p1 + (annulus->w11 * r->radial + annulus->w12 * r->hoop) * change;
     double hoop = annulus->p2 + (annulus->w12 * r->radial + annulus->w22 * r->hoop) * change;

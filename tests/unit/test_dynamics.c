@@ -337,9 +337,9 @@ static void a_jump_of_the_voltage_passes_through_the_loads_between(void **state)
     double at_once = 0.0, in_parts = 0.0;
     scene.actuator.frame_radius = 2.7435e-3;
     scene.actuator.film_thickness = 3.944e-6;
-    scene.material.yeoh[0] = 41229.6;
-    scene.material.yeoh[1] = -6087.9;
-    scene.material.yeoh[2] = 1730.9;
+    scene.material.constants[0] = 41229.6;
+    scene.material.constants[1] = -6087.9;
+    scene.material.constants[2] = 1730.9;
     scene.material.permittivity = 6.526;
     scene.material.prony_count = 2;
     scene.material.prony[0] = (dea_prony){.g = 0.2836, .tau = 4.4};

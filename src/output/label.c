@@ -11,7 +11,7 @@
 /* Units that take a prefix. */
 static bool unit_scales(const char *unit)
 {
-    static const char *const units[] = {"m", "V", "Pa", "N", "s", "Ohm", "ohm", "V/m", "Hz", "F", "A"};
+    static const char *const units[] = {"m", "V", "Pa", "N", "s", "Ohm", "ohm", "V/m", "Hz", "F", "A", "C", "J"};
     for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
         if (strcmp(unit, units[i]) == 0) {
             return true;

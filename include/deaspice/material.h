@@ -67,8 +67,8 @@ typedef struct dea_law {
     double (*rise)(const double *constants, double l, double d1, double d2);
     /** Notes in film->rest what change() wants to know of the film's pre-stretch. */
     void (*prepare)(struct dea_film *film);
-    /** Change of the equi-biaxial Cauchy stress at the strain @p e; keeps its digits however small e is. */
-    dea_change (*change)(const struct dea_film *film, double e);
+    /** Changes of the equi-biaxial Cauchy stress at @p count strains; keep their digits however small the strains are. */
+    void (*change)(const struct dea_film *film, size_t count, const double *strains, dea_change *changes);
     /** Whether the law stands in networks (true), or only in the engines' own equations. */
     bool networked;
 } dea_law;
@@ -115,7 +115,7 @@ typedef struct dea_film {
     double square;                       /**< lambda_pre^2 [1] */
     double inverse_fourth;               /**< lambda_pre^-4 [1] */
     double j, g;                         /**< J, g at the pre-stretch [1] */
-    double least, most;                  /**< equi-biaxial stretches at which the energy ends [1], 0 and +inf: it does not */
+    double shrinks, grows;               /**< strains from the pre-stretch at which the film or its energy ends, both > 0 [1] */
     double rest[DEA_LAW_CONSTANTS];      /**< what the law noted by prepare() */
 } dea_film;
 

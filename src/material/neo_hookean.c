@@ -39,9 +39,11 @@ static void prepare(dea_film *film)
     film->rest[0] = 0.5 * film->constants[MU];
 }
 
-static dea_change change(const dea_film *film, double e)
+static void change(const dea_film *film, size_t count, const double *strains, dea_change *changes)
 {
-    return dea_invariant_change(slopes, gain, film, e);
+    for (size_t i = 0; i < count; i++) {
+        changes[i] = dea_invariant_change(slopes, gain, film, strains[i]);
+    }
 }
 
 static const dea_constant constants[] = {{"mu", "Pa", true, 0.0, NAN, "a shear modulus > 0, e.g. 44 kPa"}};

@@ -10,10 +10,13 @@ typedef struct balance {
 
 static inline balance balance_at(const dea_film *film, double ratio, double e)
 {
-    const dea_change active = film->law->change(film, e);
+    const double strains[] = {e, -ratio * e};
+    dea_change changes[2];
+    film->law->change(film, ratio > 0.0 ? 2 : 1, strains, changes);
+    const dea_change active = changes[0];
     balance b = {active.value, active.slope, active.curve, 0.0};
     if (ratio > 0.0) {
-        const dea_change passive = film->law->change(film, -ratio * e);
+        const dea_change passive = changes[1];
         b.load -= passive.value;
         b.slope += ratio * passive.slope;
         b.curve -= ratio * ratio * passive.curve;
@@ -37,8 +40,8 @@ static double trusted_width(double ratio, double e)
 /* Strain of the active film at which a region vanishes, or the energy of the material ends. */
 static double end_of(const dea_film *film, double ratio)
 {
-    const double active = fmin(1e4, film->most / film->prestretch - 1.0);
-    return ratio > 0.0 ? fmin(active, (1.0 - film->least / film->prestretch) / ratio) : active;
+    const double passive = ratio > 0.0 ? film->shrinks / ratio : film->grows;
+    return passive < film->grows ? passive : film->grows;
 }
 
 /* Looks for a fold on [low, high], where `fold` has the values at_low > 0 and at_high. Returns true and a narrow bracket of the
@@ -173,8 +176,11 @@ static bool cannot_fold(const dea_film *film, double ratio, double stiffness, do
 {
     const double slope_at_rest = film->square * film->curvature * (1.0 - ratio * ratio) - 3.0 * stiffness;
     const double slope_at_end = (1.0 + e) * at->curve - 3.0 * at->slope;
-    const double tangents = fmin(stiffness + slope_at_rest * e, at->fold - slope_at_end * e);
-    return e <= 3.0 * trusted_width(ratio, 0.0) && fmin(tangents, fmin(stiffness, at->fold)) > 0.5 * fmax(stiffness, at->fold);
+    const double tangent_at_rest = stiffness + slope_at_rest * e;
+    const double tangent_at_end = at->fold - slope_at_end * e;
+    const double half = 0.5 * (stiffness > at->fold ? stiffness : at->fold);
+    return e <= 3.0 * trusted_width(ratio, 0.0) && tangent_at_rest > half && tangent_at_end > half && stiffness > half &&
+           at->fold > half;
 }
 
 bool dea_film_balance(const dea_film *film, double ratio, double m, double *strain)

@@ -63,6 +63,9 @@ typedef struct dea_law {
     /** W [Pa]; keeps its digits however close to 1 the stretches are. */
     double (*energy)(const double *constants, double l1, double l2);
     dea_stress (*stress)(const double *constants, double l1, double l2);
+    /** W11 at equi-biaxial stretch l in long double, for what is left where terms of the size of it cancel [Pa]; NULL: that of
+     * stress() has to do. */
+    long double (*fine_w11)(const double *constants, long double l);
     /** P1(l + d1, l + d2) - P1(l, l) [Pa]; keeps its digits however small d1 and d2 are. */
     double (*rise)(const double *constants, double l, double d1, double d2);
     /** Notes in film->rest what change() wants to know of the film's pre-stretch. */

@@ -29,6 +29,12 @@ static dea_stress stress(const double *c, double l1, double l2)
     return dea_invariant_stress(slopes, c, l1, l2);
 }
 
+static long double fine_w11(const double *c, long double l)
+{
+    const long double y = l * l;
+    return 0.5L * c[MU] * (2.0L + 6.0L / (y * y * y));
+}
+
 static double rise(const double *c, double l, double d1, double d2)
 {
     return dea_invariant_rise(slopes, gain, c, l, d1, d2);
@@ -57,6 +63,7 @@ const dea_law dea_law_neo_hookean = {
     .entries = 1,
     .energy = energy,
     .stress = stress,
+    .fine_w11 = fine_w11,
     .rise = rise,
     .prepare = prepare,
     .change = change,

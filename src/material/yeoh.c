@@ -27,6 +27,15 @@ static dea_stress stress(const double *c, double l1, double l2)
     return dea_invariant_stress(slopes, c, l1, l2);
 }
 
+/* W11 = w (2 + 6 l^-6) + w' a1^2, a1 = 2 l (1 - l^-6). */
+static long double fine_w11(const double *c, long double l)
+{
+    const long double y = l * l, cube = 1.0L / (y * y * y), a = 1.0L - cube;
+    const long double j = 2.0L * y + 1.0L / (y * y) - 3.0L;
+    const long double w = c[C1] + j * (2.0L * c[C2] + 3.0L * c[C3] * j);
+    return w * (2.0L + 6.0L * cube) + (2.0L * c[C2] + 6.0L * c[C3] * j) * 4.0L * y * a * a;
+}
+
 static double rise(const double *c, double l, double d1, double d2)
 {
     return dea_invariant_rise(slopes, gain, c, l, d1, d2);
@@ -59,6 +68,7 @@ const dea_law dea_law_yeoh = {
     .entries = 1,
     .energy = energy,
     .stress = stress,
+    .fine_w11 = fine_w11,
     .rise = rise,
     .prepare = prepare,
     .change = change,

@@ -259,6 +259,9 @@ static bool near_rest(const membrane *m, double guess, double *edge)
     return false;
 }
 
+/* Largest miss of a root, over the edge: a bracket may also close on a share at which the miss jumps. */
+static const double root_miss = 1e-6;
+
 /* Share of the full load that holds the edge at @p edge, from @p guess; NAN where there is none. As the share grows, the miss
  * falls from that of a uniform film, @p edge, to 0; beyond some share there may be no film. Secant, with bisection where it
  * leaves the bracket or is slow. */
@@ -278,7 +281,7 @@ static double share_at(const membrane *full, double edge, double guess)
             next = isinf(high) ? 2.0 * share : 0.5 * (low + high);
         }
         if (fabs(next - share) <= 1e-13 * share) {
-            return isfinite(miss) ? next : NAN;
+            return fabs(miss) <= root_miss * fabs(edge) ? next : NAN;
         }
         last = share;
         miss_last = miss;

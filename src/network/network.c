@@ -1,24 +1,54 @@
 #include "network/network.h"
 
 #include <math.h>
+#include <stdlib.h>
 
-#include "network/formula.h"
+#include "expression/formula.h"
 
 void dea_network_free(dea_network *network)
 {
     if (network) {
         dea_pool_free(&network->pool);
+        free(network->elements);
+        free(network->tension);
+        free(network->range);
+        network->elements = NULL;
+        network->tension = network->range = NULL;
     }
 }
 
 void dea_network_add(dea_network *network, dea_role role, const char *name, const char *meaning, dea_expr value)
 {
-    network->elements[network->element_count++] = (dea_element){role, name, meaning, value};
+    const size_t count = (size_t)network->element_count;
+    dea_element *elements = realloc(network->elements, (count + 1) * sizeof *elements);
+    if (!elements) {
+        network->pool.exhausted = true;
+        return;
+    }
+    elements[network->element_count++] = (dea_element){role, name, meaning, value};
+    network->elements = elements;
+}
+
+/* One more expression at the end of a list. */
+static void append(dea_network *network, dea_expr **list, int *count, dea_expr ref)
+{
+    dea_expr *longer = realloc(*list, ((size_t)*count + 1) * sizeof *longer);
+    if (!longer) {
+        network->pool.exhausted = true;
+        return;
+    }
+    longer[(*count)++] = ref;
+    *list = longer;
 }
 
 void dea_network_taut(dea_network *network, dea_expr tension)
 {
-    network->tension[network->tension_count++] = tension;
+    append(network, &network->tension, &network->tension_count, tension);
+}
+
+void dea_network_demand(dea_network *network, dea_expr range)
+{
+    append(network, &network->range, &network->range_count, range);
 }
 
 void dea_network_limit_area(const dea_symbols *symbols, dea_network *network)
@@ -184,10 +214,10 @@ static void place_edge(const dea_symbols *symbols, dea_network *network)
     network->sign = symbols->kind == DEA_DOT ? 1.0 : -1.0;
     network->length = MUL(divide_radius(symbols), SUB(one, symbols->coverage)); /* below both r_a and r - r_a */
     network->end = NUM(0.0);
-    network->range[0] = symbols->coverage;
-    network->range[1] = SUB(one, symbols->coverage);
-    network->range[2] = symbols->permittivity;
-    network->range[3] = symbols->yeoh[0];
+    dea_network_demand(network, symbols->coverage);
+    dea_network_demand(network, SUB(one, symbols->coverage));
+    dea_network_demand(network, symbols->permittivity);
+    dea_network_demand(network, symbols->yeoh[0]);
     network->breakdown = symbols->breakdown;
 }
 

@@ -439,6 +439,26 @@ static double active_strain(const dea_scene *scene, double strain)
     return scene->actuator.kind == DEA_DOT ? strain : -strain * b / (1.0 - b);
 }
 
+/* Lame's disc a part in 1e5 before pull-in, where what holds it is the small difference of film and softening: in long double. */
+static void lame_keeps_its_digits_before_pull_in(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 20; k++) {
+        dea_scene scene = paper_scene(DEA_DOT, 1.05 + 0.02 * k, 0.5, 1.0);
+        scene.material.constants[1] = -0.1 * scene.material.constants[0];
+        const long double l = scene.actuator.prestretch, y = l * l, j = 2.0L * y + 1.0L / (y * y) - 3.0L,
+                          a = 2.0L * (l - 1.0L / (l * y * y));
+        const long double c1 = scene.material.constants[0], c2 = scene.material.constants[1], c3 = scene.material.constants[2];
+        const long double w = c1 + 2.0L * c2 * j + 3.0L * c3 * j * j, q = 2.0L * c2 + 6.0L * c3 * j;
+        const long double w11 = w * (2.0L + 6.0L / (y * y * y)) + q * a * a, held = 2.0L * w11 / 0.75L;
+        const long double unit =
+            2.8 * DEA_EPSILON_0 / (scene.actuator.film_thickness * (long double)scene.actuator.film_thickness) * y;
+        scene.drive.voltage = (double)sqrtl(held / (3.0L * unit) * (1.0L - 1e-5L));
+        const long double soft = unit * scene.drive.voltage * scene.drive.voltage;
+        assert_relative(solve_direct(&scene, "lame").strain, (double)(soft / (held - 3.0L * soft)), 1e-12);
+    }
+}
+
 /* A material that softens and stiffens again has equilibria behind its fold; a film driven from rest never gets there smoothly.
  */
 static void equilibrium_behind_a_fold_is_pull_in(void **state)
@@ -467,6 +487,23 @@ static void equilibrium_behind_a_fold_is_pull_in(void **state)
     }
     assert_true(snapped >= 20);
     assert_true(taken >= 200);
+}
+
+/* A lens deep in slack, whose share of the load jumps beside its root: the branch from rest is followed by the edge, and the next
+ * place on it lies near. */
+static void field_takes_no_jump_for_a_root(void **state)
+{
+    (void)state;
+    dea_scene scene = paper_scene(DEA_LENS, 1.5895610256561299, 0.49023940686523815,
+                                  978.26643008529243 * 59168127.18355266 / 61615555.18254153);
+    scene.material.constants[0] = 55662.985616793507;
+    scene.material.constants[1] = 4354.6293936129632;
+    scene.material.constants[2] = 443.80498486226236;
+    scene.material.permittivity = 7.0070261164158074;
+    scene.actuator.film_thickness = 1.3626718245572231e-05;
+    const dea_row row = solve_direct(&scene, "field");
+    assert_state(row, DEA_STATE_SLACK);
+    assert_relative(row.strain, -0.47087787021, 1e-10);
 }
 
 /* An iteration that dawdles at the top of the load curve, 3 % below the load, must not be taken for an equilibrium. */
@@ -702,8 +739,10 @@ int main(void)
         cmocka_unit_test(film_without_pre_stretch_is_slack),
         cmocka_unit_test(disc_of_the_field_is_slack_where_its_stress_vanishes),
         cmocka_unit_test(pull_in_stays_pull_in_at_any_higher_voltage),
+        cmocka_unit_test(lame_keeps_its_digits_before_pull_in),
         cmocka_unit_test(equilibrium_behind_a_fold_is_pull_in),
         cmocka_unit_test(load_above_the_fold_is_pull_in_however_close),
+        cmocka_unit_test(field_takes_no_jump_for_a_root),
         cmocka_unit_test(snap_through_without_a_fold_is_followed),
         cmocka_unit_test(hyperelastic_models_balance_their_forces_at_random_points),
         cmocka_unit_test(field_agrees_with_runge_kutta_over_the_radius),

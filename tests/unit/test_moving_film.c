@@ -300,6 +300,38 @@ static void a_film_that_pulls_in_keeps_the_rows_before(void **state)
     }
 }
 
+/* A film at its bias begins at rest, to the last digit, however fast a branch or a damper would turn what rounding leaves of its
+ * forces into a velocity; where nothing holds it, it begins with that of its springs, those of the branches too. */
+static void a_film_at_its_bias_begins_with_its_own_velocity(void **state)
+{
+    (void)state;
+    double times[] = {0.0, 1.0, 2.0}, volts[] = {3000.0, 3000.0, 4000.0};
+    for (int sloped = 0; sloped < 2; sloped++) {
+        for (int damped = 0; damped < 2; damped++) {
+            dea_scene scene = moving_scene("lame", DEA_LENS, 2.0, 0.0);
+            scene.material.prony_count = 1;
+            scene.material.prony[0] = (dea_prony){.g = 0.2, .tau = 1e-6};
+            scene.material.retardation = damped ? 1e-6 : (double)NAN;
+            volts[1] = sloped ? 3500.0 : 3000.0;
+            scene.drive.waveform = (dea_waveform){
+                .kind = DEA_WAVE_POINTS, .point_count = 3, .times = times, .voltages = volts, .period = (double)NAN};
+            scene.transient.from_bias = true;
+            fly(&scene);
+            dea_scene still = scene;
+            still.drive.voltage = 3001.0;
+            const double more = solve_direct(&still, "lame").displacement;
+            still.drive.voltage = 2999.0;
+            const double rise = 0.5 * (more - solve_direct(&still, "lame").displacement); /* du/dU of the relaxed film */
+            const double v = last.samples[0].velocity;
+            if (sloped && !damped) {
+                assert_true(v / (500.0 * rise) > 0.75 && v / (500.0 * rise) < 0.85); /* 1 - g, and a little softening */
+            } else {
+                assert_true(v == 0.0);
+            }
+        }
+    }
+}
+
 /* Rows at the time of an edge show what was before it; the first row shows what is behind an edge at its time. */
 static void an_edge_shows_behind_its_row(void **state)
 {
@@ -532,6 +564,7 @@ int main(void)
         cmocka_unit_test(a_film_that_hardly_charges_keeps_its_digits),
         cmocka_unit_test(a_ring_of_too_many_steps_says_so),
         cmocka_unit_test(a_film_that_pulls_in_keeps_the_rows_before),
+        cmocka_unit_test(a_film_at_its_bias_begins_with_its_own_velocity),
         cmocka_unit_test(an_edge_shows_behind_its_row),
         cmocka_unit_test(a_film_at_its_bias_stays_there),
         cmocka_unit_test(a_short_edge_late_in_a_run_keeps_its_digits),

@@ -65,12 +65,23 @@ static void refuse(const char *text, const char *setting, const char *message)
     }
 }
 
+/* The scene must be refused, with these lines and this caret. */
+static void refuse_showing(const char *text, const char *setting, const char *excerpt)
+{
+    loaded it;
+    assert_int_equal(parse(&it, text, setting, NULL), DEA_ERROR_SCENE);
+    assert_string_equal(it.error.excerpt, excerpt);
+}
+
 static void frame_radius_reads(const char *quantity, double wanted)
 {
     char setting[128];
+    static const char thin[] =
+        "actuator: {kind: dot, frame_radius: 1 m, coverage: 0.5, film_thickness: 1e-300 m, prestretch: 1}\n"
+        "material: elastosil-2030\ndrive: {voltage: 1 V}\nmodel: lumped\n" ONE;
     loaded it;
     snprintf(setting, sizeof setting, "frame_radius=%s", quantity);
-    load(&it, DOT ONE, setting);
+    load(&it, thin, setting);
     if (it.scene.actuator.frame_radius != wanted) {
         fail_msg("%s is %.17g m, not %.17g m", quantity, it.scene.actuator.frame_radius, wanted);
     }
@@ -435,6 +446,15 @@ static void bad_settings_are_refused_by_name(void **state)
     static const char sweep[] = DOT "study: {sweep: {prestretch: [1.1, 1.2]}}\n";
     refuse(DOT ONE, "covrage=0.4", "--set covrage=0.4: covrage: unknown key; did you mean actuator.coverage?");
     refuse(DOT ONE, "actuator.covrage=0.4", "--set actuator.covrage=0.4: actuator.covrage: unknown key; did you mean coverage?");
+    refuse(DOT ONE, "actuator.voltage=2 V",
+           "--set actuator.voltage=2 V: actuator.voltage: unknown key; voltage stands in drive; ");
+    refuse(DOT ONE, "nothing=2", "--set nothing=2: nothing: unknown key; accepted: keys of the scene, e.g. actuator.prestretch");
+    refuse(DOT ONE, "prony[0].tau=1 s",
+           "--set prony[0].tau=1 s: prony[0].tau: unknown key; an index, counted from 0, stands between points: prony.0.tau");
+    refuse(DOT ONE, "study.sweep.prony[0].tau=[1 s]",
+           "--set study.sweep.prony[0].tau=[1 s]: study.sweep.prony[0].tau: unknown key; an index, counted from 0, stands ");
+    refuse(DOT ONE, "voltage=4.5 kv",
+           "--set voltage=4.5 kv: drive.voltage: unknown unit \"kv\", did you mean kV? (4.5 kv); accepted: ");
     refuse(DOT ONE, "coverage=2", "--set coverage=2: actuator.coverage: out of range (2); accepted: a ratio > 0 and < 1");
     refuse(DOT ONE, "coverage", "--set coverage: setting: not of the form key=value");
     refuse(DOT ONE, "=1", "--set =1: setting: not of the form key=value");
@@ -453,6 +473,39 @@ static void bad_settings_are_refused_by_name(void **state)
            "--set electrode_radius=1 mm: actuator.electrode_radius: contradicts actuator.coverage, which the scene sweeps");
 }
 
+static void mistake_is_shown_with_its_line_and_a_caret(void **state)
+{
+    (void)state;
+    refuse_showing("title: x\nactuator:\n  kind: dot\n  coverge: 0.5\n", NULL, "    4 |   coverge: 0.5\n      |   ^");
+    refuse_showing("title: x\r\nmodel:\t[lumpd]\r\n", NULL, "    2 | model:\t[lumpd]\n      |       \t ^");
+    refuse_showing("title: \"\u00b5m\"\nmodel: x # \u00b5m\u202e\n", NULL, "    2 | model: x # \u00b5m?\n      |        ^");
+    refuse_showing("title: x", "study.sweep.coverage=[0.5, 5]", "      | [0.5, 5]\n      |       ^");
+    refuse_showing("title: x", "coverage=5", "");
+    refuse_showing("", NULL, "");
+    refuse_showing("\x01\x02\x03\x04\x05", NULL, "");
+}
+
+static void long_line_is_shown_around_its_mistake(void **state)
+{
+    (void)state;
+    char text[1200];
+    char wanted[400];
+    snprintf(text, sizeof text, "{title: \"%0500d\", modle: lumped, x: %0100d}\n", 0, 0);
+    snprintf(wanted, sizeof wanted, "    1 | ...%057d\", modle: lumped, x: %022d...\n      | %63s^", 0, 0, "");
+    refuse_showing(text, NULL, wanted);
+}
+
+static void file_that_is_no_material_is_not_shown(void **state)
+{
+    (void)state;
+    static const char front[] = "actuator: {kind: dot}\nmaterial: ";
+    char text[200];
+    snprintf(text, sizeof text, "%s./word.csv\n", front);
+    refuse_showing(text, NULL, "");
+    snprintf(text, sizeof text, "%s./negative.yaml\n", front);
+    refuse_showing(text, NULL, "    2 |   C1: -5 Pa\n      |       ^");
+}
+
 static void model_argument_replaces_the_models_of_the_scene(void **state)
 {
     (void)state;
@@ -461,6 +514,11 @@ static void model_argument_replaces_the_models_of_the_scene(void **state)
     assert_int_equal(it.scene.model_count, 2);
     assert_ptr_equal(it.scene.models[0], dea_model_find("field"));
     dea_scene_free(&it.scene);
+    assert_int_equal(parse(&it, DOT ONE, NULL, "field, lame"), DEA_OK);
+    assert_int_equal(it.scene.model_count, 2);
+    dea_scene_free(&it.scene);
+    assert_int_equal(parse(&it, DOT ONE, NULL, "field lame"), DEA_ERROR_SCENE);
+    assert_non_null(strstr(it.error.message, "unknown model (field lame); several are written field,lame; accepted: "));
     assert_int_equal(parse(&it, DOT ONE, NULL, "field,"), DEA_ERROR_SCENE);
     assert_int_equal(strncmp(it.error.message, "--model: model: unknown model", 29), 0);
     assert_int_equal(parse(&it, DOT ONE, NULL, "field,field"), DEA_ERROR_SCENE);
@@ -933,7 +991,8 @@ static void model_argument_is_checked_against_the_study(void **state)
     assert_int_equal(parse(&it, FILM SWITCHED TRANSIENT, NULL, "coverage,lame"), DEA_OK);
     dea_scene_free(&it.scene);
     assert_int_equal(parse(&it, FILM SWITCHED TRANSIENT, NULL, "lumped,field"), DEA_ERROR_SCENE);
-    assert_string_equal(it.error.message, "--model: model: cannot do a transient (field); accepted: lumped, coverage, lame, auto");
+    assert_string_equal(it.error.message,
+                        "--model: model: cannot do a transient (field); accepted: lumped, coverage, lame, auto");
     dea_scene_free(&it.scene);
 }
 
@@ -978,7 +1037,7 @@ static void every_bad_scene_is_refused_at_its_place(void **state)
         count++;
     }
     closedir(folder);
-    assert_true(count >= 190);
+    assert_true(count >= 215);
 }
 
 static void hostile_bytes_are_refused(void **state)
@@ -1096,6 +1155,9 @@ int main(void)
         cmocka_unit_test(coverage_and_radius_replace_each_other_by_setting),
         cmocka_unit_test(setting_of_an_axis_replaces_or_adds_it),
         cmocka_unit_test(bad_settings_are_refused_by_name),
+        cmocka_unit_test(mistake_is_shown_with_its_line_and_a_caret),
+        cmocka_unit_test(long_line_is_shown_around_its_mistake),
+        cmocka_unit_test(file_that_is_no_material_is_not_shown),
         cmocka_unit_test(model_argument_replaces_the_models_of_the_scene),
         cmocka_unit_test(material_is_written_out_or_built_on_another),
         cmocka_unit_test(material_file_is_found_beside_the_scene),

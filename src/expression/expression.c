@@ -1,6 +1,8 @@
-#include "network/expression.h"
+#include "expression/expression.h"
 
+#include <limits.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,6 +10,7 @@ void dea_pool_free(dea_pool *pool)
 {
     if (pool) {
         free(pool->terms);
+        free(pool->slots);
         *pool = (dea_pool){0};
     }
 }
@@ -20,25 +23,56 @@ static bool same_term(const dea_term *x, const dea_term *y)
     return x->operation == DEA_NUMBER ? memcmp(&x->number, &y->number, sizeof x->number) == 0 : x->a == y->a && x->b == y->b;
 }
 
+/* Where the term stands in the table, or would stand: the search goes on from its hash to the first empty place. */
+static int *slot_of(const dea_pool *pool, const dea_term *term)
+{
+    const uint64_t mix = 0x9e3779b97f4a7c15u;
+    uint64_t key = ((uint64_t)(uint32_t)term->a << 32) | (uint32_t)term->b;
+    if (term->operation == DEA_NUMBER) {
+        memcpy(&key, &term->number, sizeof key);
+    }
+    uint64_t hash = (key ^ ((uint64_t)term->operation << 56)) * mix;
+    const uint64_t mask = 2 * (uint64_t)pool->capacity - 1; /* the capacity is a power of 2 */
+    for (hash ^= hash >> 32;; hash++) {
+        int *slot = &pool->slots[hash & mask];
+        if (*slot == 0 || same_term(&pool->terms[*slot - 1], term)) {
+            return slot;
+        }
+    }
+}
+
+/* Twice the room, with the table made anew. */
+static bool grow(dea_pool *pool)
+{
+    const int capacity = pool->capacity ? 2 * pool->capacity : 256;
+    dea_term *terms = realloc(pool->terms, (size_t)capacity * sizeof *terms);
+    pool->terms = terms ? terms : pool->terms;
+    int *slots = calloc(2 * (size_t)capacity, sizeof *slots);
+    if (!terms || !slots) {
+        free(slots);
+        pool->exhausted = true;
+        return false;
+    }
+    free(pool->slots);
+    pool->slots = slots;
+    pool->capacity = capacity;
+    for (int i = 0; i < pool->count; i++) {
+        *slot_of(pool, &terms[i]) = i + 1;
+    }
+    return true;
+}
+
 static dea_expr intern(dea_pool *pool, dea_term term)
 {
-    for (int i = 0; i < pool->count; i++) {
-        if (same_term(&pool->terms[i], &term)) {
-            return i;
-        }
+    if (pool->count == pool->capacity && !grow(pool)) {
+        return 0;
     }
-    if (pool->count == pool->capacity) {
-        const int capacity = pool->capacity ? 2 * pool->capacity : 256;
-        dea_term *terms = realloc(pool->terms, (size_t)capacity * sizeof *terms);
-        if (!terms) {
-            pool->exhausted = true;
-            return 0;
-        }
-        pool->terms = terms;
-        pool->capacity = capacity;
+    int *slot = slot_of(pool, &term);
+    if (*slot == 0) {
+        pool->terms[pool->count++] = term;
+        *slot = pool->count;
     }
-    pool->terms[pool->count] = term;
-    return pool->count++;
+    return *slot - 1;
 }
 
 dea_expr dea_expr_number(dea_pool *pool, double value)
@@ -68,11 +102,7 @@ static bool is_number(const dea_pool *pool, dea_expr ref, double value)
 
 static double apply(dea_operation operation, double a, double b)
 {
-    return operation == DEA_ADD   ? a + b
-           : operation == DEA_SUB ? a - b
-           : operation == DEA_MUL ? a * b
-           : operation == DEA_DIV ? a / b
-                                  : log(a);
+    return dea_operation_of(operation)->value(a, b);
 }
 
 /* Neutral elements and products with 0 vanish; -1 where nothing does. */
@@ -197,6 +227,9 @@ static dea_expr sum(dea_pool *pool, dea_operation operation, dea_expr a, dea_exp
         return sum(pool, operation == DEA_ADD ? DEA_SUB : DEA_ADD, a,
                    multiply(pool, DEA_MUL, dea_expr_number(pool, -factor), rest));
     }
+    if (a == b) {
+        return dea_expr_scale(pool, operation == DEA_ADD ? 2.0 : 0.0, a);
+    }
     const dea_expr drawn = pool->exhausted ? -1 : draw_out(pool, operation, a, b);
     return drawn >= 0 ? drawn : combine(pool, operation, a, b);
 }
@@ -221,8 +254,13 @@ dea_expr dea_expr_div(dea_pool *pool, dea_expr a, dea_expr b)
     return multiply(pool, DEA_DIV, a, b);
 }
 
+/* Of a product, the product of its squares, so that those of numbers and parameters fold. */
 dea_expr dea_expr_square(dea_pool *pool, dea_expr a)
 {
+    const dea_term term = pool->exhausted ? (dea_term){0} : pool->terms[a]; /* a copy: the pool grows */
+    if (term.operation == DEA_MUL && term.a != term.b) {
+        return dea_expr_mul(pool, dea_expr_square(pool, term.a), dea_expr_square(pool, term.b));
+    }
     return dea_expr_mul(pool, a, a);
 }
 
@@ -241,143 +279,78 @@ dea_expr dea_expr_ln(dea_pool *pool, dea_expr a)
     return combine(pool, DEA_LN, a, a);
 }
 
-/* Values of the terms from number @p first on. */
-static void evaluate(const dea_term *terms, int first, int count, double symbol, double node, double *values)
+dea_expr dea_expr_exp(dea_pool *pool, dea_expr a)
 {
-    for (int i = first; i < count; i++) {
-        const dea_term *term = &terms[i];
+    return combine(pool, DEA_EXP, a, a);
+}
+
+dea_expr dea_expr_sqrt(dea_pool *pool, dea_expr a)
+{
+    return combine(pool, DEA_SQRT, a, a);
+}
+
+dea_expr dea_expr_log1p(dea_pool *pool, dea_expr a)
+{
+    return combine(pool, DEA_LOG1P, a, a);
+}
+
+dea_expr dea_expr_expm1(dea_pool *pool, dea_expr a)
+{
+    return combine(pool, DEA_EXPM1, a, a);
+}
+
+dea_expr dea_expr_pow(dea_pool *pool, dea_expr a, dea_expr b)
+{
+    if (!pool->exhausted && is_number(pool, b, 1.0)) {
+        return a;
+    }
+    return combine(pool, DEA_POW, a, b);
+}
+
+dea_expr dea_expr_positive(dea_pool *pool, dea_expr a)
+{
+    return combine(pool, DEA_POSITIVE, a, a);
+}
+
+dea_expr dea_expr_apply(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
+{
+    static dea_expr (*const sums[])(dea_pool *, dea_expr, dea_expr) = {[DEA_ADD] = dea_expr_add,
+                                                                       [DEA_SUB] = dea_expr_sub,
+                                                                       [DEA_MUL] = dea_expr_mul,
+                                                                       [DEA_DIV] = dea_expr_div,
+                                                                       [DEA_POW] = dea_expr_pow};
+    const size_t known = sizeof sums / sizeof *sums;
+    return (size_t)operation < known && sums[operation] ? sums[operation](pool, a, b) : combine(pool, operation, a, b);
+}
+
+/* What a leaf is worth: one of several values, NAN past the last; a stride of 0 gives the same to all. */
+static double pick(const double *values, int count, int stride, int index)
+{
+    return index >= 0 && index < count ? values[stride * index] : (double)NAN;
+}
+
+static void evaluate(const dea_pool *pool, const dea_point_values *at, int stride, double *values)
+{
+    for (int i = 0; i < pool->count; i++) {
+        const dea_term *term = &pool->terms[i];
         values[i] = term->operation >= DEA_ADD      ? apply(term->operation, values[term->a], values[term->b])
                     : term->operation == DEA_NUMBER ? term->number
-                    : term->operation == DEA_SYMBOL ? symbol
-                                                    : node;
+                    : term->operation == DEA_SYMBOL ? pick(at->symbols, at->symbol_count, stride, term->a)
+                                                    : pick(at->nodes, at->node_count, stride, term->a);
     }
+}
+
+void dea_pool_values_at(const dea_pool *pool, const dea_point_values *at, double *values)
+{
+    evaluate(pool, at, 1, values);
 }
 
 void dea_pool_values(const dea_pool *pool, double symbol, double node, double *values)
 {
-    evaluate(pool->terms, 0, pool->count, symbol, node, values);
+    evaluate(pool, &(dea_point_values){&symbol, &node, 1, 1}, 1, values);
 }
 
-static void mark_needed(const dea_pool *pool, const dea_expr *refs, int count, bool *needed)
+void dea_pool_values_uniform(const dea_pool *pool, double symbols, double nodes, double *values)
 {
-    for (int i = 0; i < count; i++) {
-        needed[refs[i]] = true;
-    }
-    for (int i = pool->count - 1; i >= 0; i--) {
-        if (needed[i] && pool->terms[i].operation >= DEA_ADD) {
-            needed[pool->terms[i].a] = true;
-            needed[pool->terms[i].b] = true;
-        }
-    }
-}
-
-/* Copies the needed terms, numbers first, and renumbers their operands through @p place. */
-static void lay_out(const dea_pool *pool, const bool *needed, int *place, dea_tape *tape)
-{
-    for (int pass = 0; pass < 2; pass++) {
-        for (int i = 0; i < pool->count; i++) {
-            const bool number = pool->terms[i].operation == DEA_NUMBER;
-            if (!needed[i] || number != (pass == 0)) {
-                continue;
-            }
-            dea_term term = pool->terms[i];
-            if (term.operation >= DEA_ADD) {
-                term.a = place[term.a];
-                term.b = place[term.b];
-            }
-            tape->values[tape->count] = term.number;
-            place[i] = tape->count;
-            tape->terms[tape->count++] = term;
-        }
-        if (pass == 0) {
-            tape->moving = tape->count;
-        }
-    }
-}
-
-dea_status dea_tape_compile(const dea_pool *pool, const dea_expr *refs, int count, dea_tape *tape, dea_error *error)
-{
-    *tape = (dea_tape){0};
-    if (count > DEA_TAPE_OUTPUTS) {
-        return dea_fail(error, DEA_ERROR_USAGE, "a tape has at most %d outputs", DEA_TAPE_OUTPUTS);
-    }
-    const size_t size = (size_t)pool->count + 1;
-    bool *needed = calloc(size, sizeof *needed);
-    int *place = calloc(size, sizeof *place);
-    tape->terms = calloc(size, sizeof *tape->terms);
-    tape->values = calloc(size, sizeof *tape->values);
-    tape->slopes = calloc(size, sizeof *tape->slopes);
-    const bool ready = !pool->exhausted && needed && place && tape->terms && tape->values && tape->slopes;
-    if (ready) {
-        mark_needed(pool, refs, count, needed);
-        lay_out(pool, needed, place, tape);
-        for (int i = 0; i < count; i++) {
-            tape->outputs[i] = place[refs[i]];
-        }
-        tape->output_count = count;
-    }
-    free(needed);
-    free(place);
-    if (!ready) {
-        dea_tape_free(tape);
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built");
-    }
-    return DEA_OK;
-}
-
-void dea_tape_free(dea_tape *tape)
-{
-    if (tape) {
-        free(tape->terms);
-        free(tape->values);
-        free(tape->slopes);
-        *tape = (dea_tape){0};
-    }
-}
-
-void dea_tape_run(dea_tape *tape, double symbol, double node)
-{
-    double *restrict value = tape->values;
-    double *restrict slope = tape->slopes;
-    for (int i = tape->moving; i < tape->count; i++) {
-        const dea_term *term = &tape->terms[i];
-        const int a = term->a;
-        const int b = term->b;
-        switch (term->operation) {
-        case DEA_NUMBER:
-            break;
-        case DEA_SYMBOL:
-            value[i] = symbol;
-            break;
-        case DEA_NODE:
-            value[i] = node;
-            slope[i] = 1.0;
-            break;
-        case DEA_ADD:
-            value[i] = value[a] + value[b];
-            slope[i] = slope[a] + slope[b];
-            break;
-        case DEA_SUB:
-            value[i] = value[a] - value[b];
-            slope[i] = slope[a] - slope[b];
-            break;
-        case DEA_MUL:
-            value[i] = value[a] * value[b];
-            slope[i] = slope[a] * value[b] + value[a] * slope[b];
-            break;
-        case DEA_DIV:
-            value[i] = value[a] / value[b];
-            slope[i] = (slope[a] - value[i] * slope[b]) / value[b];
-            break;
-        case DEA_LN:
-            value[i] = log(value[a]);
-            slope[i] = slope[a] / value[a];
-            break;
-        }
-    }
-}
-
-void dea_tape_run_values(dea_tape *tape, double symbol, double node)
-{
-    evaluate(tape->terms, tape->moving, tape->count, symbol, node, tape->values);
+    evaluate(pool, &(dea_point_values){&symbols, &nodes, INT_MAX, INT_MAX}, 0, values);
 }

@@ -8,25 +8,22 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "deaspice/status.h"
-
-typedef int dea_expr;
-
-typedef enum dea_operation { DEA_NUMBER, DEA_SYMBOL, DEA_NODE, DEA_ADD, DEA_SUB, DEA_MUL, DEA_DIV, DEA_LN } dea_operation;
+#include "expression/operation.h"
 
 typedef struct dea_term {
     dea_operation operation;
-    dea_expr a, b; /* operands, of a logarithm both the same; of a symbol and a node: a is its index */
+    dea_expr a, b; /* operands, of an operation of one both the same; of a symbol and a node: a is its index */
     double number; /* of a number */
     bool varies;   /* holds a symbol or a node */
 } dea_term;
 
-typedef struct dea_pool {
+struct dea_pool {
     dea_term *terms; /* owned */
     int count;
     int capacity;
+    int *slots;     /* owned: a hash table of 2 capacity places, index of a term + 1, 0: empty */
     bool exhausted; /* memory ran out: the pool is unusable, but safe to build on and to free */
-} dea_pool;
+};
 
 void dea_pool_free(dea_pool *pool);
 
@@ -43,41 +40,32 @@ dea_expr dea_expr_square(dea_pool *pool, dea_expr a);
 /* factor times a. */
 dea_expr dea_expr_scale(dea_pool *pool, double factor, dea_expr a);
 dea_expr dea_expr_neg(dea_pool *pool, dea_expr a);
-/* Natural logarithm. */
 dea_expr dea_expr_ln(dea_pool *pool, dea_expr a);
+dea_expr dea_expr_exp(dea_pool *pool, dea_expr a);
+dea_expr dea_expr_sqrt(dea_pool *pool, dea_expr a);
+/* ln(1 + a) and exp(a) - 1, with the digits of a small a. */
+dea_expr dea_expr_log1p(dea_pool *pool, dea_expr a);
+dea_expr dea_expr_expm1(dea_pool *pool, dea_expr a);
+/* a to the power b, a > 0. */
+dea_expr dea_expr_pow(dea_pool *pool, dea_expr a, dea_expr b);
+/* a, or NAN where it is not positive. */
+dea_expr dea_expr_positive(dea_pool *pool, dea_expr a);
+/* Any operation; of one operand a, @p b is a again. */
+dea_expr dea_expr_apply(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b);
 
 /* A number, or NAN where the expression varies. */
 double dea_expr_constant(const dea_pool *pool, dea_expr ref);
 
-/* Values of all terms of the pool at symbol 0 and node 0, into an array of pool->count. */
+/* Values of symbols and nodes, 0 the first of each. */
+typedef struct dea_point_values {
+    const double *symbols, *nodes;
+    int symbol_count, node_count;
+} dea_point_values;
+
+/* Values of all terms of the pool, into an array of pool->count; NAN where a symbol or a node is not among those given. */
+void dea_pool_values_at(const dea_pool *pool, const dea_point_values *at, double *values);
+/* The same of a pool with one symbol and one node; with one value for all symbols and one for all nodes. */
 void dea_pool_values(const dea_pool *pool, double symbol, double node, double *values);
-
-enum { DEA_TAPE_OUTPUTS = 20 };
-
-/* What a set of expressions needs, in order, ready to evaluate with the derivative over node 0. */
-typedef struct dea_tape {
-    dea_term *terms; /* owned; operands renumbered to this tape */
-    double *values;  /* owned: computed by dea_tape_run() */
-    double *slopes;  /* owned: computed by dea_tape_run(): derivative over node 0 */
-    int count;
-    int moving; /* terms from this one on depend on node or symbol; those before hold their values already */
-    int outputs[DEA_TAPE_OUTPUTS];
-    int output_count;
-} dea_tape;
-
-/* Compiles @p count expressions (at most DEA_TAPE_OUTPUTS) to a tape that the caller ends with dea_tape_free(). */
-dea_status dea_tape_compile(const dea_pool *pool, const dea_expr *refs, int count, dea_tape *tape, dea_error *error);
-void dea_tape_free(dea_tape *tape);
-/* Evaluates all outputs at symbol 0 = @p symbol and node 0 = @p node, with slopes or without. */
-void dea_tape_run(dea_tape *tape, double symbol, double node);
-void dea_tape_run_values(dea_tape *tape, double symbol, double node);
-static inline double dea_tape_value(const dea_tape *tape, int output)
-{
-    return tape->values[tape->outputs[output]];
-}
-static inline double dea_tape_slope(const dea_tape *tape, int output)
-{
-    return tape->slopes[tape->outputs[output]];
-}
+void dea_pool_values_uniform(const dea_pool *pool, double symbols, double nodes, double *values);
 
 #endif

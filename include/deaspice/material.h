@@ -51,6 +51,7 @@ typedef struct dea_law {
     const char *name;              /**< key in a scene, e.g. "yeoh" */
     const char *title;             /**< e.g. "Yeoh" */
     const char *energy_text;       /**< W in words of its constants */
+    const char *accepted;          /**< how a scene gives the constants, with an example, for messages */
     const dea_constant *constants; /**< constant_count of them; where it is a list, those of one entry */
     size_t constant_count;         /**< >= 1 */
     size_t entries;                /**< 1: a mapping of constants; more: a list of at most so many such mappings */

@@ -94,6 +94,7 @@ const dea_law dea_law_arruda_boyce = {
     .name = "arruda_boyce",
     .title = "Arruda-Boyce",
     .energy_text = "W = mu sum C_i lambda_m^(2 - 2 i) (I1^i - 3^i), C = 1/2, 1/20, 11/1050, 19/7000, 519/673750",
+    .accepted = "a mapping with mu and lambda_m, e.g. {mu: 40 kPa, lambda_m: 5.99}",
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,

@@ -67,6 +67,7 @@ const dea_law dea_law_gent = {
     .name = "gent",
     .title = "Gent",
     .energy_text = "W = -mu Jm/2 ln(1 - (I1 - 3)/Jm)",
+    .accepted = "a mapping with mu and Jm, e.g. {mu: 45 kPa, Jm: 120}",
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,

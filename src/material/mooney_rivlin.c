@@ -92,6 +92,7 @@ const dea_law dea_law_mooney_rivlin = {
     .name = "mooney_rivlin",
     .title = "Mooney-Rivlin",
     .energy_text = "W = C10 (I1 - 3) + C01 (I2 - 3)",
+    .accepted = "a mapping with C10 and C01, e.g. {C10: 16 kPa, C01: 7.3 kPa}",
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,

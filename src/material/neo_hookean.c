@@ -58,6 +58,7 @@ const dea_law dea_law_neo_hookean = {
     .name = "neo_hookean",
     .title = "neo-Hookean",
     .energy_text = "W = mu/2 (I1 - 3)",
+    .accepted = "a mapping with mu, e.g. {mu: 44 kPa}",
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,

@@ -153,6 +153,7 @@ const dea_law dea_law_ogden = {
     .name = "ogden",
     .title = "Ogden",
     .energy_text = "W = sum mu/alpha (l1^alpha + l2^alpha + l3^alpha - 3)",
+    .accepted = "a list of at most 4 terms, e.g. [{mu: 43.4 kPa, alpha: 1.445}]",
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = TERMS,

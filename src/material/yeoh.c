@@ -63,6 +63,7 @@ const dea_law dea_law_yeoh = {
     .name = "yeoh",
     .title = "Yeoh",
     .energy_text = "W = C1 (I1 - 3) + C2 (I1 - 3)^2 + C3 (I1 - 3)^3",
+    .accepted = "a mapping with C1, C2, C3, e.g. {C1: 178426 Pa}",
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,

@@ -653,11 +653,28 @@ static void write_preamble(const dea_dialect *dialect, const char *title, const 
         prefix, dialect->inside);
 }
 
+#define LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+static const char marks[] = LETTERS "0123456789_";
+
 bool dea_part_name_valid(const char *name)
 {
-    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
-    static const char marks[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
-    return *name && strchr(letters, *name) && strspn(name, marks) == strlen(name) && strlen(name) <= DEA_PART_NAME_LENGTH;
+    return *name && strchr(LETTERS, *name) && strspn(name, marks) == strlen(name) && strlen(name) <= DEA_PART_NAME_LENGTH;
+}
+
+bool dea_part_name_after(const char *path, char name[DEA_PART_NAME_LENGTH + 1])
+{
+    const char *slash = strrchr(path, '/');
+    const char *file = slash ? slash + 1 : path;
+    const size_t length = strcspn(file, ".");
+    if (length == 0 || strcmp(file, "-") == 0) {
+        return false;
+    }
+    const char *prefix = strchr(LETTERS, *file) ? "" : DEA_PART_PREFIX "_";
+    snprintf(name, DEA_PART_NAME_LENGTH + 1, "%s%.*s", prefix, (int)fmin((double)length, DEA_PART_NAME_LENGTH), file);
+    for (char *c = name; *c; c++) {
+        *c = strchr(marks, *c) ? *c : '_';
+    }
+    return true;
 }
 
 dea_status dea_part_of_scene(const dea_scene *scene, const dea_model *model, const char *name, const dea_dialect *dialect,

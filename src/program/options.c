@@ -69,11 +69,6 @@ static bool take_text(const option_entry *entry, const char *value, dea_argument
     return true;
 }
 
-static bool take_engine(const option_entry *entry, const char *value, dea_arguments *arguments)
-{
-    return take_text(entry, value, arguments) && dea_engine_choose(value) != NULL;
-}
-
 static bool take_setting(const option_entry *entry, const char *value, dea_arguments *arguments)
 {
     (void)entry;
@@ -184,7 +179,7 @@ static bool take_equibiaxial(const option_entry *entry, const char *value, dea_a
     }
 
 static const option_entry entries[] = {
-    TEXT("engine", 0, "ENGINE", DEA_TAKES_ENGINE, take_engine, engine),
+    TEXT("engine", 0, "ENGINE", DEA_TAKES_ENGINE, take_text, engine),
     TEXT("model", 0, "MODEL", DEA_TAKES_SCENE, take_text, model),
     TEXT("set", 0, "KEY=VALUE", DEA_TAKES_SCENE, take_setting, settings),
     FLAG("no-files", 0, DEA_TAKES_SCENE, no_files),

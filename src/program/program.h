@@ -45,7 +45,7 @@ typedef struct dea_operand {
 
 /** Arguments of a command; strings belong to argv, arrays to this. */
 typedef struct dea_arguments {
-    const char *engine; /**< NULL: not given */
+    const char *engine; /**< NULL: the scene's */
     const char *model;  /**< NULL: the scene's */
     dea_setting *settings;
     size_t setting_count;
@@ -113,8 +113,8 @@ void dea_complain(const char *format, ...) DEA_PRINTF(1, 2);
 dea_exit dea_complain_error(const dea_error *error);
 /** Complains about an unknown @p what, with a guess among @p count names. */
 void dea_complain_unknown(const char *what, const char *given, const char *const *names, size_t count);
-/** Engine of that name, complaining with a guess when there is none. */
-const dea_engine *dea_engine_choose(const char *name);
+/** True where the scene names the engine, or none. */
+bool dea_engine_named(const dea_scene *scene, const dea_engine *engine);
 /** Notes the files of the command line as read; false, with a complaint, without memory. */
 bool dea_inputs_note(const dea_arguments *arguments, dea_files *files);
 /** False, with a complaint, where a target of the arguments is one of the files that were read, or another target; see
@@ -123,11 +123,11 @@ bool dea_targets_free(const dea_arguments *arguments, dea_files *files);
 /** Reads a scene with the settings of the command line, and sees to it that no target is one of its files; on failure says so
  * and sets @p outcome. */
 bool dea_scene_open(const dea_arguments *arguments, const char *path, dea_scene *scene, dea_exit *outcome);
-/** Complains about an engine that refuses a model and names those that can do it; true where it does. */
-bool dea_engine_unfit(const dea_engine *engine, const dea_scene *scene);
-/** Settles `model: auto`: sets the first model and takes its error bound off the accuracy; says which unless @p quiet. False,
- * with a complaint and @p outcome, where no model that the engine (NULL: any) can do is good enough. @p bound: of the model
- * error, 0 where the scene names its models. */
+/** Complains where all engines of the scene refuse a model and names those that can do it; true where they do. */
+bool dea_engines_unfit(const dea_scene *scene);
+/** Settles `model: auto`: sets the first model; says which unless @p quiet. False, with a complaint and @p outcome, where no
+ * model that the engine (NULL: those of the scene) can do is good enough. @p bound: of the model error, 0 where the scene names its
+ * models. */
 bool dea_model_settle(dea_scene *scene, const dea_engine *engine, bool quiet, double *bound, dea_exit *outcome);
 /** Seconds since some moment. */
 double dea_seconds(void);

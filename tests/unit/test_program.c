@@ -202,7 +202,7 @@ static void wrong_usage_is_told_with_a_guess(void **state)
     RUN("run", "dot.yaml", "--modle", "lumped");
     check_wrong("did you mean \"--model\"");
     RUN("run", "dot.yaml", "--engine", "ngspise");
-    check_wrong("did you mean \"ngspice\"");
+    check_wrong("did you mean ngspice?");
     RUN("run", "dot.yaml", "--terms", "3");
     check_wrong("--terms");
     RUN("run", "dot.yaml", "-o");

@@ -18,6 +18,7 @@ dea_status dea_flight_open(const dea_sundials *sun, const dea_scene *scene, dea_
                            dea_flight *flight, dea_error *error)
 {
     *flight = (dea_flight){.scene = scene, .signal = signal, .rows = dea_layout_of(scene).rows};
+    flight->peaks = dea_peak_is_known(scene, dynamics, signal);
     dea_motion_open(dynamics, signal, &flight->motion);
     flight->ring = calloc(1, sizeof *flight->ring);
     if (!flight->ring) {

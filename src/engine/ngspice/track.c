@@ -275,13 +275,14 @@ static double current_at(void *user, double time)
     const stretch *s = user;
     const node *a = &s->runner->last, *b = s->end;
     const node n = time <= a->moment.time ? *a : time >= b->moment.time ? *b : between(s->runner, a, b, time);
-    return n.current + n.moment.voltage * s->runner->route->dynamics->conductance;
+    dea_dynamics *d = s->runner->route->dynamics;
+    return d->series > 0.0 ? n.current + n.moment.voltage * d->conductance : dea_dynamics_current(d, &n.moment);
 }
 
 static void see_current(runner *r, const node *b)
 {
     stretch s = {r, b};
-    if (r->route->dynamics->series > 0.0) {
+    if (r->route->peaks) {
         dea_peak_search(&r->track->peak, r->last.moment.time, b->moment.time, current_at, &s);
     }
 }

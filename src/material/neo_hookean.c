@@ -45,9 +45,11 @@ static void prepare(dea_film *film)
     film->rest[0] = 0.5 * film->constants[MU];
 }
 
-static dea_change change(const dea_film *film, double e)
+static void change(const dea_film *film, size_t count, const double *strains, dea_change *changes)
 {
-    return dea_invariant_change(slopes, gain, film, e);
+    for (size_t i = 0; i < count; i++) {
+        changes[i] = dea_invariant_change(slopes, gain, film, strains[i]);
+    }
 }
 
 static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
@@ -61,6 +63,7 @@ const dea_law dea_law_neo_hookean = {
     .name = "neo_hookean",
     .title = "neo-Hookean",
     .energy_text = "W = mu/2 (I1 - 3)",
+    .accepted = "a mapping with mu, e.g. {mu: 44 kPa}",
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,

@@ -46,9 +46,11 @@ static void prepare(dea_film *film)
     film->rest[0] = slopes(film->constants, film->j).w;
 }
 
-static dea_change change(const dea_film *film, double e)
+static void change(const dea_film *film, size_t count, const double *strains, dea_change *changes)
 {
-    return dea_invariant_change(slopes, gain, film, e);
+    for (size_t i = 0; i < count; i++) {
+        changes[i] = dea_invariant_change(slopes, gain, film, strains[i]);
+    }
 }
 
 static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
@@ -66,6 +68,7 @@ const dea_law dea_law_yeoh = {
     .name = "yeoh",
     .title = "Yeoh",
     .energy_text = "W = C1 (I1 - 3) + C2 (I1 - 3)^2 + C3 (I1 - 3)^3",
+    .accepted = "a mapping with C1, C2, C3, e.g. {C1: 178426 Pa}",
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,

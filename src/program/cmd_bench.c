@@ -223,7 +223,7 @@ static dea_exit bench_scene(const dea_arguments *arguments, const char *path, co
     dea_bench bench = {0};
     dea_bench_output *output;
     dea_signals_catch();
-    dea_status status = dea_bench_output_open(arguments->output, arguments->plot, &output, &error);
+    dea_status status = dea_bench_output_open(arguments->output, arguments->plot, &arguments->picture, &output, &error);
     if (status == DEA_OK) {
         dea_progress *progress = arguments->quiet ? NULL : dea_progress_begin();
         const dea_bench_options options = options_of(arguments, scene, progress);
@@ -287,7 +287,8 @@ const dea_command dea_command_bench = {
             "one. In statics, the error of the model is that of its strain against field.\n"
             "\n"
             "  -o, --output FILE     write a row a setting to FILE as CSV, - is standard output\n"
-            "      --plot FILE       draw error over time, FILE ends in .svg or .png\n"
+            "      --plot FILE       draw error over time, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)\n"
+            "      --size WxH        of the picture, for example 17x9cm (mm, cm, in, pt)\n"
             "      --engine E        measure only this engine\n"
             "      --model M         only these models, with commas between; default: all that fit\n"
             "      --set KEY=VALUE   change a value of the scene; may be repeated\n"

@@ -176,7 +176,7 @@ static dea_status show(const dea_material *material, const dea_arguments *argume
     if (arguments->output)
         status = write_curves(material, to, arguments->output, error);
     if (arguments->plot && status == DEA_OK)
-        status = dea_plot_material(material, to, arguments->plot, error);
+        status = dea_plot_material(material, to, arguments->plot, &arguments->picture, error);
     return status;
 }
 
@@ -218,7 +218,8 @@ const dea_command dea_command_materials = {
             "\n"
             "  -o, --output FILE     write stress and modulus over stretch as CSV, - is standard\n"
             "                        output\n"
-            "      --plot FILE       draw them, FILE ends in .svg or .png\n"
+            "      --plot FILE       draw them, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)\n"
+            "      --size WxH        of the picture, for example 17x8cm (mm, cm, in, pt)\n"
             "      --to STRETCH      largest stretch of table and curves, default 2\n"
             "      --force           a target may overwrite a file that was read\n"
             "  -h, --help            this text\n"

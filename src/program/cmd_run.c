@@ -66,7 +66,9 @@ const dea_command dea_command_run = {
             "\n"
             "  -o, --output FILE     write the result to FILE, - is standard output\n"
             "      --format F        csv, nc or raw; default: from the ending of FILE\n"
-            "      --plot FILE       draw the result, FILE ends in .svg or .png\n"
+            "      --plot FILE       draw the result, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)\n"
+            "      --size WxH        of the picture, for example 8.5x6cm (mm, cm, in, pt)\n"
+            "      --log x|y|xy      draw these axes logarithmic\n"
             "      --engine E        auto (default): for each model the cheapest that can do it;\n"
             "                        direct, ngspice, ida, or several with commas between, in the\n"
             "                        order in which they are asked\n"
@@ -98,7 +100,7 @@ const dea_command dea_command_run = {
             "  deaspice run dot.yaml --engine direct --model lumped,field --set drive.voltage='3 kV'\n"
             "  deaspice run dot.yaml -o dot.nc --resume\n"
             "  deaspice run dot.yaml --shard 3/10 -o part-3.dea\n",
-    .takes = DEA_TAKES_ENGINE | DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_FORMAT | DEA_TAKES_PLOT | DEA_TAKES_JOBS |
+    .takes = DEA_TAKES_ENGINE | DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_FORMAT | DEA_TAKES_PLOT | DEA_TAKES_LOG | DEA_TAKES_JOBS |
              DEA_TAKES_QUIET | DEA_TAKES_FULL | DEA_TAKES_JOURNAL,
     .least = 1,
     .most = 1,

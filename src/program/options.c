@@ -13,7 +13,7 @@
 #include "netlist/export.h"
 #include "program/options.h"
 #include "scene/keys.h"
-#include "scene/quantity.h"
+#include "support/quantity.h"
 #include "support/text.h"
 
 _Static_assert(DEA_RELAXATION_MOST == 10 && DEA_YEOH_TERMS == 3, "the messages of --branches and --terms name them");
@@ -62,6 +62,46 @@ static bool take_setting(const dea_option *entry, const char *value, dea_argumen
     (void)entry;
     arguments->settings[arguments->setting_count++].text = value;
     return true;
+}
+
+/* Metres of a unit of --size, NAN for a word that is none. */
+static double size_unit(const char *name)
+{
+    static const struct {
+        const char *name;
+        double length; /* [m] */
+    } units[] = {{"mm", 1e-3}, {"cm", 1e-2}, {"in", 0.0254}, {"pt", 0.0254 / 72.0}};
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        if (strcmp(name, units[i].name) == 0) {
+            return units[i].length;
+        }
+    }
+    return NAN;
+}
+
+static bool take_size(const dea_option *entry, const char *value, dea_arguments *arguments)
+{
+    dea_plot_options *picture = &arguments->picture;
+    char first[3] = "", second[3] = "", more;
+    bool read = sscanf(value, "%lf %2[a-z] x %lf %2[a-z] %c", &picture->width, first, &picture->height, second, &more) == 4;
+    if (!read) { /* one unit for both */
+        read = sscanf(value, "%lf x %lf %2[a-z] %c", &picture->width, &picture->height, second, &more) == 3;
+        strcpy(first, second);
+    }
+    picture->width *= size_unit(first);
+    picture->height *= size_unit(second);
+    if (!read || !(picture->width >= DEA_PLOT_SIDE_LEAST && picture->width <= DEA_PLOT_SIDE_MOST) ||
+        !(picture->height >= DEA_PLOT_SIDE_LEAST && picture->height <= DEA_PLOT_SIDE_MOST)) {
+        return complain_value(entry, value, NULL);
+    }
+    return true;
+}
+
+static bool take_log(const dea_option *entry, const char *value, dea_arguments *arguments)
+{
+    arguments->picture.log_x = strcmp(value, "x") == 0 || strcmp(value, "xy") == 0;
+    arguments->picture.log_y = strcmp(value, "y") == 0 || strcmp(value, "xy") == 0;
+    return arguments->picture.log_x || arguments->picture.log_y || complain_value(entry, value, NULL);
 }
 
 /* Whole number of at most @p most, -1 where it is none. */
@@ -175,6 +215,12 @@ static const char *format_word(size_t index)
     return index < sizeof words / sizeof *words ? words[index] : NULL;
 }
 
+static const char *axes_word(size_t index)
+{
+    static const char *const words[] = {"x", "y", "xy"};
+    return index < sizeof words / sizeof *words ? words[index] : NULL;
+}
+
 static const char *dialect_word(size_t index)
 {
     const dea_dialect *dialect = dea_dialect_at(index);
@@ -216,6 +262,16 @@ static const dea_option entries[] = {
     TEXT("output", 'o', "FILE", NULL, DEA_TAKES_OUTPUT, take_text, output, "write the result to a file"),
     TEXT("format", 0, "FORMAT", format_word, DEA_TAKES_FORMAT, take_text, format, "format of the result"),
     TEXT("plot", 0, "FILE", NULL, DEA_TAKES_PLOT, take_text, plot, "draw the result"),
+    COUNT("size", 0, "WxH", DEA_TAKES_PLOT, take_size, picture, 0,
+          "width x height in mm, cm, in or pt, each from 4 cm to 2 m, for example 8.5x6cm", "size of the picture"),
+    {.name = "log",
+     .value = "AXES",
+     .words = axes_word,
+     .group = DEA_TAKES_LOG,
+     .take = take_log,
+     .offset = offsetof(dea_arguments, picture),
+     .needs = "x, y or xy",
+     .about = "logarithmic axes"},
     FLAG("force", 0, DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_PLOT, force, "overwrite also what is kept otherwise"),
     COUNT("jobs", 'j', "N", DEA_TAKES_JOBS, take_jobs, jobs, 1024, "a whole number up to 1024, or auto", "worker processes"),
     FLAG("quiet", 'q', DEA_TAKES_QUIET, quiet, "no summary and no progress"),
@@ -228,6 +284,10 @@ static const dea_option entries[] = {
     TEXT("relaxation", 0, "FILE", NULL, DEA_TAKES_FIT, take_text, relaxation, "data of a relaxation test"),
     NUMBER("ramp", "TIME", DEA_TAKES_FIT, ramp, "s", 0, true, INFINITY,
            "a time, for example \"2 s\", or \"0 s\" for an ideal step", "duration of the ramp before the hold"),
+    NUMBER("length", "LENGTH", DEA_TAKES_FIT, specimen.length, "m", 0, false, INFINITY,
+           "the length of the specimen at rest, for example \"80 mm\"", "length of the specimen at rest"),
+    NUMBER("area", "AREA", DEA_TAKES_FIT, specimen.area, "m^2", 0, false, INFINITY,
+           "the cross-section of the specimen at rest, for example \"22 mm^2\"", "cross-section of the specimen at rest"),
     COUNT("branches", 0, "N", DEA_TAKES_FIT, take_count, branches, DEA_RELAXATION_MOST, "a whole number from 1 to 10",
           "Prony branches"),
     FLAG("relative", 0, DEA_TAKES_FIT, relative, "relative errors count"),

@@ -5,6 +5,8 @@
 #define DEA_PROGRAM_PROGRAM_H
 
 #include "deaspice/engine.h"
+#include "deaspice/fit.h"
+#include "deaspice/plot.h"
 #include "deaspice/scene.h"
 #include "support/files.h"
 
@@ -31,7 +33,8 @@ typedef enum dea_takes {
     DEA_TAKES_JOURNAL = 1 << 10, /**< --shard, --resume */
     DEA_TAKES_FULL = 1 << 11,    /**< --full */
     DEA_TAKES_BENCH = 1 << 12,   /**< --runs, --budget */
-    DEA_TAKES_CURVES = 1 << 13   /**< --to */
+    DEA_TAKES_CURVES = 1 << 13,  /**< --to */
+    DEA_TAKES_LOG = 1 << 14      /**< --log */
 } dea_takes;
 
 /** Mode of a data file as the command line gives it. */
@@ -52,6 +55,7 @@ typedef struct dea_arguments {
     const char *output;
     const char *format;
     const char *plot;
+    dea_plot_options picture; /**< --size, --log; zeroed: not given */
     size_t jobs; /**< 0: not given; "auto" is already the number of cores */
     bool quiet;
     bool full;
@@ -62,6 +66,7 @@ typedef struct dea_arguments {
     bool relative;
     const char *relaxation; /**< NULL: not given */
     double ramp;            /**< [s], NAN: not given */
+    dea_specimen specimen;  /* of the fit's tables, 0: not given */
     size_t branches;        /**< 0: not given */
     const char *as;         /**< NULL: not given */
     const char *dialect;    /**< NULL: not given */

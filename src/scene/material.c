@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/file.h"
+#include "support/file.h"
 #include "scene/reader.h"
 
 static dea_status base_read(dea_reader *reader, const dea_ref *ref, const dea_node *node);

@@ -534,6 +534,27 @@ static void runs_are_drawn(void **state)
     }
 }
 
+static void pictures_take_sizes_and_logarithmic_axes(void **state)
+{
+    (void)state;
+    static const char *const wrong[][2] = {{"--size", "8.5x6"},   {"--size", "8.5cm"},      {"--size", "3x6cm"}, {"--size", "8.5x300cm"},
+                                           {"--size", "8x6furlong"}, {"--size", "nanxnancm"}, {"--size", "8x6cmm"}, {"--log", "z"},
+                                           {"--log", "yx"}};
+    static const char *const right[][2] = {{"--size", "8.5x6cm"}, {"--size", "85mm x 6cm"}, {"--size", "6x4in"}, {"--size", "300x200 pt"},
+                                           {"--log", "x"},        {"--log", "y"},           {"--log", "xy"}};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        RUN("run", "step.yaml", "--engine", "direct", "--plot", "sized.gp", wrong[i][0], wrong[i][1]);
+        assert_int_equal(last.status, 2);
+        assert_non_null(strstr(last.err, wrong[i][0]));
+        assert_false(exists("sized.gp"));
+    }
+    for (size_t i = 0; i < sizeof right / sizeof *right; i++) {
+        RUN("run", "step.yaml", "--engine", "direct", "--plot", "sized.svg", right[i][0], right[i][1]);
+        assert_int_equal(last.status, 0);
+        assert_int_equal(remove("sized.svg"), 0);
+    }
+}
+
 static void engines_agree_about_a_transient(void **state)
 {
     (void)state;
@@ -879,6 +900,7 @@ int main(void)
         cmocka_unit_test(pull_in_of_a_transient_is_physics_and_named),
         cmocka_unit_test(response_tells_resonance_and_bandwidth),
         cmocka_unit_test(runs_are_drawn),
+        cmocka_unit_test(pictures_take_sizes_and_logarithmic_axes),
         cmocka_unit_test(engines_agree_about_a_transient),
         cmocka_unit_test(jobs_do_not_change_the_result),
         cmocka_unit_test(unwritable_target_fails_before_the_run),

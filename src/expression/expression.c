@@ -95,6 +95,12 @@ double dea_expr_constant(const dea_pool *pool, dea_expr ref)
     return pool->exhausted || pool->terms[ref].operation != DEA_NUMBER ? (double)NAN : pool->terms[ref].number;
 }
 
+bool dea_expr_is_scaled(const dea_pool *pool, dea_expr ref)
+{
+    const dea_term *term = &pool->terms[ref];
+    return term->operation == DEA_MUL && pool->terms[term->a].operation == DEA_NUMBER;
+}
+
 static bool is_number(const dea_pool *pool, dea_expr ref, double value)
 {
     return pool->terms[ref].operation == DEA_NUMBER && pool->terms[ref].number == value;
@@ -218,6 +224,19 @@ static dea_expr draw_out(dea_pool *pool, dea_operation operation, dea_expr a, de
     return -1;
 }
 
+/* m + (n + x), m - (n + x), m + (n - x), m - (n - x) with numbers m, n, as one number and x; -1 where nothing is to be gathered.
+ */
+static dea_expr gather(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
+{
+    const dea_term inner = pool->terms[b]; /* a copy: the pool grows */
+    const bool sums = inner.operation == DEA_ADD || inner.operation == DEA_SUB;
+    if (!sums || pool->terms[a].operation != DEA_NUMBER || pool->terms[inner.a].operation != DEA_NUMBER) {
+        return -1;
+    }
+    const dea_expr number = dea_expr_number(pool, apply(operation, pool->terms[a].number, pool->terms[inner.a].number));
+    return sum(pool, operation == inner.operation ? DEA_ADD : DEA_SUB, number, inner.b);
+}
+
 /* Sums; a negative factor of the second term turns the sign instead. */
 static dea_expr sum(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
 {
@@ -229,6 +248,13 @@ static dea_expr sum(dea_pool *pool, dea_operation operation, dea_expr a, dea_exp
     }
     if (a == b) {
         return dea_expr_scale(pool, operation == DEA_ADD ? 2.0 : 0.0, a);
+    }
+    if (!pool->exhausted && operation == DEA_SUB && is_number(pool, a, 0.0)) {
+        return dea_expr_neg(pool, b);
+    }
+    const dea_expr gathered = pool->exhausted ? -1 : gather(pool, operation, a, b);
+    if (gathered >= 0) {
+        return gathered;
     }
     const dea_expr drawn = pool->exhausted ? -1 : draw_out(pool, operation, a, b);
     return drawn >= 0 ? drawn : combine(pool, operation, a, b);

@@ -1,23 +1,16 @@
 #include "network/hyperelastic.h"
 
+#include "expression/derivative.h"
 #include "expression/formula.h"
 
 dea_expr dea_hyperelastic_change(const dea_symbols *symbols, dea_expr e)
 {
     dea_pool *pool = symbols->pool;
-    const dea_yeoh_terms t = dea_symbols_yeoh(symbols);
-    const dea_expr two = NUM(2.0);
-    const dea_expr c2 = SCALE(2.0, symbols->yeoh[1]);
-    const dea_expr c3 = SCALE(3.0, symbols->yeoh[2]);
-    const dea_expr d = MUL(t.square, MUL(e, ADD(two, e))); /* y - y0, y = lambda^2 */
-    const dea_expr y = ADD(t.square, d);
-    const dea_expr q = DIV(ADD(y, t.square), MUL(SQUARE(t.square), SQUARE(y)));
-    const dea_expr dj = MUL(d, SUB(two, q));    /* of J = 2 y + y^-2 - 3 */
-    const dea_expr dg = SUB(SCALE(3.0, d), dj); /* of g = y - y^-2 = 3 (y - 1) - J */
-    const dea_expr sum = ADD(SCALE(2.0, t.j), dj);
-    const dea_expr dw = MUL(dj, ADD(c2, MUL(c3, sum))); /* of w */
-    const dea_expr w = ADD(t.w, dw);
-    return SCALE(2.0, ADD(MUL(dg, w), MUL(t.g, dw)));
+    const dea_expr y = SQUARE(MUL(symbols->prestretch, ADD(NUM(1.0), e)));
+    const dea_expr v = DIV(NUM(1.0), SQUARE(y));
+    const dea_expr j = SUB(ADD(SCALE(2.0, y), v), NUM(3.0));
+    const dea_expr w = ADD(symbols->yeoh[0], MUL(j, ADD(SCALE(2.0, symbols->yeoh[1]), SCALE(3.0, MUL(symbols->yeoh[2], j)))));
+    return dea_expr_change(pool, SCALE(2.0, MUL(SUB(y, v), w)));
 }
 
 dea_expr dea_hyperelastic_area(const dea_symbols *symbols, dea_expr strain)

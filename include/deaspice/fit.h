@@ -12,7 +12,8 @@
 extern "C" {
 #endif
 
-enum { DEA_RELAXATION_LEAST = 3, DEA_RELAXATION_MOST = 10 }; /**< fewest points of a relaxation test, most branches of a fit */
+/** Most Yeoh constants, fewest points of a relaxation test, most branches of a fit. */
+enum { DEA_YEOH_TERMS = 3, DEA_RELAXATION_LEAST = 3, DEA_RELAXATION_MOST = 10 };
 
 /** How a specimen was loaded. */
 typedef enum dea_load { DEA_LOAD_UNIAXIAL, DEA_LOAD_EQUIBIAXIAL, DEA_LOAD_COUNT, DEA_LOAD_UNKNOWN = DEA_LOAD_COUNT } dea_load;
@@ -39,7 +40,8 @@ typedef struct dea_fit_trial {
 /** Fitted constants and how good they are. */
 typedef struct dea_fit {
     int terms;                        /**< constants in use, 1 to DEA_YEOH_TERMS */
-    double yeoh[DEA_YEOH_TERMS];      /**< C_i [Pa], 0 beyond terms */
+    const dea_law *law;               /**< of the constants */
+    double constants[DEA_LAW_CONSTANTS]; /**< C_i [Pa], 0 beyond terms */
     double deviation[DEA_YEOH_TERMS]; /**< standard errors of C_i [Pa], given the terms; NAN where points = terms */
     dea_fit_trial trials[DEA_YEOH_TERMS]; /**< 1 constant, 2, ... */
     double residual_rms;              /**< root mean square of (measured - fitted) [Pa] */
@@ -84,8 +86,8 @@ DEA_API void dea_fit_data_free(dea_fit_data *data);
  * or strain; C1 is not positive by two standard errors), DEA_ERROR_MEMORY
  */
 DEA_API dea_status dea_fit_yeoh(const dea_fit_data *data, int terms, bool relative, dea_fit *fit, dea_error *error);
-/** Nominal stress of the fitted material [Pa] at @p stretch under @p load. */
-DEA_API double dea_fit_stress(const double yeoh[DEA_YEOH_TERMS], dea_load load, double stretch);
+/** Nominal stress of a material [Pa] at @p stretch under @p load. */
+DEA_API double dea_fit_stress(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], dea_load load, double stretch);
 
 /** One measured point of a relaxation test. */
 typedef struct dea_relaxation_point {

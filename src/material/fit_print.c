@@ -58,7 +58,7 @@ static void print_yeoh(const dea_fit *fit, FILE *stream)
     static const char *const before[DEA_YEOH_TERMS] = {"C1: ", ", C2: ", ", C3: "};
     fputs("yeoh: {", stream);
     for (int i = 0; i < fit->terms; i++) {
-        print_number(stream, before[i], fit->yeoh[i], 8, " Pa");
+        print_number(stream, before[i], fit->constants[i], 8, " Pa");
     }
     fputs("}\n", stream);
     print_number(stream, "stretches: [", fmin(fit->stretch_min, 1.0), 6, "");

@@ -1,39 +1,5 @@
-/* See film_balance.h. Stress differences to the pre-stretch are factored in the strain, so that a strain of 1e-12 keeps its
- * digits. */
+/* See film_balance.h. The law gives stress differences to the pre-stretch that keep their digits at a strain of 1e-12. */
 #include "model/film_balance.h"
-
-/* sigma(lambda_pre (1 + e)) - sigma(lambda_pre) and its first two derivatives over e. */
-typedef struct stress_change {
-    double value;
-    double slope;
-    double curve;
-} stress_change;
-
-static inline stress_change change_of_stress(const dea_film *film, double e)
-{
-    const double y0 = film->square;
-    const double d = y0 * e * (2.0 + e); /* y - y0, y = lambda^2 */
-    const double y = y0 + d;
-    const double inverse = 1.0 / (y * y);
-    const double q = (y + y0) * inverse * film->inverse_fourth;
-    const double dg = d * (1.0 + q); /* g - g0, g = y - y^-2 */
-    const double dj = d * (2.0 - q); /* J - J0, J = 2 y + y^-2 - 3 */
-    const double c2 = 2.0 * film->yeoh[1];
-    const double c3 = 3.0 * film->yeoh[2];
-    const double dw = dj * (c2 + c3 * (2.0 * film->j + dj));
-    const double w = film->w + dw;
-    const double g = film->g + dg;
-    const double wj = c2 + 2.0 * c3 * (film->j + dj);
-    const double cube = inverse * inverse * y; /* y^-3 */
-    /* with respect to y: g' = 1 + 2 y^-3, J' = 2 - 2 y^-3, g'' = -6 y^-4, J'' = 6 y^-4 */
-    const double g1 = 1.0 + 2.0 * cube;
-    const double j1 = 2.0 - 2.0 * cube;
-    const double second = 6.0 * inverse * inverse;
-    const double slope = 2.0 * (g1 * w + g * wj * j1);
-    const double curve = 2.0 * (2.0 * g1 * wj * j1 + 2.0 * c3 * g * j1 * j1 + second * (g * wj - w));
-    const double dy = 2.0 * y0 * (1.0 + e);
-    return (stress_change){2.0 * (dg * w + film->g * dw), slope * dy, curve * dy * dy + slope * 2.0 * y0};
-}
 
 typedef struct balance {
     double load;  /* N = sigma_A - sigma_P [Pa] */
@@ -44,10 +10,13 @@ typedef struct balance {
 
 static inline balance balance_at(const dea_film *film, double ratio, double e)
 {
-    const stress_change active = change_of_stress(film, e);
+    const double strains[] = {e, -ratio * e};
+    dea_change changes[2];
+    film->law->change(film, ratio > 0.0 ? 2 : 1, strains, changes);
+    const dea_change active = changes[0];
     balance b = {active.value, active.slope, active.curve, 0.0};
     if (ratio > 0.0) {
-        const stress_change passive = change_of_stress(film, -ratio * e);
+        const dea_change passive = changes[1];
         b.load -= passive.value;
         b.slope += ratio * passive.slope;
         b.curve -= ratio * ratio * passive.curve;
@@ -66,6 +35,13 @@ static double fourth(double x)
 static double trusted_width(double ratio, double e)
 {
     return 0.05 * (1.0 + e) / (1.0 + ratio);
+}
+
+/* Strain of the active film at which a region vanishes, or the energy of the material ends. */
+static double end_of(const dea_film *film, double ratio)
+{
+    const double passive = ratio > 0.0 ? film->shrinks / ratio : film->grows;
+    return passive < film->grows ? passive : film->grows;
 }
 
 /* Looks for a fold on [low, high], where `fold` has the values at_low > 0 and at_high. Returns true and a narrow bracket of the
@@ -137,7 +113,7 @@ static double locate_fold(const dea_film *film, double ratio, double before, dou
 /* Follows the equilibrium from rest with growing strain until the load reaches m, or a fold, or the end of the film. */
 static bool trace(const dea_film *film, double ratio, double m, double *strain)
 {
-    const double end = ratio > 0.0 ? (1.0 - 1e-12) / ratio : 1e4; /* the passive stretch reaches 0 */
+    const double end = (1.0 - 1e-12) * end_of(film, ratio);
     double low = 0.0;
     double fold = balance_at(film, ratio, low).fold;
     while (low < end) {
@@ -167,7 +143,7 @@ static bool trace(const dea_film *film, double ratio, double m, double *strain)
  * next one is foreseen as step^4/last^3, and where that is below rounding the present step was the last one needed. */
 static bool halley(const dea_film *film, double ratio, double m, double stiffness, double *strain, balance *at)
 {
-    const double end = ratio > 0.0 ? 1.0 / ratio : 1e4;
+    const double end = end_of(film, ratio);
     /* N = K e + c e^2/2 + ..., m (1 + e)^4 = m (1 + 4 e + 6 e^2 + ...) */
     const double bend = 0.5 * film->square * film->curvature * (1.0 - ratio * ratio) - 6.0 * m;
     const double linear = m / (stiffness - 4.0 * m);
@@ -200,8 +176,11 @@ static bool cannot_fold(const dea_film *film, double ratio, double stiffness, do
 {
     const double slope_at_rest = film->square * film->curvature * (1.0 - ratio * ratio) - 3.0 * stiffness;
     const double slope_at_end = (1.0 + e) * at->curve - 3.0 * at->slope;
-    const double tangents = fmin(stiffness + slope_at_rest * e, at->fold - slope_at_end * e);
-    return e <= 3.0 * trusted_width(ratio, 0.0) && fmin(tangents, fmin(stiffness, at->fold)) > 0.5 * fmax(stiffness, at->fold);
+    const double tangent_at_rest = stiffness + slope_at_rest * e;
+    const double tangent_at_end = at->fold - slope_at_end * e;
+    const double half = 0.5 * (stiffness > at->fold ? stiffness : at->fold);
+    return e <= 3.0 * trusted_width(ratio, 0.0) && tangent_at_rest > half && tangent_at_end > half && stiffness > half &&
+           at->fold > half;
 }
 
 bool dea_film_balance(const dea_film *film, double ratio, double m, double *strain)

@@ -505,7 +505,7 @@ static void add(dea_part_parameter *list, size_t *count, const char *name, const
 static void add_film(const dea_scene *scene, dea_part_parameter *list, size_t *count)
 {
     const dea_material *material = &scene->material;
-    double yeoh[DEA_YEOH_TERMS];
+    double yeoh[DEA_LAW_CONSTANTS];
     dea_material_long_term(material, yeoh);
     add(list, count, "c1", "Pa", "first Yeoh constant, long-term", yeoh[0]);
     add(list, count, "c2", "Pa", "second Yeoh constant, long-term", yeoh[1]);

@@ -140,8 +140,8 @@ static dea_symbols symbols_of(const dea_scene *scene, const dea_axis *axis, dea_
     s.coverage = given(pool, divide) ? DIV(divide, s.frame_radius) : scalar(pool, scene, axis, &actuator->coverage);
     s.film_thickness = scalar(pool, scene, axis, &actuator->film_thickness);
     s.prestretch = scalar(pool, scene, axis, &actuator->prestretch);
-    for (int i = 0; i < DEA_YEOH_TERMS; i++) {
-        s.yeoh[i] = MUL(share, scalar(pool, scene, axis, &material->yeoh[i]));
+    for (int i = 0; i < 3; i++) {
+        s.yeoh[i] = MUL(share, scalar(pool, scene, axis, &material->constants[i]));
     }
     const dea_expr modulus = scalar(pool, scene, axis, &material->modulus);
     s.modulus = given(pool, modulus) ? MUL(share, modulus) : dea_symbols_modulus(&s);
@@ -237,6 +237,11 @@ dea_status dea_network_build(const dea_scene *scene, const dea_model *model, con
     *network = (dea_network){0};
     if (!model->network) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is not a network", model->name);
+    }
+    if (!scene->material.law->networked) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED,
+                        "a film of the law %s has no network yet: run its static models with the engine direct, or field with ida",
+                        scene->material.law->name);
     }
     (void)dea_expr_number(&network->pool, 0.0);
     if (network->pool.exhausted) {

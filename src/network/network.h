@@ -16,7 +16,7 @@ typedef struct dea_symbols {
     dea_expr coverage;             /* B [1] */
     dea_expr film_thickness;       /* H [m] */
     dea_expr prestretch;           /* lambda_pre [1] */
-    dea_expr yeoh[DEA_YEOH_TERMS]; /* long-term constants [Pa] */
+    dea_expr yeoh[3];              /* long-term constants of a Yeoh film [Pa] */
     dea_expr modulus;              /* Y [Pa]: the scene's, or dsigma/dlambda at the pre-stretch */
     dea_expr permittivity;         /* absolute [F/m] */
     dea_expr breakdown;            /* breakdown strength [V/m], +inf: none */

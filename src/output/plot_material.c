@@ -53,27 +53,27 @@ static void add_entry(dea_legend *legend, int load, const char *what, size_t das
 }
 
 /* Data block $fit<load> of nominal stress [kPa] over stretch. */
-static void write_stress(FILE *script, const double yeoh[DEA_YEOH_TERMS], dea_load load, double from, double to)
+static void write_stress(FILE *script, const dea_law *law, const double *constants, dea_load load, double from, double to)
 {
     fprintf(script, "$fit%d << END\n", (int)load);
     for (int i = 0; i <= CURVE_STEPS; i++) {
         const double stretch = from + (to - from) * i / CURVE_STEPS;
-        write_pair(script, stretch, 1e-3 * dea_fit_stress(yeoh, load, stretch));
+        write_pair(script, stretch, 1e-3 * dea_fit_stress(law, constants, load, stretch));
     }
     fputs("END\n", script);
 }
 
 static void write_material(const dea_material *material, FILE *script)
 {
-    double yeoh[DEA_YEOH_TERMS];
-    dea_material_long_term(material, yeoh);
+    double constants[DEA_LAW_CONSTANTS];
+    dea_material_long_term(material, constants);
     for (int load = 0; load < DEA_LOAD_COUNT; load++) {
-        write_stress(script, yeoh, (dea_load)load, 1.0, 2.0);
+        write_stress(script, material->law, constants, (dea_load)load, 1.0, 2.0);
     }
     fputs("$modulus << END\n", script);
     for (int i = 0; i <= CURVE_STEPS; i++) {
         const double stretch = 1.0 + (double)i / CURVE_STEPS;
-        write_pair(script, stretch, 1e-6 * dea_yeoh_modulus(yeoh, stretch));
+        write_pair(script, stretch, 1e-6 * dea_law_modulus(material->law, constants, stretch));
     }
     fputs("END\n", script);
     dea_plot_style(script);
@@ -154,7 +154,7 @@ static void write_fit(const dea_fit *fit, const dea_fit_data *data, const panel 
     const char *before = "plot ";
     for (int load = 0; load < DEA_LOAD_COUNT; load++) {
         if (fit->count[load] > 0) {
-            write_stress(script, fit->yeoh, (dea_load)load, from, to);
+            write_stress(script, fit->law, fit->constants, (dea_load)load, from, to);
             write_points(script, data, fit, (dea_load)load);
             add_entry(legend, load, ", measured", 0, POINT_ENTRY, at->left * at->width, panel_top * FIT_HEIGHT);
             add_entry(legend, load, ", Yeoh fit", LINE_ENTRY, 0, at->left * at->width, panel_top * FIT_HEIGHT);

@@ -42,8 +42,8 @@ static void print_constants(const dea_material *material)
 {
     printf("%-22s %s\n", "name", material->name);
     printf("%-22s %s\n", "source", material->source);
-    for (size_t i = 0; i < DEA_YEOH_TERMS; i++)
-        printf("C%zu                     %.9g Pa\n", i + 1, material->yeoh[i]);
+    for (size_t i = 0; i < material->law->constant_count; i++)
+        printf("%-22s %.9g Pa\n", material->law->constants[i].name, material->constants[i]);
     if (fabs(material->permittivity_per_stretch) > 0)
         printf("%-22s %.9g %+.9g stretch\n", "permittivity", material->permittivity, material->permittivity_per_stretch);
     else
@@ -60,21 +60,23 @@ static void print_constants(const dea_material *material)
 static void print_moduli(const dea_material *material)
 {
     static const double stretches[] = {1.0, 1.1, 1.2, 1.3, 1.5, 2.0};
-    double yeoh[DEA_YEOH_TERMS];
-    dea_material_long_term(material, yeoh);
+    double constants[DEA_LAW_CONSTANTS];
+    dea_material_long_term(material, constants);
     printf("\n%10s %12s %12s %12s %12s\n", "prestretch", "stress_Pa", "Y_Pa", "W11_Pa", "W12_Pa");
     for (size_t i = 0; i < sizeof stretches / sizeof stretches[0]; i++) {
         double stretch = stretches[i];
-        dea_stress stress = dea_yeoh_stress(yeoh, stretch, stretch);
-        printf("%10g %12.1f %12.1f %12.1f %12.1f\n", stretch, stress.p1, dea_yeoh_modulus(yeoh, stretch), stress.w11, stress.w12);
+        const dea_stress stress = dea_law_stress(material->law, constants, stretch, stretch);
+        printf("%10g %12.1f %12.1f %12.1f %12.1f\n", stretch, stress.p1, dea_law_modulus(material->law, constants, stretch),
+               stress.w11, stress.w12);
     }
 }
 
 /* A film pulled one way only narrows by stretch^-1/2 in both other directions. */
-static dea_status write_curve_row(dea_atomic *file, const double yeoh[DEA_YEOH_TERMS], double stretch, dea_error *error)
+static dea_status write_curve_row(dea_atomic *file, const dea_law *law, const double *constants, double stretch, dea_error *error)
 {
-    const double values[CURVE_COLUMNS] = {stretch, dea_yeoh_stress(yeoh, stretch, 1 / sqrt(stretch)).p1,
-                                          dea_yeoh_stress(yeoh, stretch, stretch).p1, dea_yeoh_modulus(yeoh, stretch)};
+    const double values[CURVE_COLUMNS] = {stretch, dea_law_stress(law, constants, stretch, 1 / sqrt(stretch)).p1,
+                                          dea_law_stress(law, constants, stretch, stretch).p1,
+                                          dea_law_modulus(law, constants, stretch)};
     char line[CURVE_COLUMNS * (DEA_NUMBER_LENGTH + 1)];
     size_t used = 0;
     for (size_t i = 0; i < CURVE_COLUMNS; i++) {
@@ -87,15 +89,15 @@ static dea_status write_curve_row(dea_atomic *file, const double yeoh[DEA_YEOH_T
 static dea_status write_curves(const dea_material *material, const char *path, dea_error *error)
 {
     static const char header[] = "stretch,uniaxial_Pa,equibiaxial_Pa,modulus_Pa\n";
-    double yeoh[DEA_YEOH_TERMS];
+    double constants[DEA_LAW_CONSTANTS];
     dea_atomic file;
-    dea_material_long_term(material, yeoh);
+    dea_material_long_term(material, constants);
     dea_status status = dea_atomic_open(&file, path, error);
     if (status != DEA_OK)
         return status;
     status = dea_atomic_write(&file, header, sizeof header - 1, error);
     for (int i = 0; i < CURVE_POINTS && status == DEA_OK; i++)
-        status = write_curve_row(&file, yeoh, 1 + (curve_end - 1) * i / (CURVE_POINTS - 1), error);
+        status = write_curve_row(&file, material->law, constants, 1 + (curve_end - 1) * i / (CURVE_POINTS - 1), error);
     dea_status closed = dea_atomic_close(&file, status == DEA_OK, status == DEA_OK ? error : NULL);
     return status != DEA_OK ? status : closed;
 }

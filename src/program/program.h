@@ -57,7 +57,7 @@ typedef struct dea_arguments {
     bool force;       /**< targets may overwrite inputs */
     bool no_files;    /**< scenes may name no files */
     double tolerance; /**< NAN: not given */
-    unsigned terms;   /**< 0: not given */
+    size_t terms;     /**< 0: not given */
     bool relative;
     const char *relaxation; /**< NULL: not given */
     double ramp;            /**< [s], NAN: not given */

@@ -11,7 +11,7 @@
 
 #include "support/text.h"
 
-enum { UNIT_LENGTH = 64 };
+enum { UNIT_LENGTH = 64, CASES_MOST = 6 };
 
 /* A unit system; the whole one takes milliseconds to load, so units that actuator labs write have a small one. */
 typedef struct unit_system {
@@ -271,9 +271,43 @@ static conversion convert_any(dea_units *units, const char *unit, const char *ta
     return result;
 }
 
+/* Units of the target's dimension that differ from @p unit in the case of letters alone: ", did you mean kV?", else "". */
+static void unit_suggest(dea_units *units, const char *unit, const char *target, char out[UNIT_LENGTH])
+{
+    char meant[UNIT_LENGTH];
+    size_t places[CASES_MOST];
+    size_t count = 0;
+    size_t used = 0;
+    out[0] = '\0';
+    for (size_t at = 0; unit[at]; at++) {
+        if (isalpha((unsigned char)unit[at]) && count++ < CASES_MOST) {
+            places[count - 1] = at;
+        }
+    }
+    const locale_t before = uselocale(units->locale);
+    const ut_error_message_handler handler = ut_set_error_message_handler(ut_ignore);
+    for (unsigned cases = 0; units->small.system && count <= CASES_MOST && cases < 1u << count; cases++) {
+        double factor;
+        snprintf(meant, sizeof meant, "%s", unit);
+        for (size_t i = 0; i < count; i++) {
+            char *letter = &meant[places[i]];
+            *letter = (char)(cases >> i & 1 ? toupper((unsigned char)*letter) : tolower((unsigned char)*letter));
+        }
+        if (used + 2 * strlen(meant) + 24 < UNIT_LENGTH && convert(units->small.system, meant, target, &factor) == CONVERTED) {
+            used += (size_t)snprintf(out + used, UNIT_LENGTH - used, "%s%s", used ? " or " : ", did you mean ", meant);
+        }
+    }
+    if (used) {
+        snprintf(out + used, UNIT_LENGTH - used, "?");
+    }
+    ut_set_error_message_handler(handler);
+    uselocale(before);
+}
+
 static bool factor_find(dea_units *units, const char *written, const char *target, double *factor, char reason[DEA_REASON_LENGTH])
 {
     char unit[UNIT_LENGTH];
+    char meant[UNIT_LENGTH];
     char shown[DEA_REASON_LENGTH / 2];
     dea_text_clip(written, 24, shown, sizeof shown);
     if (!unit_spell(written, unit) || !unit_sound(unit)) {
@@ -283,12 +317,15 @@ static bool factor_find(dea_units *units, const char *written, const char *targe
     unit_join(unit);
     if (strcmp(unit, units->last_unit) != 0 || strcmp(target, units->last_target) != 0) {
         const conversion result = convert_any(units, unit, target, factor);
+        if (result != CONVERTED) {
+            unit_suggest(units, unit, target, meant);
+        }
         if (result == UNKNOWN_UNIT) {
             const char *missing =
                 units->whole.system || !units->whole.tried ? "" : ", and the UDUNITS database of further units cannot be read";
-            snprintf(reason, DEA_REASON_LENGTH, "unknown unit \"%s\"%s", shown, missing);
+            snprintf(reason, DEA_REASON_LENGTH, "unknown unit \"%s\"%s%s", shown, meant, missing);
         } else if (result == OTHER_DIMENSION) {
-            snprintf(reason, DEA_REASON_LENGTH, "wrong dimension: \"%s\" does not convert to %s", shown, target);
+            snprintf(reason, DEA_REASON_LENGTH, "wrong dimension: \"%s\" does not convert to %s%s", shown, target, meant);
         }
         if (result != CONVERTED) {
             return false;
@@ -327,12 +364,21 @@ static double scale(double number, double factor)
     return number * factor;
 }
 
+/* A text where a unit should be, most likely a comment. */
+static bool is_comment(const char *written)
+{
+    return written[0] == '#' || strncmp(written, "//", 2) == 0;
+}
+
 static bool unit_apply(dea_units *units, const char *written, const char *unit, double *value, char reason[DEA_REASON_LENGTH])
 {
     const bool plain = strcmp(unit, "1") == 0;
     double factor = 1.0;
     if (plain && strcmp(written, "%") == 0) {
         factor = 0.01;
+    } else if (is_comment(written)) {
+        snprintf(reason, DEA_REASON_LENGTH, "a comment starts with a blank and #");
+        return false;
     } else if (plain && written[0]) {
         snprintf(reason, DEA_REASON_LENGTH, "takes a bare number, without a unit");
         return false;
@@ -351,6 +397,34 @@ static bool unit_apply(dea_units *units, const char *written, const char *unit, 
     return true;
 }
 
+static bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
+/* "4,5 kV" is written 4.5 kV; "1,000 V" may also be meant as 1000 V, and several commas can only be that. */
+static void explain_comma(const char *text, char reason[DEA_REASON_LENGTH])
+{
+    char shown[DEA_REASON_LENGTH / 2];
+    char plain[DEA_REASON_LENGTH / 2];
+    size_t used = 0;
+    dea_text_clip(text, 24, shown, sizeof shown);
+    const char *comma = strchr(shown, ',');
+    const bool several = strchr(comma + 1, ',') != NULL;
+    const bool thousands = several || (strspn(comma + 1, "0123456789") == 3 && shown[0] != '0');
+    for (const char *at = shown; *at; at++) {
+        if (*at != ',') {
+            plain[used++] = *at;
+        }
+    }
+    plain[used] = '\0';
+    char point[DEA_REASON_LENGTH / 2];
+    snprintf(point, sizeof point, "%s", shown);
+    point[comma - shown] = '.';
+    snprintf(reason, DEA_REASON_LENGTH, "a comma in a number; write %s%s%s", several ? "" : point,
+             thousands && !several ? " or " : "", thousands ? plain : "");
+}
+
 bool dea_quantity_read(dea_units *units, const char *text, const char *unit, double *value, char reason[DEA_REASON_LENGTH])
 {
     char number[UNIT_LENGTH];
@@ -361,6 +435,10 @@ bool dea_quantity_read(dea_units *units, const char *text, const char *unit, dou
     }
     if (length >= sizeof number) {
         snprintf(reason, DEA_REASON_LENGTH, "more digits than a number can have here");
+        return false;
+    }
+    if (text[length] == ',' && is_digit(text[length + 1]) && length < 16) {
+        explain_comma(text, reason);
         return false;
     }
     memcpy(number, text, length);

@@ -129,7 +129,8 @@ dea_status dea_reader_number(dea_reader *reader, const dea_ref *ref, const dea_n
         return status;
     }
     if (node->kind != DEA_NODE_SCALAR) {
-        return dea_reader_refuse(reader, ref, node, "not a number");
+        const bool axis = ref->key->words > 0 && (node->kind == DEA_NODE_SEQUENCE || dea_tree_child(node, "from"));
+        return dea_reader_refuse(reader, ref, node, axis ? "several values are an axis of study.sweep" : "not a number");
     }
     if (!dea_quantity_read(reader->units, node->text, ref->key->unit, value, reason)) {
         return dea_reader_refuse(reader, ref, node, reason);
@@ -268,6 +269,25 @@ static void model_list(ability wanted, char *out, size_t room)
     snprintf(out + used, used < room ? room - used : 0, "%s", automatic);
 }
 
+/* Several models in one text, as the list that they should be: "[lumped, field]", of an option "lumped,field"; "" for one. */
+static void model_split(const dea_node *node, char out[DEA_KEY_ROOM])
+{
+    static const char between[] = " ,;+/&\t";
+    const bool option = node->place.origin->setting;
+    const char *text = node->text + strspn(node->text, between);
+    size_t used = 0;
+    size_t count = 0;
+    for (; *text && used + DEA_NAME_LENGTH < DEA_KEY_ROOM; count++) {
+        const size_t length = strcspn(text, between);
+        const char *joint = count == 0 ? "" : option ? "," : ", ";
+        used += (size_t)snprintf(out + used, DEA_KEY_ROOM - used, "%s%.*s", joint,
+                                 (int)(length < DEA_NAME_LENGTH / 2 ? length : DEA_NAME_LENGTH / 2), text);
+        text += length;
+        text += strspn(text, between);
+    }
+    out[count > 1 ? used : 0] = '\0';
+}
+
 static dea_status model_fail(dea_reader *reader, const dea_node *node, const char *what, ability wanted)
 {
     char shown[DEA_TEXT_ROOM];
@@ -275,6 +295,14 @@ static dea_status model_fail(dea_reader *reader, const dea_node *node, const cha
     char meant[DEA_KEY_ROOM] = "";
     model_list(wanted, names, sizeof names);
     const bool any = !wanted.lens && !wanted.dynamic;
+    if (node->kind == DEA_NODE_SCALAR && any) {
+        char several[DEA_KEY_ROOM];
+        model_split(node, several);
+        if (several[0]) {
+            const bool option = node->place.origin->setting;
+            snprintf(meant, sizeof meant, "several are written %s%.400s%s; ", option ? "" : "[", several, option ? "" : "]");
+        }
+    }
     for (size_t i = 0; node->kind == DEA_NODE_SCALAR && any && i < dea_model_count(); i++) {
         const char *name = dea_model_at(i)->name;
         const size_t distance = dea_text_distance(name, node->text);

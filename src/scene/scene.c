@@ -53,6 +53,7 @@ static dea_status model_override(dea_reader *reader)
     const dea_place place = {.origin = &reader->model_origin, .line = 1, .column = 1};
     dea_node list = {.kind = DEA_NODE_SEQUENCE, .place = place, .key_at = place};
     for (const char *name = reader->model; name; name = strchr(name, ',') ? strchr(name, ',') + 1 : NULL) {
+        name += strspn(name, " ");
         const char *text = dea_arena_copy(&reader->arena, name, strcspn(name, ","));
         dea_node *node = text ? dea_tree_scalar(&reader->arena, &reader->model_origin, text) : NULL;
         if (!node) {
@@ -89,7 +90,8 @@ static dea_status scene_parse(const char *text, size_t length, const char *name,
                               dea_scene *scene, dea_error *error)
 {
     char shown[10 * 256 + 8];
-    const dea_origin origin = {.name = dea_text_clip(name, 256, shown, sizeof shown), .folder = folder};
+    const dea_origin origin = {
+        .name = dea_text_clip(name, 256, shown, sizeof shown), .folder = folder, .text = text, .length = length};
     dea_reader *reader = calloc(1, sizeof *reader);
     dea_units *units = dea_units_open();
     dea_status status = scene_clear(scene);

@@ -14,7 +14,7 @@ enum { ROWS_MAX = 1000000, CELL_LENGTH = 128 };
 typedef struct table {
     dea_reader *reader;
     const char *path; /* of the key */
-    const dea_origin *origin;
+    dea_origin *origin;
     const char *next, *end; /* the rest of the text */
     int line;
     bool numbers; /* a row of numbers is in it: what it holds may be quoted */
@@ -184,6 +184,10 @@ static dea_status table_read(table *self, const char *text, size_t length)
     self->end = text + length;
     self->line = 0;
     self->numbers = has_numbers(self);
+    if (self->numbers) {
+        self->origin->text = text;
+        self->origin->length = length;
+    }
     return rows_read(self);
 }
 
@@ -201,7 +205,7 @@ dea_status dea_read_wave_file(dea_reader *reader, const dea_ref *ref, const dea_
         return named;
     }
     char *path = dea_reader_path(reader, node);
-    const dea_origin *origin = path ? dea_reader_origin(reader, path) : NULL;
+    dea_origin *origin = path ? dea_reader_origin(reader, path) : NULL;
     const dea_status read =
         origin ? dea_file_read(path, false, DEA_WAVE_FILE_MAX, &text, &length, reader->scene->files, &refused) : DEA_ERROR_MEMORY;
     if (read == DEA_ERROR_MEMORY) {

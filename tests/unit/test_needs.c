@@ -89,7 +89,7 @@ static void bounds_hold_where_the_film_softens(void **state)
         random_transient(&seed, &scene);
         random_blur(&seed, &scene);
         scene.models[0] = dea_model_find("coverage");
-        scene.material.yeoh[1] = -0.2 * scene.material.yeoh[0];
+        scene.material.constants[1] = -0.2 * scene.material.constants[0];
         set_voltage(&scene, pull_in_voltage(&scene, "coverage") * (1.0 - random_decades(&seed, 1e-3, 0.2)));
         scene.accuracy = random_decades(&seed, 1e-6, 1e-2);
         omissions += check_scene(i, &scene);
@@ -147,9 +147,9 @@ static void a_branch_stays_where_its_mark_in_the_slow_ones_shows(void **state)
     scene.study = DEA_STUDY_TRANSIENT;
     scene.transient = (dea_transient){.until = 1.1235, .every = 0.0234};
     scene.accuracy = 1e-9;
-    scene.material.yeoh[0] = 380148.0;
-    scene.material.yeoh[1] = -63942.0;
-    scene.material.yeoh[2] = 7955.5;
+    scene.material.constants[0] = 380148.0;
+    scene.material.constants[1] = -63942.0;
+    scene.material.constants[2] = 7955.5;
     scene.material.permittivity = 7.332;
     scene.material.instantaneous = true;
     scene.material.prony_count = 8;
@@ -308,7 +308,7 @@ static void simpler_forms_of_a_branch_are_springs_and_dampers(void **state)
     dea_scene other = scene;
     other.reduction = (dea_reduction){0};
     other.material.prony_count = 0;
-    other.material.yeoh[0] *= 1.0 + c;
+    other.material.constants[0] *= 1.0 + c;
     other.material.retardation = (1e-3 + c * 1e-6) / (1.0 + c);
     run(&other, "direct", true, &said);
     for (size_t i = 0; i < 501; i++) {

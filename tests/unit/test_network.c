@@ -547,9 +547,9 @@ static void slope_of_the_forces_is_their_derivative(void **state)
 static dea_scene soft_scene(double voltage)
 {
     dea_scene scene = paper_scene(DEA_DOT, 1.1, 0.05, voltage);
-    scene.material.yeoh[0] = 40e3;
-    scene.material.yeoh[1] = -8e3;
-    scene.material.yeoh[2] = 1.2e3;
+    scene.material.constants[0] = 40e3;
+    scene.material.constants[1] = -8e3;
+    scene.material.constants[2] = 1.2e3;
     return scene;
 }
 
@@ -586,9 +586,9 @@ static void fold_of_a_free_neo_hookean_film_is_where_theory_says(void **state)
 {
     (void)state;
     dea_scene scene = paper_scene(DEA_DOT, 1.0, 0.5, 0.0);
-    scene.material.yeoh[1] = scene.material.yeoh[2] = 0.0;
+    scene.material.constants[1] = scene.material.constants[2] = 0.0;
     const double critical = pow(4.0, 1.0 / 6.0);
-    const double mu = 2.0 * scene.material.yeoh[0];
+    const double mu = 2.0 * scene.material.constants[0];
     const double least = mu * (pow(critical, -2.0) - pow(critical, -8.0)) / (2.8 * DEA_EPSILON_0);
     for (double over = 1.5; over > 1.0 + 1e-12; over = 1.0 + (over - 1.0) * 0.1) {
         scene.drive.voltage = 1e-4 * sqrt(over * least);

@@ -98,7 +98,8 @@ static dea_scene scene_make(size_t axis_count, const size_t *counts, size_t mode
     scene.actuator = (dea_actuator){DEA_DOT, 0.03, 0.5, NAN, 1e-4, 1.2, NAN, NAN, NAN};
     scene.drive = (dea_drive){.voltage = 4500.0, .series_resistance = NAN, .leakage_resistance = NAN};
     scene.material =
-        (dea_material){.name = "test film", .source = "nowhere", .yeoh = {178426.0, -6023.0, 4234.0}, .permittivity = 2.8};
+        (dea_material){.name = "test film", .source = "nowhere", .law = dea_law_find("yeoh"),
+                       .constants = {178426.0, -6023.0, 4234.0}, .permittivity = 2.8};
     scene.material.density = scene.material.retardation = scene.material.modulus = scene.material.breakdown = NAN;
     return scene;
 }

@@ -53,10 +53,11 @@ static void reach(dea_flight *flight, const double *y)
 
 bool dea_flight_record(dea_flight *flight, double time, const double *y)
 {
-    const dea_moment moment = dea_motion_moment(&flight->motion, time, y);
+    dea_moment moment = dea_motion_moment(&flight->motion, time, y);
     if (!dea_motion_inside(&flight->motion, moment.u)) {
         return false;
     }
+    dea_dynamics_start(flight->motion.dynamics, &moment);
     reach(flight, y);
     flight->trace->moments[flight->trace->count++] = moment;
     return true;

@@ -21,6 +21,8 @@ extern "C" {
 enum { DEA_LAW_CONSTANTS = 8, DEA_PRONY_MAX = 64, DEA_NAME_LENGTH = 64, DEA_SOURCE_LENGTH = 256 };
 
 struct dea_film;
+struct dea_form;
+struct dea_pool;
 
 /** Principal in-plane nominal stresses and tangent moduli of the passive film at stretches l1, l2 [Pa]. */
 typedef struct dea_stress {
@@ -72,8 +74,8 @@ typedef struct dea_law {
     void (*prepare)(struct dea_film *film);
     /** Changes of the equi-biaxial Cauchy stress at @p count strains; keep their digits however small the strains are. */
     void (*change)(const struct dea_film *film, size_t count, const double *strains, dea_change *changes);
-    /** Whether the law stands in networks (true), or only in the engines' own equations. */
-    bool networked;
+    /** The same law as expressions, for networks: constants and stretches l1, l2 are terms of a pool (src/material/form.h). */
+    void (*form)(struct dea_pool *pool, const int *constants, int l1, int l2, struct dea_form *form);
 } dea_law;
 
 /** One branch of a Prony series. */

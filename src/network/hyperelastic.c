@@ -1,16 +1,23 @@
 #include "network/hyperelastic.h"
 
 #include "expression/derivative.h"
-#include "expression/formula.h"
+#include "material/form.h"
+
+dea_expr dea_hyperelastic_principal(const dea_symbols *symbols, dea_expr e1, dea_expr e2)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_expr one = NUM(1.0);
+    dea_form form = {0};
+    if (!pool->exhausted) {
+        const dea_expr l1 = MUL(symbols->prestretch, ADD(one, e1)), l2 = MUL(symbols->prestretch, ADD(one, e2));
+        symbols->law->form(pool, symbols->constants, l1, l2, &form);
+    }
+    return dea_expr_change(pool, form.stress[0]);
+}
 
 dea_expr dea_hyperelastic_change(const dea_symbols *symbols, dea_expr e)
 {
-    dea_pool *pool = symbols->pool;
-    const dea_expr y = SQUARE(MUL(symbols->prestretch, ADD(NUM(1.0), e)));
-    const dea_expr v = DIV(NUM(1.0), SQUARE(y));
-    const dea_expr j = SUB(ADD(SCALE(2.0, y), v), NUM(3.0));
-    const dea_expr w = ADD(symbols->yeoh[0], MUL(j, ADD(SCALE(2.0, symbols->yeoh[1]), SCALE(3.0, MUL(symbols->yeoh[2], j)))));
-    return dea_expr_change(pool, SCALE(2.0, MUL(SUB(y, v), w)));
+    return dea_hyperelastic_principal(symbols, e, e);
 }
 
 dea_expr dea_hyperelastic_area(const dea_symbols *symbols, dea_expr strain)

@@ -167,8 +167,11 @@ DEA_API double dea_relaxation_stress(const dea_relaxation *fit, double time);
 /** Why the fit has no further branch, in words. */
 DEA_API const char *dea_relaxation_reason(const dea_relaxation *fit);
 
-/** Prints fits as a material file, their quality as comments; one of the two may be NULL. @return DEA_OK, DEA_ERROR_IO */
-DEA_API dea_status dea_fit_print(const dea_fit *fit, const dea_relaxation *relaxation, FILE *stream, dea_error *error);
+/** Prints fits as a material file, their quality as comments; one of the two may be NULL.
+ * @param film whose permittivity, density and breakdown strength are printed too where they are not NAN; NULL: none is
+ * @return DEA_OK, DEA_ERROR_IO */
+DEA_API dea_status dea_fit_print(const dea_fit *fit, const dea_relaxation *relaxation, const dea_material *film, FILE *stream,
+                                 dea_error *error);
 
 #ifdef __cplusplus
 }

@@ -36,9 +36,9 @@ DEA_API void dea_plot_points(dea_plot *plot, size_t first, const void *points, s
  *         DEA_ERROR_MISSING, DEA_ERROR_MEMORY */
 DEA_API dea_status dea_plot_finish(dea_plot *plot, bool keep, dea_error *error);
 
-/** Draws nominal stress (uniaxial and equi-biaxial) and operating modulus of a material over stretch 1 to 2. Returns as
- * dea_plot_finish(). */
-DEA_API dea_status dea_plot_material(const dea_material *material, const char *path, dea_error *error);
+/** Draws nominal stress (uniaxial and equi-biaxial) and operating modulus of a material over stretch 1 to @p to, which is
+ * above 1. Returns as dea_plot_finish(). */
+DEA_API dea_status dea_plot_material(const dea_material *material, double to, const char *path, dea_error *error);
 /** Draws measured points and fitted curves: stress over stretch, stress over time, or both side by side; @p fit or @p relaxation
  * may be NULL, not both. Returns as dea_plot_finish(). */
 DEA_API dea_status dea_plot_fit(const dea_fit *fit, const dea_fit_data *data, const dea_relaxation *relaxation,

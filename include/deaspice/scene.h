@@ -194,6 +194,11 @@ DEA_API dea_status dea_scene_read_as(const char *path, const dea_reading *how, d
 DEA_API dea_status dea_scene_parse(const char *text, size_t length, const char *name, const char *folder,
                                    const dea_setting *settings, size_t setting_count, const char *model, dea_scene *scene,
                                    dea_error *error);
+/** Reads a material file, as a scene that names it would; what it does not give is NAN (C1 and permittivity too).
+ * @param[out] material valid only on DEA_OK
+ * @return DEA_OK, DEA_ERROR_SCENE (message "file:line:column: key: ...", or the file cannot be read), DEA_ERROR_MEMORY
+ */
+DEA_API dea_status dea_material_read(const char *path, dea_material *material, dea_error *error);
 /** Frees what the scene owns; NULL and a zeroed scene are fine. */
 DEA_API void dea_scene_free(dea_scene *scene);
 /** Points of the scene's sweep for one model: product of the axis lengths, 1 without axes. */

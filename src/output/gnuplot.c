@@ -48,7 +48,9 @@ dea_status dea_gnuplot_begin(dea_gnuplot *picture, const char *path, dea_error *
     const bool svg = dot && strcasecmp(dot, ".svg") == 0;
     picture->png = dot && strcasecmp(dot, ".png") == 0;
     if (!svg && !picture->png) {
-        return dea_fail(error, DEA_ERROR_USAGE, "%.400s: a picture ends in .svg or .png", path);
+        const char *name = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
+        return dea_fail(error, DEA_ERROR_USAGE, "%.400s: a picture ends in .svg or .png; write for example %.*s.svg", path,
+                        (int)strcspn(name, "."), name);
     }
     if (!gnuplot_found()) {
         return gnuplot_missing(error);

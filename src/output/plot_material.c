@@ -63,21 +63,23 @@ static void write_stress(FILE *script, const dea_law *law, const double *constan
     fputs("END\n", script);
 }
 
-static void write_material(const dea_material *material, FILE *script)
+static void write_material(const dea_material *material, double to, FILE *script)
 {
     double constants[DEA_LAW_CONSTANTS];
     dea_material_long_term(material, constants);
     for (int load = 0; load < DEA_LOAD_COUNT; load++) {
-        write_stress(script, material->law, constants, (dea_load)load, 1.0, 2.0);
+        write_stress(script, material->law, constants, (dea_load)load, 1.0, to);
     }
     fputs("$modulus << END\n", script);
     for (int i = 0; i <= CURVE_STEPS; i++) {
-        const double stretch = 1.0 + (double)i / CURVE_STEPS;
+        const double stretch = 1.0 + (to - 1.0) * i / CURVE_STEPS;
         write_pair(script, stretch, 1e-6 * dea_law_modulus(material->law, constants, stretch));
     }
     fputs("END\n", script);
     dea_plot_style(script);
-    fputs("unset key\nset multiplot\nset xrange [1:2]\nset yrange [0:*]\nset label 1 '(a)' at graph 0, graph 1.045\n", script);
+    fputs("unset key\nset multiplot\nset xrange [1:", script);
+    dea_gnuplot_number(script, to);
+    fputs("]\nset yrange [0:*]\nset label 1 '(a)' at graph 0, graph 1.045\n", script);
     write_setting(script, "label 2", material->name);
     fprintf(script, "set label 2 at screen 0.5, screen 0.96 center\n");
     write_setting(script, "xlabel", "Stretch λ");
@@ -99,7 +101,7 @@ static void write_material(const dea_material *material, FILE *script)
     fputs("unset multiplot\nunset output\n", script);
 }
 
-dea_status dea_plot_material(const dea_material *material, const char *path, dea_error *error)
+dea_status dea_plot_material(const dea_material *material, double to, const char *path, dea_error *error)
 {
     dea_gnuplot picture;
     const dea_status status = dea_gnuplot_begin(&picture, path, error);
@@ -107,7 +109,7 @@ dea_status dea_plot_material(const dea_material *material, const char *path, dea
         return status;
     }
     dea_gnuplot_size(&picture, WIDTH, HEIGHT);
-    write_material(material, picture.script);
+    write_material(material, to, picture.script);
     return dea_gnuplot_finish(&picture, true, error);
 }
 

@@ -77,15 +77,19 @@ static dea_status write_text(const char *path, const char *text, size_t length, 
     return status != DEA_OK ? status : closed;
 }
 
-static dea_status write_fit(const work *w, const char *path, dea_error *error)
+static dea_status write_fit(const work *w, const dea_arguments *arguments, const char *path, dea_error *error)
 {
+    dea_material film = dea_material_default();
+    film.permittivity = arguments->permittivity;
+    film.density = arguments->density;
+    film.breakdown = arguments->breakdown;
     char *text = NULL;
     size_t length = 0;
     FILE *stream = open_memstream(&text, &length);
     if (!stream) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
-    dea_status status = dea_fit_print(w->yeoh_given, w->prony_given, stream, error);
+    dea_status status = dea_fit_print(w->yeoh_given, w->prony_given, &film, stream, error);
     if (fclose(stream) != 0 && status == DEA_OK) {
         status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
@@ -148,7 +152,7 @@ static dea_status work_out(const dea_arguments *arguments, work *w, dea_error *e
         status = fit_relaxation(arguments, w, error);
     }
     if (status == DEA_OK && (arguments->output || !arguments->plot)) {
-        status = write_fit(w, arguments->output ? arguments->output : "-", error);
+        status = write_fit(w, arguments, arguments->output ? arguments->output : "-", error);
     }
     if (status == DEA_OK && arguments->plot) {
         status = dea_plot_fit(w->yeoh_given, &w->stretch, w->prony_given, &w->relaxation, arguments->plot, error);
@@ -178,6 +182,10 @@ static dea_exit run(const dea_arguments *arguments)
     if (talk && w.prony_given) {
         tell_relaxation(&w.prony);
     }
+    if (talk && arguments->output && w.yeoh_given && isnan(arguments->permittivity)) {
+        fprintf(stderr, "a scene needs a permittivity too: --permittivity 2.8 writes that of your film into %s\n",
+                arguments->output);
+    }
     dea_fit_data_free(&w.stretch);
     dea_relaxation_data_free(&w.relaxation);
     return status == DEA_OK ? DEA_EXIT_DONE : dea_complain_error(&error);
@@ -204,6 +212,9 @@ const dea_command dea_command_fit = {
             "                          an ideal step\n"
             "      --branches N        Prony branches, 1 to 10; default: as many as an F test\n"
             "                          finds significant at 5 %\n"
+            "      --permittivity NUMBER, --density \"1080 kg/m^3\", --breakdown \"80 V/um\"\n"
+            "                          of the film, written beside the fit, so that a scene can\n"
+            "                          name the file as it is\n"
             "      --relative          relative instead of absolute errors count\n"
             "  -o, --output FILE       write the material to FILE, - is standard output\n"
             "      --plot FILE         draw data and fit, FILE ends in .svg or .png\n"
@@ -213,7 +224,7 @@ const dea_command dea_command_fit = {
             "  -V, --version           the version\n"
             "\n"
             "Examples:\n"
-            "  deaspice fit --uniaxial pull.csv --equibiaxial bulge.csv -o film.yaml --plot fit.svg\n"
+            "  deaspice fit --uniaxial pull.csv --equibiaxial bulge.csv --permittivity 2.8 -o film.yaml\n"
             "  deaspice fit --uniaxial pull.csv --relaxation hold.csv --ramp \"2 s\" -o film.yaml\n",
     .takes = DEA_TAKES_OUTPUT | DEA_TAKES_PLOT | DEA_TAKES_QUIET | DEA_TAKES_FIT,
     .least = 0,

@@ -47,7 +47,7 @@ static bool complain_value(const option_entry *entry, const char *value, const c
 {
     char shown[DEA_TEXT_ROOM];
     dea_text_clip(value, DEA_TEXT_SHOWN, shown, sizeof shown);
-    dea_complain("--%s %s: %s%sneeds %s", entry->name, shown, why ? why : "", why ? "; " : "", entry->needs);
+    dea_complain("--%s %s: %s%s %s", entry->name, shown, why ? why : "", why ? "; accepted:" : "needs", entry->needs);
     return false;
 }
 
@@ -213,6 +213,12 @@ static const option_entry entries[] = {
     COUNT("shard", 0, "I/N", DEA_TAKES_JOURNAL, take_shard, shard, 1000000,
           "I/N with whole numbers 1 <= I <= N <= 1000000, for example 3/10"),
     FLAG("resume", 0, DEA_TAKES_JOURNAL, resume),
+    NUMBER("to", "STRETCH", DEA_TAKES_CURVES, to, "1", 1, false, 100, "a stretch above 1 and below 100, for example 4"),
+    NUMBER("permittivity", "NUMBER", DEA_TAKES_FIT, permittivity, "1", 0, false, INFINITY,
+           "a relative permittivity above 0, for example 2.8"),
+    NUMBER("density", "DENSITY", DEA_TAKES_FIT, density, "kg/m^3", 0, false, INFINITY,
+           "a density above 0, for example \"1080 kg/m^3\""),
+    NUMBER("breakdown", "FIELD", DEA_TAKES_FIT, breakdown, "V/m", 0, false, INFINITY, "a field above 0, for example \"80 V/um\""),
     {.name = "help", .letter = 'h'},
     {.name = "version", .letter = 'V'},
 };
@@ -310,7 +316,11 @@ dea_parsed dea_arguments_parse(const dea_command *command, int argc, char **argv
 {
     struct option longs[ENTRIES + 1];
     char letters[2 * ENTRIES + 2];
-    *arguments = (dea_arguments){.tolerance = NAN, .ramp = NAN, .budget = NAN};
+    *arguments = (dea_arguments){.tolerance = NAN};
+    for (size_t i = 0; i < ENTRIES; i++) {
+        if (entries[i].take == take_number)
+            *(double *)place_of(&entries[i], arguments) = NAN;
+    }
     arguments->settings = calloc((size_t)argc + 1, sizeof *arguments->settings);
     arguments->operands = calloc((size_t)argc + 1, sizeof *arguments->operands);
     if (!arguments->settings || !arguments->operands) {

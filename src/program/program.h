@@ -26,11 +26,12 @@ typedef enum dea_takes {
     DEA_TAKES_JOBS = 1 << 5,
     DEA_TAKES_QUIET = 1 << 6,
     DEA_TAKES_TOLERANCE = 1 << 7,
-    DEA_TAKES_FIT = 1 << 8,      /**< --uniaxial, --equibiaxial, --terms, --relaxation, --ramp, --branches, --relative */
+    DEA_TAKES_FIT = 1 << 8,      /**< data and how they are fitted, constants of the film */
     DEA_TAKES_EXPORT = 1 << 9,   /**< --as, --dialect, --analogy, --name */
     DEA_TAKES_JOURNAL = 1 << 10, /**< --shard, --resume */
     DEA_TAKES_FULL = 1 << 11,    /**< --full */
-    DEA_TAKES_BENCH = 1 << 12    /**< --runs, --budget */
+    DEA_TAKES_BENCH = 1 << 12,   /**< --runs, --budget */
+    DEA_TAKES_CURVES = 1 << 13   /**< --to */
 } dea_takes;
 
 /** Mode of a data file as the command line gives it. */
@@ -68,6 +69,10 @@ typedef struct dea_arguments {
     const char *name;       /**< of a part, NULL: not given */
     size_t runs;            /**< 0: not given */
     double budget;          /**< [s], NAN: not given */
+    double to;              /**< largest stretch of curves, NAN: not given */
+    double permittivity;    /**< of the film of a fit, NAN: not given */
+    double density;         /**< the same [kg/m^3] */
+    double breakdown;       /**< the same [V/m] */
     size_t shard, shards;   /**< --shard shard/shards, 1 <= shard <= shards; 0: not given */
     bool resume;
     dea_operand *operands;

@@ -109,7 +109,7 @@ static dea_status permittivity_check(dea_reader *reader)
                           scene->actuator.prestretch);
 }
 
-static dea_status prony_check(dea_reader *reader)
+dea_status dea_material_finish(dea_reader *reader)
 {
     const dea_material *material = &reader->scene->material;
     double sum = 0.0;
@@ -142,7 +142,7 @@ dea_status dea_reader_finish(dea_reader *reader)
     status = status ? status : radius_check(reader);
     status = status ? status : thickness_check(reader);
     status = status ? status : permittivity_check(reader);
-    status = status ? status : prony_check(reader);
+    status = status ? status : dea_material_finish(reader);
     status = status ? status : optics_check(reader);
     status = status ? status : dea_models_finish(reader);
     status = status ? status : dea_waveform_finish(reader);

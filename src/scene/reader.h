@@ -112,6 +112,8 @@ dea_status dea_waveform_finish(dea_reader *reader);
 dea_status dea_study_finish(dea_reader *reader);
 /* Refuses models that cannot do the scene's study. */
 dea_status dea_models_finish(dea_reader *reader);
+/* What only the whole material shows: shares that leave no long-term modulus. */
+dea_status dea_material_finish(dea_reader *reader);
 /* What only the whole scene shows: missing keys, contradictions. */
 dea_status dea_reader_finish(dea_reader *reader);
 

@@ -1,5 +1,7 @@
 /* The reading of a scene, step by step. */
+#define _GNU_SOURCE
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -165,6 +167,51 @@ dea_status dea_scene_read(const char *path, const dea_setting *settings, size_t 
 {
     const dea_reading how = {.settings = settings, .setting_count = setting_count, .model = model};
     return dea_scene_read_as(path, &how, scene, error);
+}
+
+static dea_status material_run(dea_reader *reader, const char *path, const dea_origin *origin)
+{
+    dea_ref ref;
+    const dea_place place = {.origin = origin, .line = 1, .column = 1};
+    reader->root = dea_tree_mapping(&reader->arena, &place);
+    dea_node *name = dea_tree_scalar(&reader->arena, origin, path);
+    if (!reader->root || !name || !dea_key_find("material", &ref)) {
+        return dea_reader_memory(reader);
+    }
+    dea_tree_put(reader->root, "material", name);
+    const dea_status status = dea_read_material(reader, &ref, name);
+    return status ? status : dea_material_finish(reader);
+}
+
+dea_status dea_material_read(const char *path, dea_material *material, dea_error *error)
+{
+    char shown[10 * 256 + 8];
+    char *named = NULL;
+    dea_files files = {0};
+    dea_scene scene = {.files = &files};
+    const dea_origin origin = {.name = dea_text_clip(path, 256, shown, sizeof shown), .folder = "", .setting = true};
+    dea_reader *reader = calloc(1, sizeof *reader);
+    dea_units *units = dea_units_open();
+    dea_status status = scene_clear(&scene);
+    if (!reader || !units || status || asprintf(&named, "%s%s", strchr(path, '/') ? "" : "./", path) < 0) {
+        named = NULL;
+        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while reading the material");
+    } else {
+        reader->scene = &scene;
+        reader->error = error;
+        reader->units = units;
+        status = material_run(reader, named, &origin);
+        *material = scene.material;
+    }
+    if (reader) {
+        dea_arena_free(&reader->arena);
+    }
+    free(reader);
+    free(named);
+    free(scene.title);
+    dea_units_close(units);
+    dea_files_free(&files);
+    return status;
 }
 
 void dea_scene_free(dea_scene *scene)

@@ -212,9 +212,14 @@ static bool explain_indentation(const char *text, size_t length, const line *at,
     return true;
 }
 
-bool dea_syntax_explain(const char *text, size_t length, dea_place *place, char out[DEA_SYNTAX_ROOM])
+bool dea_syntax_explain(dea_place *place, char out[DEA_SYNTAX_ROOM])
 {
+    const char *text = place->origin->text;
+    const size_t length = place->origin->length;
     line at;
+    if (!text) {
+        return false;
+    }
     if (explain_bracket(text, length, place, out)) {
         return true;
     }

@@ -15,8 +15,6 @@ typedef struct parse {
     dea_arena *arena;
     dea_error *error;
     size_t nodes;
-    const char *text;
-    size_t length;
     char syntax[SYNTAX_LENGTH]; /* first message of libfyaml, with its position in front */
 } parse;
 
@@ -92,7 +90,7 @@ static dea_status fail_syntax(parse *self, const dea_place *last)
         place.column = column + 1;
     }
     char usual[DEA_SYNTAX_ROOM];
-    if (dea_syntax_explain(self->text, self->length, &place, usual)) {
+    if (dea_syntax_explain(&place, usual)) {
         return dea_place_fail(&place, self->error, "syntax", "%s", usual);
     }
     const char *message = start > 0 ? after + start : "the text cannot be read as YAML";
@@ -359,7 +357,7 @@ static bool brackets_modest(const char *text, size_t length)
 dea_status dea_tree_parse(const char *text, size_t length, const dea_origin *origin, dea_arena *arena, dea_node **root,
                           dea_error *error)
 {
-    parse self = {.origin = origin, .arena = arena, .error = error, .text = text, .length = length};
+    parse self = {.origin = origin, .arena = arena, .error = error};
     dea_place place = {.origin = origin, .line = 1, .column = 1};
     *root = NULL;
     if (length == 0) {

@@ -45,8 +45,8 @@ dea_status dea_place_fail(const dea_place *place, dea_error *error, const char *
 
 enum { DEA_SYNTAX_ROOM = 1024 };
 /* Says what a text that is no YAML most likely gets wrong near @p place and what to write, and moves the place there; false where
- * it is none of the usual slips. */
-bool dea_syntax_explain(const char *text, size_t length, dea_place *place, char out[DEA_SYNTAX_ROOM]);
+ * it is none of the usual slips, or the text may not be shown. */
+bool dea_syntax_explain(dea_place *place, char out[DEA_SYNTAX_ROOM]);
 
 /* Parses one YAML document. Anchors, aliases, tags, duplicate keys and more than one document are refused. */
 dea_status dea_tree_parse(const char *text, size_t length, const dea_origin *origin, dea_arena *arena, dea_node **root,

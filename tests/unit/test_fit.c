@@ -192,7 +192,7 @@ static void softening_film_is_reported_as_unstable(void **state)
     assert_true(fit.unstable_stretch > 1.2 && fit.unstable_stretch < 3.0);
     char text[2000] = "";
     FILE *stream = fmemopen(text, sizeof text, "w");
-    assert_int_equal(dea_fit_print(&fit, NULL, stream, NULL), DEA_OK);
+    assert_int_equal(dea_fit_print(&fit, NULL, NULL, stream, NULL), DEA_OK);
     fclose(stream);
     assert_non_null(strstr(text, "WARNING"));
     assert_non_null(strstr(text, "\nyeoh: {C1: 100000 Pa, C2: -12000 Pa}\n"));
@@ -260,7 +260,7 @@ static void unloading_is_told_and_a_second_test_is_not(void **state)
     assert_int_equal(dea_fit_yeoh(&data, 0, false, &fit, NULL), DEA_OK);
     assert_true(fabs(fit.unloads_from - 1.5) < 1e-12);
     FILE *stream = fmemopen(text, sizeof text, "w");
-    assert_int_equal(dea_fit_print(&fit, NULL, stream, NULL), DEA_OK);
+    assert_int_equal(dea_fit_print(&fit, NULL, NULL, stream, NULL), DEA_OK);
     fclose(stream);
     assert_non_null(strstr(text, "unload from stretch 1.5"));
     dea_fit_data_free(&data);
@@ -670,7 +670,7 @@ static void held_stress_that_stays_has_no_branch(void **state)
         assert_true(fit.long_term == 1.0);
         assert_near(fit.instantaneous, 3e4, 1e-12);
         FILE *stream = fmemopen(text, sizeof text, "w");
-        assert_int_equal(dea_fit_print(NULL, &fit, stream, NULL), DEA_OK);
+        assert_int_equal(dea_fit_print(NULL, &fit, NULL, stream, NULL), DEA_OK);
         fclose(stream);
         assert_non_null(strstr(text, "\nprony: []\n"));
         dea_relaxation_data_free(&data);
@@ -916,7 +916,7 @@ static void write_film(const char *path, const char *line, bool both)
     FILE *stream = fopen(path, "w");
     assert_non_null(stream);
     fputs(line, stream);
-    assert_int_equal(dea_fit_print(both ? &yeoh : NULL, &prony, stream, NULL), DEA_OK);
+    assert_int_equal(dea_fit_print(both ? &yeoh : NULL, &prony, NULL, stream, NULL), DEA_OK);
     assert_int_equal(fclose(stream), 0);
     dea_fit_data_free(&stretch);
     dea_relaxation_data_free(&held);

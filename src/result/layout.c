@@ -4,6 +4,7 @@
 
 #include "deaspice/model.h"
 #include "deaspice/result.h"
+#include "support/number.h"
 
 static void add(dea_layout *layout, const char *name, const char *long_name, const char *unit, size_t offset)
 {
@@ -66,7 +67,10 @@ double dea_layout_place(const dea_scene *scene, size_t index)
 {
     const dea_ac *ac = &scene->ac;
     if (scene->study == DEA_STUDY_TRANSIENT) {
-        return fmin((double)index * scene->transient.every, scene->transient.until);
+        const double every = scene->transient.every, grid = scene->transient.grid;
+        double whole;
+        const bool decimal = grid > 0.0 && dea_number_over(every, grid, &whole);
+        return fmin(decimal ? whole * (double)index / grid : every * (double)index, scene->transient.until);
     }
     if (scene->study == DEA_STUDY_AC) {
         return fmin(ac->from * pow(10.0, (double)index / (double)ac->points_per_decade), ac->to);

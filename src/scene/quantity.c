@@ -9,6 +9,7 @@
 #include <string.h>
 #include <udunits2.h>
 
+#include "support/number.h"
 #include "support/text.h"
 
 enum { UNIT_LENGTH = 64 };
@@ -314,15 +315,18 @@ static bool number_convert(dea_units *units, const char *text, double *value, ch
     return fits;
 }
 
-/* number * factor; a factor that is a whole number, or one over a whole number, is taken as that, so that 100 um is exactly 1e-4
- * m. */
+/* number * factor; a factor that is a whole number, or one over a whole number, is taken as that, and a decimal as a whole number
+ * over a power of ten, so that 100 um is exactly 1e-4 m, and 0.7 mm the double nearest to 7e-4 m. */
 static double scale(double number, double factor)
 {
     const bool small = factor < 1.0;
     const double ratio = small ? 1.0 / factor : factor;
     const double whole = round(ratio);
+    double digits;
+    const double power = dea_number_power(number, &digits);
+    const bool exact = power > 0.0 && (small ? power * whole <= 0x1p53 : fabs(digits) * whole <= 0x1p53);
     if (fabs(ratio - whole) <= 1e-13 * whole) {
-        return small ? number / whole : number * whole;
+        return exact ? small ? digits / (power * whole) : digits * whole / power : small ? number / whole : number * whole;
     }
     return number * factor;
 }

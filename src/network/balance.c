@@ -2,16 +2,43 @@
 
 #include <math.h>
 
+#include "model/models.h"
+
 enum { ELASTIC, LOAD };
-enum { STRAIN, FORCE, FIELD, BREAKDOWN, LENGTH, END, IN_RANGE, TENSION = IN_RANGE + DEA_NETWORK_RANGES };
+enum {
+    STRAIN,
+    FORCE,
+    FIELD,
+    BREAKDOWN,
+    LENGTH,
+    END,
+    CAPACITANCE,
+    VOLTAGE,
+    COVERAGE,
+    RADIUS,
+    FOCAL_LENGTH,
+    REFRACTIVE_INDEX,
+    IN_RANGE,
+    TENSION = IN_RANGE + DEA_NETWORK_RANGES
+};
 
 dea_status dea_balance_open(dea_network *network, dea_balance *balance, dea_error *error)
 {
-    *balance = (dea_balance){.tension_count = network->tension_count, .sign = network->sign};
+    *balance = (dea_balance){.tension_count = network->tension_count, .kind = network->kind, .sign = network->sign};
     const dea_expr load = dea_network_load(network);
     const dea_expr forces[] = {dea_network_elastic(network), load};
-    dea_expr limits[DEA_TAPE_OUTPUTS] = {network->strain, load,        network->field, network->breakdown,
-                                         network->length, network->end};
+    dea_expr limits[DEA_TAPE_OUTPUTS] = {[STRAIN] = network->strain,
+                                         [FORCE] = load,
+                                         [FIELD] = network->field,
+                                         [BREAKDOWN] = network->breakdown,
+                                         [LENGTH] = network->length,
+                                         [END] = network->end,
+                                         [CAPACITANCE] = network->capacitance,
+                                         [VOLTAGE] = network->voltage,
+                                         [COVERAGE] = network->coverage,
+                                         [RADIUS] = network->radius,
+                                         [FOCAL_LENGTH] = network->focal_length,
+                                         [REFRACTIVE_INDEX] = network->refractive_index};
     for (int i = 0; i < DEA_NETWORK_RANGES; i++) {
         limits[IN_RANGE + i] = network->range[i];
     }
@@ -171,11 +198,21 @@ static bool is_connected(dea_balance *balance, double symbol, double u, const de
 static dea_row row_of(const dea_balance *balance, double u)
 {
     const dea_tape *limits = &balance->limits;
-    dea_row row = {dea_tape_value(limits, STRAIN), u, dea_tape_value(limits, FORCE), fabs(dea_tape_value(limits, FIELD)),
-                   DEA_STATE_OK};
+    const double focal = dea_tape_value(limits, FOCAL_LENGTH);
+    dea_row row = {.strain = dea_tape_value(limits, STRAIN),
+                   .displacement = u,
+                   .force = dea_tape_value(limits, FORCE),
+                   .field = fabs(dea_tape_value(limits, FIELD)),
+                   .capacitance = dea_tape_value(limits, CAPACITANCE),
+                   .state = DEA_STATE_OK};
     if (!(isfinite(row.strain) && isfinite(u) && isfinite(row.force) && isfinite(row.field))) {
         return dea_row_failed();
     }
+    row.charge = row.capacitance * dea_tape_value(limits, VOLTAGE);
+    row.area_strain = dea_area_strain(balance->kind, dea_tape_value(limits, COVERAGE), row.strain);
+    row.focal_length = isnan(focal) ? focal
+                                    : dea_lens_focal_length(focal, dea_tape_value(limits, REFRACTIVE_INDEX),
+                                                            dea_tape_value(limits, RADIUS), row.strain);
     for (int i = 0; i < balance->tension_count; i++) {
         if (!(dea_tape_value(limits, TENSION + i) > 0.0)) {
             row.state = DEA_STATE_SLACK;

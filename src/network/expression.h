@@ -52,7 +52,7 @@ double dea_expr_constant(const dea_pool *pool, dea_expr ref);
 /* Values of all terms of the pool at symbol 0 and node 0, into an array of pool->count. */
 void dea_pool_values(const dea_pool *pool, double symbol, double node, double *values);
 
-enum { DEA_TAPE_OUTPUTS = 20 };
+enum { DEA_TAPE_OUTPUTS = 24 };
 
 /* What a set of expressions needs, in order, ready to evaluate with the derivative over node 0. */
 typedef struct dea_tape {

@@ -23,6 +23,8 @@ typedef struct dea_symbols {
     dea_expr permittivity;         /* absolute [F/m] */
     dea_expr breakdown;            /* breakdown strength [V/m], +inf: none */
     dea_expr voltage;              /* across the film [V] */
+    dea_expr focal_length;         /* of a lens at rest [m], NAN: no optics */
+    dea_expr refractive_index;     /* of its liquid [1] */
 } dea_symbols;
 
 typedef enum dea_role { DEA_ROLE_SPRING, DEA_ROLE_SOFTENING, DEA_ROLE_HYPERELASTIC, DEA_ROLE_SOURCE } dea_role;
@@ -41,7 +43,10 @@ typedef struct dea_network {
     dea_element elements[DEA_NETWORK_ELEMENTS];
     int element_count;
     dea_expr area;                          /* on which the stresses of hyperelastic springs act [m^2] */
-    dea_expr capacitance;                   /* of the film [F], where the model is dynamic */
+    dea_expr capacitance;                   /* of the film [F] */
+    dea_expr voltage;                       /* across it [V] */
+    dea_expr coverage, radius;              /* B [1], r_a [m] */
+    dea_expr focal_length, refractive_index; /* of a lens at rest [m], [1]; NAN: no optics */
     dea_expr edge;                          /* u [m] */
     dea_expr strain;                        /* s [1] */
     dea_expr field;                         /* true field, signed as U [V/m] */
@@ -51,6 +56,7 @@ typedef struct dea_network {
     dea_expr end;       /* distance at which a region has vanished [m], 0: there is none */
     dea_expr breakdown; /* breakdown strength [V/m], > 0 */
     dea_expr range[DEA_NETWORK_RANGES]; /* each must be > 0 for the point to make sense: B, 1 - B, permittivity, C1 */
+    dea_kind kind;
     double sign;                        /* of u: +1 dot, -1 lens */
 } dea_network;
 

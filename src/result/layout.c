@@ -27,6 +27,9 @@ static void lay_transient(const dea_scene *scene, dea_layout *layout)
     if (!isnan(scene->actuator.focal_length)) {
         add(layout, "focal_length_m", "focal length of the lens", "m", offsetof(dea_sample, focal_length));
     }
+    if (!isnan(drive->series_resistance)) {
+        add(layout, "film_voltage_V", "voltage across the film", "V", offsetof(dea_sample, film_voltage));
+    }
     layout->rows = (size_t)floor(scene->transient.until / scene->transient.every * (1.0 + 1e-12)) + 1;
     layout->row_size = sizeof(dea_sample);
     layout->state_offset = offsetof(dea_sample, state);
@@ -57,7 +60,7 @@ dea_layout dea_layout_of(const dea_scene *scene)
         lay_ac(scene, &layout);
     } else {
         memcpy(layout.columns, dea_row_columns, sizeof dea_row_columns);
-        layout.column_count = DEA_ROW_COLUMNS;
+        layout.column_count = isnan(scene->actuator.focal_length) ? DEA_ROW_COLUMNS - 1 : DEA_ROW_COLUMNS;
     }
     return layout;
 }

@@ -308,10 +308,10 @@ static dea_status axes_read(dea_reader *reader, const dea_node *axes)
     return DEA_OK;
 }
 
-/* The focal length is a column of its own in a transient: an axis of it takes more of its path too. */
+/* The focal length is a column of its own: an axis of it takes more of its path too. */
 static bool column_taken(const dea_scene *scene, size_t index)
 {
-    if (scene->study == DEA_STUDY_TRANSIENT && strcmp(scene->axes[index].column, "focal_length_m") == 0) {
+    if (scene->study != DEA_STUDY_AC && strcmp(scene->axes[index].column, "focal_length_m") == 0) {
         return true;
     }
     for (size_t i = 0; i < scene->axis_count; i++) {

@@ -134,6 +134,7 @@ void dea_units_return_sample(const dea_units *units, dea_sample *sample)
     sample->current /= charge(units) / units->time;
     sample->charge /= charge(units);
     sample->focal_length /= units->length;
+    sample->film_voltage /= units->voltage;
 }
 
 void dea_units_return_response(const dea_units *units, dea_response *row)

@@ -1,6 +1,6 @@
 /* Eq. 13: hyperelastic film under a bias force that does not change. */
 #include "model/film_balance.h"
-#include "network/formula.h"
+#include "expression/formula.h"
 #include "network/hyperelastic.h"
 
 static void solve(const dea_point *point, double accuracy, dea_row *row)

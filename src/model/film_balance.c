@@ -1,39 +1,5 @@
-/* See film_balance.h. Stress differences to the pre-stretch are factored in the strain, so that a strain of 1e-12 keeps its
- * digits. */
+/* See film_balance.h. The law gives stress differences to the pre-stretch that keep their digits at a strain of 1e-12. */
 #include "model/film_balance.h"
-
-/* sigma(lambda_pre (1 + e)) - sigma(lambda_pre) and its first two derivatives over e. */
-typedef struct stress_change {
-    double value;
-    double slope;
-    double curve;
-} stress_change;
-
-static inline stress_change change_of_stress(const dea_film *film, double e)
-{
-    const double y0 = film->square;
-    const double d = y0 * e * (2.0 + e); /* y - y0, y = lambda^2 */
-    const double y = y0 + d;
-    const double inverse = 1.0 / (y * y);
-    const double q = (y + y0) * inverse * film->inverse_fourth;
-    const double dg = d * (1.0 + q); /* g - g0, g = y - y^-2 */
-    const double dj = d * (2.0 - q); /* J - J0, J = 2 y + y^-2 - 3 */
-    const double c2 = 2.0 * film->yeoh[1];
-    const double c3 = 3.0 * film->yeoh[2];
-    const double dw = dj * (c2 + c3 * (2.0 * film->j + dj));
-    const double w = film->w + dw;
-    const double g = film->g + dg;
-    const double wj = c2 + 2.0 * c3 * (film->j + dj);
-    const double cube = inverse * inverse * y; /* y^-3 */
-    /* with respect to y: g' = 1 + 2 y^-3, J' = 2 - 2 y^-3, g'' = -6 y^-4, J'' = 6 y^-4 */
-    const double g1 = 1.0 + 2.0 * cube;
-    const double j1 = 2.0 - 2.0 * cube;
-    const double second = 6.0 * inverse * inverse;
-    const double slope = 2.0 * (g1 * w + g * wj * j1);
-    const double curve = 2.0 * (2.0 * g1 * wj * j1 + 2.0 * c3 * g * j1 * j1 + second * (g * wj - w));
-    const double dy = 2.0 * y0 * (1.0 + e);
-    return (stress_change){2.0 * (dg * w + film->g * dw), slope * dy, curve * dy * dy + slope * 2.0 * y0};
-}
 
 typedef struct balance {
     double load;  /* N = sigma_A - sigma_P [Pa] */
@@ -44,10 +10,10 @@ typedef struct balance {
 
 static inline balance balance_at(const dea_film *film, double ratio, double e)
 {
-    const stress_change active = change_of_stress(film, e);
+    const dea_change active = film->law->change(film, e);
     balance b = {active.value, active.slope, active.curve, 0.0};
     if (ratio > 0.0) {
-        const stress_change passive = change_of_stress(film, -ratio * e);
+        const dea_change passive = film->law->change(film, -ratio * e);
         b.load -= passive.value;
         b.slope += ratio * passive.slope;
         b.curve -= ratio * ratio * passive.curve;
@@ -66,6 +32,13 @@ static double fourth(double x)
 static double trusted_width(double ratio, double e)
 {
     return 0.05 * (1.0 + e) / (1.0 + ratio);
+}
+
+/* Strain of the active film at which a region vanishes, or the energy of the material ends. */
+static double end_of(const dea_film *film, double ratio)
+{
+    const double active = fmin(1e4, film->most / film->prestretch - 1.0);
+    return ratio > 0.0 ? fmin(active, (1.0 - film->least / film->prestretch) / ratio) : active;
 }
 
 /* Looks for a fold on [low, high], where `fold` has the values at_low > 0 and at_high. Returns true and a narrow bracket of the
@@ -137,7 +110,7 @@ static double locate_fold(const dea_film *film, double ratio, double before, dou
 /* Follows the equilibrium from rest with growing strain until the load reaches m, or a fold, or the end of the film. */
 static bool trace(const dea_film *film, double ratio, double m, double *strain)
 {
-    const double end = ratio > 0.0 ? (1.0 - 1e-12) / ratio : 1e4; /* the passive stretch reaches 0 */
+    const double end = (1.0 - 1e-12) * end_of(film, ratio);
     double low = 0.0;
     double fold = balance_at(film, ratio, low).fold;
     while (low < end) {
@@ -167,7 +140,7 @@ static bool trace(const dea_film *film, double ratio, double m, double *strain)
  * next one is foreseen as step^4/last^3, and where that is below rounding the present step was the last one needed. */
 static bool halley(const dea_film *film, double ratio, double m, double stiffness, double *strain, balance *at)
 {
-    const double end = ratio > 0.0 ? 1.0 / ratio : 1e4;
+    const double end = end_of(film, ratio);
     /* N = K e + c e^2/2 + ..., m (1 + e)^4 = m (1 + 4 e + 6 e^2 + ...) */
     const double bend = 0.5 * film->square * film->curvature * (1.0 - ratio * ratio) - 6.0 * m;
     const double linear = m / (stiffness - 4.0 * m);

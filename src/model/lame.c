@@ -1,6 +1,6 @@
 /* Plane elasticity about the pre-stretched film: Lame's disc and annulus, with electrostatic softening. */
 #include "model/film_balance.h"
-#include "network/formula.h"
+#include "expression/formula.h"
 #include "network/network.h"
 
 /* Are both nominal stresses positive at one place of a region with moduli a, b, under the changes d1, d2 of the radial and hoop
@@ -8,6 +8,23 @@
 static bool is_taut(double rest, double a, double b, double d1, double d2)
 {
     return rest + (a * d1 + b * d2) > 0.0 && rest + (b * d1 + a * d2) > 0.0;
+}
+
+/* Share of its terms below which the net stiffness is computed again in long double: their rounding would be seen. */
+static const double nearly = 1e-2;
+
+/* 1/(2 pi H n) of disc, annulus and softening together [Pa], in long double from the constants of the film: just before pull-in
+ * the terms cancel. W11 + W12 + W11 (1 + B^2)/(1 - B^2) - W12 = 2 W11/(1 - B^2). */
+static double fine_stiffness(const dea_point *point)
+{
+    const dea_film *film = &point->film;
+    const dea_law *law = film->law;
+    const long double l = film->prestretch, y = l * l;
+    const long double w11 = law->fine_w11 ? law->fine_w11(film->constants, l) : film->w11;
+    const long double b2 = (long double)point->coverage * point->coverage,
+                      field = (long double)point->voltage / point->film_thickness;
+    const long double share = point->kind == DEA_DOT ? 3.0L : (1.0L + b2) / (1.0L - b2) - 2.0L;
+    return (double)(2.0L * w11 / (1.0L - b2) - share * film->permittivity * field * field * y);
 }
 
 static void solve(const dea_point *point, double accuracy, dea_row *row)
@@ -29,7 +46,10 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     const double q = (1.0 + b2) * inverse;
 
     /* 1/n over 2 pi H: disc a + b, annulus a (1 + B^2)/(1 - B^2) - b */
-    const double stiffness = disc1 + disc2 + annulus1 * q - annulus2;
+    double stiffness = disc1 + disc2 + annulus1 * q - annulus2;
+    if (fabs(stiffness) < nearly * film->w11 * inverse) {
+        stiffness = fine_stiffness(point);
+    }
     if (m > 0.0 && !(stiffness > 0.0)) {
         dea_row_refuse(row, DEA_STATE_PULL_IN);
         return;

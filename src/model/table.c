@@ -17,6 +17,14 @@ const dea_model *dea_model_at(size_t index)
     return index < dea_model_count() ? models[index] : NULL;
 }
 
+dea_form dea_model_form(const dea_model *model)
+{
+    return model->membrane  ? DEA_FORM_MEMBRANE
+           : model->linear  ? DEA_FORM_LINEAR
+           : model->network ? DEA_FORM_HYPERELASTIC
+                            : DEA_FORM_CLOSED;
+}
+
 const dea_model *dea_model_find(const char *name)
 {
     for (size_t i = 0; i < dea_model_count(); i++) {

@@ -10,8 +10,8 @@
 
 #include "model/models.h"
 #include "netlist/expression_text.h"
-#include "network/derivative.h"
-#include "network/formula.h"
+#include "expression/derivative.h"
+#include "expression/formula.h"
 #include "support/text.h"
 
 dea_status dea_mobility_open(const dea_scene *scene, const dea_dynamics *dynamics, dea_mobility *mobility, dea_error *error)

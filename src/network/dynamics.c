@@ -166,9 +166,9 @@ dea_status dea_dynamics_open(const dea_scene *scene, const dea_model *model, dea
         return status;
     }
     set_port(scene, d);
-    d->biased = scene->transient.from_bias &&
-                (d->dropped > 0.0 || (scene->reduction.mass && dea_point_mass(scene, &d->point) > 0.0) ||
-                 (scene->reduction.damper && !isnan(scene->material.retardation)));
+    d->biased = scene->transient.from_bias;
+    d->clamped = d->series > 0.0 || d->dropped > 0.0 || dea_point_mass(scene, &d->point) > 0.0 || d->retardation > 0.0 ||
+                 !isnan(scene->material.retardation);
     d->radius = d->point.coverage * d->point.frame_radius;
     d->mass = scene->reduction.mass ? 0.0 : dea_point_mass(scene, &d->point);
     if (!isnan(d->focal_length) && !(d->focal_length * (d->refractive_index - 1.0) >= d->radius)) {
@@ -217,6 +217,14 @@ double dea_dynamics_stiffness(dea_dynamics *dynamics, double u, double voltage, 
     const dea_edge e = dea_dynamics_edge(dynamics, u);
     const double held = relaxed ? 0.0 : dynamics->total_share;
     return e.area * (1.0 + held) * e.stress_slope + e.area_slope * e.stress - e.push_slope * voltage * voltage;
+}
+
+double dea_dynamics_hold(dea_dynamics *dynamics, double u, double voltage)
+{
+    const dea_edge e = dea_dynamics_edge(dynamics, u);
+    const double pull = 2.0 * e.push * voltage; /* dF/dU */
+    const double charge = dynamics->series > 0.0 ? pull * pull / e.capacitance : 0.0;
+    return dea_dynamics_stiffness(dynamics, u, voltage, false) + charge;
 }
 
 double dea_dynamics_scale(dea_dynamics *dynamics, double voltage)
@@ -379,29 +387,33 @@ bool dea_dynamics_inside(dea_dynamics *dynamics, double u)
     return framed && (!dynamics->port || dea_dynamics_edge(dynamics, u).capacitance > 0.0);
 }
 
-/* The first sample of a film at its bias, whose mass, damper or resistance, left out, would hold it there for the moment. */
-static void sample_biased(dea_dynamics *dynamics, const dea_moment *moment, dea_sample *sample)
+void dea_dynamics_start(dea_dynamics *dynamics, dea_moment *moment)
 {
-    const double slope = dynamics->dropped > 0.0 ? 0.0 : moment->slope;
-    const dea_moment rest = {
-        .time = moment->time, .source = moment->source, .voltage = moment->voltage, .slope = slope, .u = moment->u};
-    dea_dynamics plain = *dynamics; /* borrows its tapes */
-    plain.biased = false;
-    plain.dropped = 0.0;
-    (void)dea_dynamics_sample(&plain, &rest, sample);
+    if (!dynamics->biased || moment->time != 0.0) {
+        return;
+    }
+    double stiffness;
+    const dea_edge e = dea_dynamics_edge(dynamics, moment->u);
+    double z[DEA_PRONY_MAX];
+    for (size_t i = 0; i < dynamics->branch_count; i++) {
+        z[i] = e.stress;
+    }
+    (void)imbalance(dynamics, moment->u, moment->voltage, z, &stiffness);
+    moment->v = dynamics->clamped ? 0.0 : 2.0 * e.push * moment->voltage * moment->slope / stiffness;
+    moment->charging = dynamics->series > 0.0 || dynamics->dropped > 0.0;
+    moment->charge_slope = 0.0;
 }
 
 bool dea_dynamics_sample(dea_dynamics *dynamics, const dea_moment *moment, dea_sample *sample)
 {
     dea_row row = dea_row_failed();
-    if (dynamics->biased && moment->time == 0.0) {
-        sample_biased(dynamics, moment, sample);
-        return true;
-    }
-    if (dynamics->dropped > 0.0 && moment->time == 0.0) {
+    if (dynamics->dropped > 0.0 && moment->time == 0.0 && !dynamics->biased) {
         sample_uncharged(dynamics, moment, sample);
         return true;
     }
+    dea_moment started = *moment;
+    dea_dynamics_start(dynamics, &started);
+    moment = &started;
     const bool inside = dea_dynamics_inside(dynamics, moment->u);
     if (inside) {
         dea_balance_fill(&dynamics->balance, moment->voltage, moment->u, &row);

@@ -27,7 +27,8 @@ typedef struct dea_dynamics {
     bool port;                             /* a resistance is given: current and charge are wanted */
     double series;                         /* R_s [Ohm], 0: the film sees the source */
     double dropped;                        /* R_s that is left out and shows in the first sample alone [Ohm], else 0 */
-    bool biased;                           /* the first sample shows a film at rest under its bias, whatever is left out */
+    bool biased;                           /* the run starts at the equilibrium under its first voltage */
+    bool clamped;                          /* mass, damper or resistance, left out or not, hold the film there for the moment */
     double conductance;                    /* 1/R_p [S], 0: no leakage */
     double radius;                         /* r_a [m] */
     double focal_length, refractive_index; /* NAN: no optics */
@@ -62,6 +63,9 @@ dea_edge dea_dynamics_edge(dea_dynamics *dynamics, double u);
 bool dea_dynamics_equilibrium(const dea_dynamics *dynamics, double voltage, double *u);
 /* Net stiffness of the relaxed film dR/du - dF/du at u under film voltage U [N/m]; relaxed false: with the branches held. */
 double dea_dynamics_stiffness(dea_dynamics *dynamics, double u, double voltage, bool relaxed);
+/* Stiffness with the branches held that a film without mass and damper stays by: behind a series resistance its charge holds it,
+ * which cannot jump, so that it passes the fold of the voltage: dR/du - dF/du at constant U, and (2 phi U)^2/C more [N/m]. */
+double dea_dynamics_hold(dea_dynamics *dynamics, double u, double voltage);
 /* A displacement that is large for this film under that voltage: its size for tolerances [m], > 0. */
 double dea_dynamics_scale(dea_dynamics *dynamics, double voltage);
 
@@ -80,14 +84,18 @@ bool dea_dynamics_inside(dea_dynamics *dynamics, double u);
 /* State of the moving network at one time. */
 typedef struct dea_moment {
     double time;
-    double source;  /* source voltage [V] */
-    double voltage; /* film voltage [V] */
-    double slope;   /* of the film voltage [V/s], used where there is no series resistance */
-    double u, v;    /* [m], [m/s] */
-    bool charging;  /* the slope of the charge is known better than the small drop over R_s: */
+    double source;       /* source voltage [V] */
+    double voltage;      /* film voltage [V] */
+    double slope;        /* of the film voltage [V/s], used where there is no series resistance */
+    double u, v;         /* [m], [m/s] */
+    bool charging;       /* the slope of the charge is known better than the small drop over R_s: */
     double charge_slope; /* [A] */
 } dea_moment;
 
+/* At the first moment of a film at its bias the branches have relaxed and the charge rests: of forces that cancel nothing is
+ * left. So is the velocity 0 or, where nothing holds the film, that of its springs under a sloping voltage. Leaves other moments.
+ */
+void dea_dynamics_start(dea_dynamics *dynamics, dea_moment *moment);
 /* Fills a row; its state says slack or breakdown. A displacement past what the film can do is pull_in: false, as for all that
  * follows. */
 bool dea_dynamics_sample(dea_dynamics *dynamics, const dea_moment *moment, dea_sample *sample);

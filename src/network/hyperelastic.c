@@ -1,6 +1,6 @@
 #include "network/hyperelastic.h"
 
-#include "network/formula.h"
+#include "expression/formula.h"
 
 dea_expr dea_hyperelastic_change(const dea_symbols *symbols, dea_expr e)
 {

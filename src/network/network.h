@@ -6,9 +6,7 @@
 #define DEA_NETWORK_H
 
 #include "deaspice/model.h"
-#include "network/expression.h"
-
-enum { DEA_NETWORK_ELEMENTS = 8, DEA_NETWORK_TENSIONS = 6, DEA_NETWORK_RANGES = 4 };
+#include "expression/tape.h"
 
 /* What a model's network is built from: numbers, or expressions of symbol 0 where the swept scalar enters. */
 typedef struct dea_symbols {
@@ -18,7 +16,7 @@ typedef struct dea_symbols {
     dea_expr coverage;             /* B [1] */
     dea_expr film_thickness;       /* H [m] */
     dea_expr prestretch;           /* lambda_pre [1] */
-    dea_expr yeoh[DEA_YEOH_TERMS]; /* long-term constants [Pa] */
+    dea_expr yeoh[3];              /* long-term constants of a Yeoh film [Pa] */
     dea_expr modulus;              /* Y [Pa]: the scene's, or dsigma/dlambda at the pre-stretch */
     dea_expr permittivity;         /* absolute [F/m] */
     dea_expr breakdown;            /* breakdown strength [V/m], +inf: none */
@@ -40,24 +38,25 @@ typedef struct dea_element {
 
 typedef struct dea_network {
     dea_pool pool;
-    dea_element elements[DEA_NETWORK_ELEMENTS];
+    dea_element *elements; /* owned */
     int element_count;
-    dea_expr area;                          /* on which the stresses of hyperelastic springs act [m^2] */
-    dea_expr capacitance;                   /* of the film [F] */
-    dea_expr voltage;                       /* across it [V] */
-    dea_expr coverage, radius;              /* B [1], r_a [m] */
+    dea_expr area;        /* on which the stresses of hyperelastic springs act [m^2] */
+    dea_expr capacitance; /* of the film [F] */
+    dea_expr voltage;     /* across it [V] */
+    dea_expr coverage, radius;               /* B [1], r_a [m] */
     dea_expr focal_length, refractive_index; /* of a lens at rest [m], [1]; NAN: no optics */
-    dea_expr edge;                          /* u [m] */
-    dea_expr strain;                        /* s [1] */
-    dea_expr field;                         /* true field, signed as U [V/m] */
-    dea_expr tension[DEA_NETWORK_TENSIONS]; /* one per region and place: > 0 while taut */
+    dea_expr edge;        /* u [m] */
+    dea_expr strain;      /* s [1] */
+    dea_expr field;       /* true field, signed as U [V/m] */
+    dea_expr *tension;    /* owned; one per region and place: > 0 while taut */
     int tension_count;
     dea_expr length;    /* displacement that changes the stretch of the more strained region by its own size [m] */
     dea_expr end;       /* distance at which a region has vanished [m], 0: there is none */
     dea_expr breakdown; /* breakdown strength [V/m], > 0 */
-    dea_expr range[DEA_NETWORK_RANGES]; /* each must be > 0 for the point to make sense: B, 1 - B, permittivity, C1 */
+    dea_expr *range;    /* owned; each must be > 0 for the point to make sense: B, 1 - B, permittivity, those of the law */
+    int range_count;
     dea_kind kind;
-    double sign;                        /* of u: +1 dot, -1 lens */
+    double sign; /* of u: +1 dot, -1 lens */
 } dea_network;
 
 /* Builds the network of @p model for the scene; @p axis (may be NULL) is the scalar that stays symbol 0.
@@ -67,11 +66,14 @@ dea_status dea_network_build(const dea_scene *scene, const dea_model *model, con
 /* The same from symbols whose pool is that of the zeroed network. */
 dea_status dea_network_build_symbols(const dea_symbols *symbols, const dea_model *model, dea_network *network, dea_error *error);
 void dea_network_free(dea_network *network);
-/* Adds an element; names and meanings are borrowed for the life of the network. */
+/* These add to a network; without memory its pool is exhausted, which the end of the building tells.
+ * An element; names and meanings are borrowed for the life of the network. */
 void dea_network_add(dea_network *network, dea_role role, const char *name, const char *meaning, dea_expr value);
 
-/* Adds something that is positive while the film is taut. */
+/* Something that is positive while the film is taut. */
 void dea_network_taut(dea_network *network, dea_expr tension);
+/* Something that is positive where the point makes sense. */
+void dea_network_demand(dea_network *network, dea_expr range);
 /* Sets the true field from the area that disc (dot) or annulus (lens) has at u: U lambda_pre^2/H times the area ratio. */
 void dea_network_limit_area(const dea_symbols *symbols, dea_network *network);
 

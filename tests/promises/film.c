@@ -74,7 +74,7 @@ static void set_material(const dea_scene *scene, true_film *f)
     const long double given = m->instantaneous ? rest : 1.0L;
     f->branches = m->prony_count;
     for (int i = 0; i < DEA_YEOH_TERMS; i++) {
-        f->yeoh[i] = given * m->yeoh[i];
+        f->yeoh[i] = given * m->constants[i];
     }
     f->permittivity = 8.8541878128e-12 * (m->permittivity + (long double)m->permittivity_per_stretch * f->prestretch);
     f->modulus = isnan(m->modulus) ? film_cauchy(f, f->prestretch).slope : given * m->modulus;
@@ -132,12 +132,13 @@ true_film film_of(const dea_scene *scene, const dea_model *model)
     return f;
 }
 
-/* int_0^s (1 - p y)^4/(1 + y) dy with p = B/(1 - B): a series where the closed form would cancel. */
+/* int_0^s (1 - p y)^4/(1 + y) dy with p = B/(1 - B): a series where the closed form would cancel so
+ * far that both differ by what Newton's method sees. */
 static long double lens_charge(long double p, long double s)
 {
     static const long double binomial[] = {1.0L, 4.0L, 6.0L, 4.0L, 1.0L};
     long double sum = 0.0L, front = 1.0L;
-    if (fabsl(s) > 0.1L) {
+    if (fabsl(s) > 0.5L) {
         /* (1 - p y)^4 = (1 + y) P(y) + (1 + p)^4 */
         const long double c3 = p * p * p * p, c2 = -4.0L * p * p * p - c3, c1 = 6.0L * p * p - c2, c0 = -4.0L * p - c1;
         const long double q = (1.0L + p) * (1.0L + p);
@@ -145,7 +146,7 @@ static long double lens_charge(long double p, long double s)
     }
     for (int k = 0; k <= 4; k++) {
         long double power = front * binomial[k] * s;
-        for (int n = 0; n < 24; n++) {
+        for (int n = 0; n < 70; n++) {
             sum += power / (k + n + 1);
             power *= -s;
         }

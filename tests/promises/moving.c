@@ -400,6 +400,14 @@ static long double held_stiffness(const true_film *f, const state *s)
            e.push.slope * s->w * s->w;
 }
 
+/* What holds a film without mass and damper: its branches and, behind a series resistance, its charge. */
+static long double hold(const true_film *f, const state *s)
+{
+    const true_edge e = film_edge(f, s->u);
+    const long double pull = 2.0L * e.push.value * s->w; /* dF/dU */
+    return held_stiffness(f, s) + (f->series > 0.0L ? pull * pull / e.capacitance : 0.0L);
+}
+
 static bool is_framed(const motion *m, long double u)
 {
     return u > -m->film.divide && u < m->film.frame - m->film.divide;
@@ -462,17 +470,15 @@ static long double velocity_of(const motion *m, long double time, const state *s
         const long double rest = e.push.value * s->w * s->w - e.area.value * branch_stress(f, &e, s);
         return rest / (e.area.value * f->retardation * e.stress.slope);
     }
-    const bool series = f->series > 0.0L;
     const long double pull = 2.0L * e.push.value * s->w; /* dF/dU */
-    long double rate = 0.0L, slope = source_slope(m, time), drag = 0.0L;
+    long double rate = 0.0L, slope = source_slope(m, time);
     for (size_t b = 0; b < f->branches; b++) {
         rate += e.area.value * f->share[b] * (e.stress.value - s->z[b]) / f->tau[b];
     }
-    if (series) { /* U' = (i - U/R_p - C' U v)/C */
+    if (f->series > 0.0L) { /* U' = (i - U/R_p - C' U v)/C */
         slope = ((source_at(m, time) - s->w) / f->series - s->w * f->conductance) / e.capacitance;
-        drag = pull * pull / e.capacitance;
     }
-    return (rate + pull * slope) / (held_stiffness(f, s) + drag);
+    return (rate + pull * slope) / hold(f, s);
 }
 
 /* Current of the source: what the series resistance drops, or what charges the film and leaks through it. */
@@ -546,7 +552,7 @@ static bool is_ending(const motion *m, const state *s)
     const true_film *f = &m->film;
     const state rest = {0};
     const long double room = fminl(s->u + f->divide, f->frame - f->divide - s->u);
-    return (is_free(f) && held_stiffness(f, s) < nearly * held_stiffness(f, &rest)) ||
+    return (is_free(f) && hold(f, s) < nearly * hold(f, &rest)) ||
            (f->series > 0.0L && film_edge(f, s->u).capacitance < nearly * film_edge(f, 0.0L).capacitance) ||
            room < 1e-6L * fminl(f->divide, f->frame - f->divide);
 }
@@ -602,7 +608,7 @@ static bool run_segment(motion *m, state *s)
         }
         /* of a linear film only the samples tell, and what charges it */
         const bool stays = linear ? m->film.series == 0.0L || has_capacitance(&m->film, two.u) : inside(m, two.u);
-        if (!stays || (is_free(&m->film) && !(held_stiffness(&m->film, &two) > 0.0L))) {
+        if (!stays || (is_free(&m->film) && !(hold(&m->film, &two) > 0.0L))) {
             if (h > 1e-9L * width) {
                 h *= 0.1L; /* rows before it counts are still to be taken */
                 continue;

@@ -101,7 +101,7 @@ static inline double membrane_miss(judged_membrane *m, double edge)
 
 /* Long-term constants, relative permittivity at the pre-stretch, and voltage across the film, as physics.md and the scene say. */
 typedef struct judged_film {
-    double yeoh[DEA_YEOH_TERMS], permittivity, voltage, coverage, share;
+    double yeoh[DEA_LAW_CONSTANTS], permittivity, voltage, coverage, share;
 } judged_film;
 
 static inline judged_film judged_film_of(const dea_scene *scene)
@@ -114,8 +114,8 @@ static inline judged_film judged_film_of(const dea_scene *scene)
     for (size_t i = 0; i < material->prony_count && material->instantaneous; i++) {
         film.share -= material->prony[i].g;
     }
-    for (int i = 0; i < DEA_YEOH_TERMS; i++) {
-        film.yeoh[i] = film.share * material->yeoh[i];
+    for (int i = 0; i < DEA_LAW_CONSTANTS; i++) {
+        film.yeoh[i] = film.share * material->constants[i];
     }
     film.permittivity =
         8.8541878128e-12 * (material->permittivity + material->permittivity_per_stretch * scene->actuator.prestretch);
@@ -137,12 +137,13 @@ static inline double judge_linear(const dea_scene *scene, const dea_row *row, bo
     const double divide = film.coverage * a->frame_radius;
     const double m = film.permittivity * pow(film.voltage / a->film_thickness, 2.0);
     const double sign = a->kind == DEA_DOT ? 1.0 : -1.0;
-    const dea_stress at = dea_yeoh_stress(film.yeoh, l, l);
+    const dea_stress at = dea_law_stress(scene->material.law, film.yeoh, l, l);
     const double soft1 = m * l * l;
     const double disc = at.w11 + at.w12 - (a->kind == DEA_DOT ? 3.0 * soft1 : 0.0);
     const double q = (1.0 + b2) / (1.0 - b2);
     const double annulus = at.w11 * q - at.w12 - (a->kind == DEA_LENS ? soft1 * (q - 2.0) : 0.0);
-    const double modulus = isnan(scene->material.modulus) ? dea_yeoh_modulus(film.yeoh, l) : film.share * scene->material.modulus;
+    const double free = dea_law_modulus(scene->material.law, film.yeoh, l);
+    const double modulus = isnan(scene->material.modulus) ? free : film.share * scene->material.modulus;
     const double section = 2.0 * pi * divide * a->film_thickness / (l * l);
     const double stiffness = lame ? 2.0 * pi * a->film_thickness * (disc + annulus)
                                   : modulus * section * (1.0 / divide + 1.0 / (a->frame_radius - divide));

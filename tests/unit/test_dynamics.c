@@ -241,8 +241,8 @@ static size_t segments_of_record(double off)
         times[i] = strtod(text, NULL);
         voltages[i] = volts * (1.0 + (i % 2 ? off : -off));
     }
-    return segments_of(
-        (dea_waveform){.kind = DEA_WAVE_POINTS, .times = times, .voltages = voltages, .point_count = POINTS, .period = (double)NAN});
+    return segments_of((dea_waveform){
+        .kind = DEA_WAVE_POINTS, .times = times, .voltages = voltages, .point_count = POINTS, .period = (double)NAN});
 }
 
 static void corners_on_a_line_are_none(void **state)
@@ -337,9 +337,9 @@ static void a_jump_of_the_voltage_passes_through_the_loads_between(void **state)
     double at_once = 0.0, in_parts = 0.0;
     scene.actuator.frame_radius = 2.7435e-3;
     scene.actuator.film_thickness = 3.944e-6;
-    scene.material.yeoh[0] = 41229.6;
-    scene.material.yeoh[1] = -6087.9;
-    scene.material.yeoh[2] = 1730.9;
+    scene.material.constants[0] = 41229.6;
+    scene.material.constants[1] = -6087.9;
+    scene.material.constants[2] = 1730.9;
     scene.material.permittivity = 6.526;
     scene.material.prony_count = 2;
     scene.material.prony[0] = (dea_prony){.g = 0.2836, .tau = 4.4};
@@ -366,6 +366,32 @@ static void capacitance_of_a_lens_keeps_its_digits(void **state)
         const dea_edge rest = dea_dynamics_edge(&dynamics, 0.0);
         const double wanted = rest.capacitance + u * (2.0 * rest.push + rest.push_slope * u);
         assert_relative(dea_dynamics_edge(&dynamics, u).capacitance, wanted, 3e-13);
+        dea_dynamics_close(&dynamics);
+    }
+}
+
+/* int_0^s (1 - p y)^4/(1 + y) dy, p = B/(1 - B), by the polynomial and the logarithm that its pole leaves. */
+static long double lens_charge(long double p, long double s)
+{
+    const long double c3 = p * p * p * p, c2 = -4.0L * p * p * p - c3, c1 = 6.0L * p * p - c2, c0 = -4.0L * p - c1, q = 1.0L + p;
+    return s * (c0 + s * (c1 / 2.0L + s * (c2 / 3.0L + s * c3 / 4.0L))) + q * q * q * q * log1pl(s);
+}
+
+/* C = C_0 [1 - 4 B^2/(1 - B^2) int] all the way to a lens of a hundredth of its size. */
+static void capacitance_of_a_lens_that_shrinks_keeps_its_digits(void **state)
+{
+    (void)state;
+    static const long double strains[] = {-0.2L, -0.4L, -0.5L, -0.6L, -0.7L, -0.8L, -0.9L, -0.99L, 0.04L};
+    for (double coverage = 0.65; coverage < 0.96; coverage += 0.05) {
+        const dea_scene scene = paper_scene(DEA_LENS, 1.2, coverage, 4500.0);
+        const long double b = coverage, share = 4.0L * b * b / ((1.0L - b) * (1.0L + b));
+        dea_dynamics dynamics;
+        open_dynamics(&scene, "coverage", &dynamics);
+        for (size_t i = 0; i < sizeof strains / sizeof *strains; i++) {
+            const double rest = dea_dynamics_edge(&dynamics, 0.0).capacitance;
+            const double at = dea_dynamics_edge(&dynamics, (double)strains[i] * dynamics.radius).capacitance;
+            assert_relative(at, rest * (double)(1.0L - share * lens_charge(b / (1.0L - b), strains[i])), 5e-13);
+        }
         dea_dynamics_close(&dynamics);
     }
 }
@@ -428,6 +454,7 @@ int main(void)
         cmocka_unit_test(jump_and_creep_close_the_energy_balance),
         cmocka_unit_test(a_jump_of_the_voltage_passes_through_the_loads_between),
         cmocka_unit_test(capacitance_of_a_lens_keeps_its_digits),
+        cmocka_unit_test(capacitance_of_a_lens_that_shrinks_keeps_its_digits),
         cmocka_unit_test(a_film_at_rest_has_no_charge_behind_a_resistance),
         cmocka_unit_test(times_and_frequencies_reach_their_ends),
     };

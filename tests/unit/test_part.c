@@ -663,8 +663,8 @@ static void parts_of_different_names_share_a_circuit(void **state)
         dea_error error = {0};
         dea_scene scene = scene_of(&kinds[4], 2000.0);
         if (i == 1) {
-            scene.material.yeoh[0] = 60e3;
-            scene.material.yeoh[1] = scene.material.yeoh[2] = 0.0;
+            scene.material.constants[0] = 60e3;
+            scene.material.constants[1] = scene.material.constants[2] = 0.0;
             scene.material.permittivity = 4.8;
         }
         wanted[i] = solve_direct(&scene, "coverage").displacement;

@@ -100,7 +100,7 @@ static void a_branch_without_fold_is_slack_and_not_pulled_in(void **state)
     scene.actuator.frame_radius = 0.024754959020879968;
     scene.actuator.film_thickness = 7.2125087429179705e-05;
     const double yeoh[DEA_YEOH_TERMS] = {274260.40509514743, -51349.261979301722, 12893.589445386473};
-    memcpy(scene.material.yeoh, yeoh, sizeof yeoh);
+    memcpy(scene.material.constants, yeoh, sizeof yeoh);
     scene.material.permittivity = 7.9816706174601144;
     scene.material.permittivity_per_stretch = -0.45465024897083184;
     scene.drive.series_resistance = 15179.256271806953;
@@ -116,10 +116,10 @@ static void a_branch_folds_at_its_critical_voltage(void **state)
 {
     (void)state;
     dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.1, 0.0);
-    scene.material.yeoh[1] = scene.material.yeoh[2] = 0.0;
+    scene.material.constants[1] = scene.material.constants[2] = 0.0;
     dea_scene loose = scene;
     loose.actuator.prestretch = 1.0;
-    const double pressure = 2.0 * loose.material.yeoh[0] * 0.75 * cbrt(0.25); /* M at the fold, U/H = 0.6874 sqrt(mu/eps) */
+    const double pressure = 2.0 * loose.material.constants[0] * 0.75 * cbrt(0.25); /* M at the fold, U/H = 0.6874 sqrt(mu/eps) */
     const struct {
         const dea_scene *scene;
         const char *model;
@@ -246,6 +246,14 @@ static const struct {
      "  waveform: {sine: {offset: 0.88471525877214285 V, amplitude: 2.2059382841203776 V, frequency: 95643.075387818753 Hz,\n"
      "    phase: 4.3585337066108316 rad, delay: 4.064242338169842e-06 s}}\n"
      "model: coverage\nstudy: {transient: {until: 2e-05 s, every: 1.5e-07 s, start: bias}}\n"},
+    /* a film without mass and damper that its charge holds past the fold of the voltage */
+    {DEA_STATE_OK, 2,
+     "actuator: {kind: lens, frame_radius: 0.035355362349280 m, coverage: 0.95330256529467, film_thickness: 1.31787322722e-05 m,\n"
+     "  prestretch: 1.30401393083}\n"
+     "material: {yeoh: {C1: 7680 Pa, C2: 0 Pa, C3: 0 Pa}, permittivity: 4.8}\n"
+     "drive:\n  series_resistance: 1852367.73667 Ohm\n  leakage_resistance: 1195489702.07 Ohm\n"
+     "  waveform: {points: [[0.295 s, 28 V], [2.245 s, 86 V], [4.246 s, -73 V], [7.09 s, 53 V], [9.08 s, -125 V]]}\n"
+     "model: coverage\nstudy: {transient: {until: 10.39 s, every: 0.41558 s}}\n"},
     /* a jump at the first sample, which shows the velocity of a branch too fast and too weak to be seen otherwise */
     {DEA_STATE_OK, 3,
      "actuator: {kind: dot, frame_radius: 10 mm, coverage: 0.4, film_thickness: 3.1366820384274669e-06 m, prestretch: 1.327}\n"

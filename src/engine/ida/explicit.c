@@ -163,7 +163,7 @@ static double current_at(void *user, double time)
 static void see_current(explicit_run *run, double before, double time)
 {
     dea_flight *flight = run->flight;
-    if (flight->motion.q >= 0 && time > before) {
+    if (flight->peaks && time > before) {
         const double begin = flight->motion.segment->from;
         dea_peak_search(&flight->trace->peak, begin + before, begin + time, current_at, run);
     }

@@ -18,6 +18,7 @@ dea_status dea_flight_open(const dea_sundials *sun, const dea_scene *scene, dea_
                            dea_flight *flight, dea_error *error)
 {
     *flight = (dea_flight){.scene = scene, .signal = signal, .rows = dea_layout_of(scene).rows};
+    flight->peaks = dea_peak_is_known(scene, dynamics, signal);
     dea_motion_open(dynamics, signal, &flight->motion);
     flight->ring = calloc(1, sizeof *flight->ring);
     if (!flight->ring) {
@@ -53,10 +54,11 @@ static void reach(dea_flight *flight, const double *y)
 
 bool dea_flight_record(dea_flight *flight, double time, const double *y)
 {
-    const dea_moment moment = dea_motion_moment(&flight->motion, time, y);
+    dea_moment moment = dea_motion_moment(&flight->motion, time, y);
     if (!dea_motion_inside(&flight->motion, moment.u)) {
         return false;
     }
+    dea_dynamics_start(flight->motion.dynamics, &moment);
     reach(flight, y);
     flight->trace->moments[flight->trace->count++] = moment;
     return true;

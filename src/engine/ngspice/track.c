@@ -275,13 +275,14 @@ static double current_at(void *user, double time)
     const stretch *s = user;
     const node *a = &s->runner->last, *b = s->end;
     const node n = time <= a->moment.time ? *a : time >= b->moment.time ? *b : between(s->runner, a, b, time);
-    return n.current + n.moment.voltage * s->runner->route->dynamics->conductance;
+    dea_dynamics *d = s->runner->route->dynamics;
+    return d->series > 0.0 ? n.current + n.moment.voltage * d->conductance : dea_dynamics_current(d, &n.moment);
 }
 
 static void see_current(runner *r, const node *b)
 {
     stretch s = {r, b};
-    if (r->route->dynamics->series > 0.0) {
+    if (r->route->peaks) {
         dea_peak_search(&r->track->peak, r->last.moment.time, b->moment.time, current_at, &s);
     }
 }
@@ -394,24 +395,26 @@ static void enter_segment(runner *r, double time, double next)
     }
 }
 
-/* Inside; and a film without mass and damper stays where its branches, held, keep it stable. */
+/* Inside; and a film without mass and damper stays where its branches and its charge, held, keep it stable. */
 static bool is_possible(const runner *r, const node *n)
 {
     dea_dynamics *d = r->route->dynamics;
-    return is_inside(d, n) && (!is_free(d) || dea_dynamics_stiffness(d, n->moment.u, n->moment.voltage, false) > 0.0);
+    return is_inside(d, n) && (!is_free(d) || dea_dynamics_hold(d, n->moment.u, n->moment.voltage) > 0.0);
 }
 
-/* Why the run ends: the film has lost its stability there or will find no equilibrium, or another reason. */
+/* Why the run ends: the film has lost its stability there or, unless its charge holds it, will find no equilibrium, or another
+ * reason. */
 static dea_state verdict(const runner *r)
 {
     dea_dynamics *d = r->route->dynamics;
     const dea_segment *segment = &r->route->signal->segments[r->segment];
     const double rest = dea_dynamics_stiffness(d, 0.0, 0.0, false);
-    const double here = dea_dynamics_stiffness(d, r->last.moment.u, r->last.moment.voltage, false);
+    const double here = dea_dynamics_hold(d, r->last.moment.u, r->last.moment.voltage);
     double u;
     const double most = fmin(r->route->voltage, fmax(fabs(segment->start), fabs(segment->end)));
     const double voltage = d->series > 0.0 ? fmax(most, fabs(r->last.moment.voltage)) : most;
-    const bool lost = here < 1e-3 * rest || !dea_dynamics_equilibrium(d, voltage, &u);
+    const bool charged = is_free(d) && d->series > 0.0;
+    const bool lost = here < 1e-3 * rest || (!charged && !dea_dynamics_equilibrium(d, voltage, &u));
     return lost ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
 }
 

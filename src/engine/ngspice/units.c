@@ -47,8 +47,8 @@ static double resistance(const dea_units *u)
 
 static void enter_material(const dea_units *u, dea_material *material)
 {
-    for (int i = 0; i < DEA_YEOH_TERMS; i++) {
-        material->yeoh[i] *= u->stress;
+    for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
+        material->constants[i] *= material->law->constants[i % material->law->constant_count].modulus ? u->stress : 1.0;
     }
     material->modulus *= u->stress;
     material->permittivity *= permittivity(u);

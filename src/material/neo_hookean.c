@@ -50,6 +50,11 @@ static dea_change change(const dea_film *film, double e)
     return dea_invariant_change(slopes, gain, film, e);
 }
 
+static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
+{
+    return dea_invariant_biaxial(slopes, gain, film, e1, e2);
+}
+
 static const dea_constant constants[] = {{"mu", "Pa", true, 0.0, NAN, "a shear modulus > 0, e.g. 44 kPa"}};
 
 const dea_law dea_law_neo_hookean = {
@@ -65,4 +70,5 @@ const dea_law dea_law_neo_hookean = {
     .rise = rise,
     .prepare = prepare,
     .change = change,
+    .biaxial = biaxial,
 };

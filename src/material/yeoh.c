@@ -51,6 +51,11 @@ static dea_change change(const dea_film *film, double e)
     return dea_invariant_change(slopes, gain, film, e);
 }
 
+static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
+{
+    return dea_invariant_biaxial(slopes, gain, film, e1, e2);
+}
+
 static const dea_constant constants[] = {
     {"C1", "Pa", true, 0.0, NAN, "a modulus > 0, e.g. 178426 Pa"},
     {"C2", "Pa", true, -INFINITY, 0.0, "a modulus, e.g. -6023 Pa"},
@@ -70,5 +75,6 @@ const dea_law dea_law_yeoh = {
     .rise = rise,
     .prepare = prepare,
     .change = change,
+    .biaxial = biaxial,
     .networked = true,
 };

@@ -243,7 +243,7 @@ static void write_layers(const chart *map, FILE *script)
     }
     fputs(", \\\n $levels using 1:2 with lines linewidth 2.6 linecolor '#ffffff' notitle"
           ", \\\n $levels using 1:2 with lines linewidth 1.1 linecolor '#000000' notitle"
-          ", \\\n $levels using (int(column(0)) % 160 == 60 && inside($1, $2) ? $1 : NaN):2:(sprintf('%g', $3)) "
+          ", \\\n $levels using (int(column(0)) % 100 == 50 && inside($1, $2) ? $1 : NaN):2:(sprintf('%g', $3)) "
           "with labels boxed font ',9' textcolor '#000000' notitle\n",
           script);
 }

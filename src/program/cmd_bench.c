@@ -297,8 +297,8 @@ const dea_command dea_command_bench = {
             "                        short, fewer where the budget ends\n"
             "      --budget SECONDS  time that all may take, roughly; default 60. What it does\n"
             "                        not reach is listed as skipped\n"
-            "      --force               a target may overwrite a file that was read\n"
-            "      --no-files            refuse a scene that names other files (material, waveform)\n"
+            "      --force           a target may overwrite a file that was read\n"
+            "      --no-files        refuse a scene that names other files (material, waveform)\n"
             "  -q, --quiet           no table and no progress\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"
@@ -312,5 +312,6 @@ const dea_command dea_command_bench = {
              DEA_TAKES_BENCH,
     .least = 1,
     .most = 1,
+    .files = ".yaml",
     .run = run,
 };

@@ -77,18 +77,6 @@ static dea_status fit_relaxation(const dea_arguments *arguments, work *w, dea_er
     return status;
 }
 
-static dea_status write_text(const char *path, const char *text, size_t length, dea_error *error)
-{
-    dea_atomic file;
-    dea_status status = dea_atomic_open(&file, path, error);
-    if (status != DEA_OK) {
-        return status;
-    }
-    status = dea_atomic_write(&file, text, length, error);
-    dea_status closed = dea_atomic_close(&file, status == DEA_OK, status == DEA_OK ? error : NULL);
-    return status != DEA_OK ? status : closed;
-}
-
 static dea_status write_fit(const work *w, const dea_arguments *arguments, const char *path, dea_error *error)
 {
     dea_material film = dea_material_default();
@@ -106,7 +94,7 @@ static dea_status write_fit(const work *w, const dea_arguments *arguments, const
         status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
     if (status == DEA_OK) {
-        status = write_text(path, text, length, error);
+        status = dea_atomic_put(path, text, length, error);
     }
     free(text);
     return status;
@@ -247,5 +235,6 @@ const dea_command dea_command_fit = {
     .takes = DEA_TAKES_OUTPUT | DEA_TAKES_PLOT | DEA_TAKES_QUIET | DEA_TAKES_FIT,
     .least = 0,
     .most = SIZE_MAX,
+    .files = ".csv",
     .run = run,
 };

@@ -12,6 +12,12 @@ enum { CURVE_POINTS = 101, MOST_MATERIALS = 64, CURVE_COLUMNS = 4 };
 
 static const double usual_end = 2; /* stretch of curves and tables */
 
+static const char *material_word(size_t index)
+{
+    const dea_material *material = dea_material_builtin(index);
+    return material ? material->name : NULL;
+}
+
 static void print_list(void)
 {
     int width = 0;
@@ -46,13 +52,31 @@ static void print_relaxation(const dea_material *material)
         printf("prony %zu                g = %.9g, tau = %.9g s\n", i + 1, material->prony[i].g, material->prony[i].tau);
 }
 
+/* Constants of the law; those of a list by their paths. */
+static void print_law(const dea_material *material)
+{
+    const dea_law *law = material->law;
+    printf("%-22s %s, %s\n", "law", law->title, law->energy_text);
+    for (size_t i = 0; i < law->constant_count * law->entries; i++) {
+        const dea_constant *constant = &law->constants[i % law->constant_count];
+        const size_t entry = i / law->constant_count;
+        char label[DEA_NAME_LENGTH];
+        if (entry > 0 && fabs(material->constants[entry * law->constant_count]) <= 0)
+            break; /* of the entries in use */
+        if (law->entries > 1)
+            snprintf(label, sizeof label, "%s.%zu.%s", law->name, entry, constant->name);
+        else
+            snprintf(label, sizeof label, "%s", constant->name);
+        print_number(label, material->constants[i], strcmp(constant->unit, "1") == 0 ? "" : " Pa");
+    }
+}
+
 static void print_constants(const dea_material *material)
 {
     printf("%-22s %s\n", "name", material->name);
     if (material->source[0] != '\0')
         printf("%-22s %s\n", "source", material->source);
-    for (size_t i = 0; i < material->law->constant_count; i++)
-        printf("%-22s %.9g Pa\n", material->law->constants[i].name, material->constants[i]);
+    print_law(material);
     if (material->stretches[1] > 0)
         printf("%-22s %.9g to %.9g\n", "data of stretches", material->stretches[0], material->stretches[1]);
     if (fabs(material->permittivity_per_stretch) > 0)
@@ -208,5 +232,7 @@ const dea_command dea_command_materials = {
     .takes = DEA_TAKES_OUTPUT | DEA_TAKES_PLOT | DEA_TAKES_CURVES,
     .least = 0,
     .most = 1,
+    .words = material_word,
+    .files = ".yaml",
     .run = run,
 };

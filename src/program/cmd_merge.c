@@ -106,8 +106,8 @@ const dea_command dea_command_merge = {
             "      --model M         as in the runs\n"
             "      --set KEY=VALUE   as in the runs\n"
             "      --full            as in the runs\n"
-            "      --force               a target may overwrite a file that was read\n"
-            "      --no-files            refuse a scene that names other files (material, waveform)\n"
+            "      --force           a target may overwrite a file that was read\n"
+            "      --no-files        refuse a scene that names other files (material, waveform)\n"
             "  -q, --quiet           no summary and no progress\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"
@@ -124,5 +124,6 @@ const dea_command dea_command_merge = {
              DEA_TAKES_FULL,
     .least = 2,
     .most = SIZE_MAX,
+    .files = "",
     .run = merge,
 };

@@ -83,8 +83,8 @@ const dea_command dea_command_run = {
             "                        merge joins with the others\n"
             "      --resume          go on where a run with --resume stopped, however it ended;\n"
             "                        what is solved is kept in FILE.journal until FILE is there\n"
-            "      --force               a target may overwrite a file that was read\n"
-            "      --no-files            refuse a scene that names other files (material, waveform)\n"
+            "      --force           a target may overwrite a file that was read\n"
+            "      --no-files        refuse a scene that names other files (material, waveform)\n"
             "  -q, --quiet           no summary and no progress\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"
@@ -104,5 +104,6 @@ const dea_command dea_command_run = {
              DEA_TAKES_QUIET | DEA_TAKES_FULL | DEA_TAKES_JOURNAL,
     .least = 1,
     .most = 1,
+    .files = ".yaml",
     .run = run,
 };

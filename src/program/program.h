@@ -84,6 +84,9 @@ typedef struct dea_arguments {
     size_t operand_count;
 } dea_arguments;
 
+/** Word number @p index of a list, NULL past its end. */
+typedef const char *dea_word(size_t index);
+
 /** A command. */
 typedef struct dea_command {
     const char *name;
@@ -91,8 +94,15 @@ typedef struct dea_command {
     const char *help;    /**< text of --help */
     unsigned takes;      /**< dea_takes */
     size_t least, most;  /**< operands */
+    dea_word *words;     /**< that an operand may be, NULL: none */
+    const char *files;   /**< what a file that an operand may be ends in, "": anything, NULL: no file */
     dea_exit (*run)(const dea_arguments *arguments);
 } dea_command;
+
+/** Command number @p index, NULL past the end. */
+const dea_command *dea_command_at(size_t index);
+/** Kinds of export. */
+dea_word dea_export_word;
 
 extern const dea_command dea_command_run;
 extern const dea_command dea_command_merge;
@@ -101,6 +111,8 @@ extern const dea_command dea_command_bench;
 extern const dea_command dea_command_export;
 extern const dea_command dea_command_fit;
 extern const dea_command dea_command_materials;
+extern const dea_command dea_command_init;
+extern const dea_command dea_command_completion;
 
 /** How parsing ended. */
 typedef enum dea_parsed { DEA_PARSED_FINE, DEA_PARSED_HELP, DEA_PARSED_VERSION, DEA_PARSED_WRONG } dea_parsed;

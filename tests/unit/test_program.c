@@ -194,6 +194,117 @@ static void help_of_a_command_is_its_own_help(void **state)
     check_wrong("did you mean \"fit\"");
 }
 
+/* The options of every command as its completion knows them. */
+static void every_option_stands_in_its_help(void **state)
+{
+    static char script[TEXT_LENGTH];
+    size_t commands = 0;
+    (void)state;
+    RUN("completion", "bash");
+    assert_int_equal(last.status, 0);
+    memcpy(script, last.out, sizeof script);
+    for (char *at = script; (at = strstr(at, ") options='")); commands++) {
+        char *name = at;
+        while (name > script && name[-1] != ' ')
+            name--;
+        *at = '\0';
+        RUN(name, "--help");
+        assert_int_equal(last.status, 0);
+        char *end = strchr(at + strlen(" options='") + 1, '\'');
+        assert_non_null(end);
+        *end = '\0';
+        for (const char *option = strtok(at + strlen(") options='"), " "); option; option = strtok(NULL, " ")) {
+            if (!strstr(last.out, option))
+                fail_msg("the help of %s has no %s", name, option);
+        }
+        at = end + 1;
+    }
+    assert_int_equal(commands, 9);
+}
+
+static void bash_completes(void **state)
+{
+    static const struct {
+        const char *words, *offers;
+    } cases[] = {
+        {"''", "help run merge check bench export fit materials init completion"},
+        {"mat", "materials"},
+        {"help mat", "materials"},
+        {"run --eng", "--engine"},
+        {"run --engine n", "ngspice"},
+        {"run --engine = d", "direct"},
+        {"run --model fie", "field"},
+        {"run --format ''", "csv nc raw"},
+        {"run --set drive.vol", "drive.voltage="},
+        {"run --set coverage = ''", ""},
+        {"run --jobs ''", ""},
+        {"run only", "only.yaml"},
+        {"run -o only", "only.csv only.yaml"},
+        {"fit only", "only.csv"},
+        {"export --as kic", "kicad"},
+        {"export --dialect x", "xyce"},
+        {"init ''", "dot lens transient ac sweep"},
+        {"materials vhb", "vhb-4910"},
+        {"completion ''", "bash zsh fish"},
+        {"check --resu", ""},
+    };
+    (void)state;
+    write_file("only.yaml", "");
+    write_file("only.csv", "");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char script[8192 + 512];
+        snprintf(script, sizeof script,
+                 "source <('%s' completion bash)\nCOMP_WORDS=(deaspice %s)\nCOMP_CWORD=$((${#COMP_WORDS[@]}-1))\n_deaspice\n"
+                 "IFS=' '\nprintf '%%s' \"${COMPREPLY[*]}\"\n",
+                 program, cases[i].words);
+        write_file("complete.sh", script);
+        assert_int_equal(system("bash complete.sh >offers.txt"), 0);
+        read_file("offers.txt", last.out);
+        if (strcmp(last.out, cases[i].offers) != 0)
+            fail_msg("deaspice %s offers \"%s\", not \"%s\"", cases[i].words, last.out, cases[i].offers);
+    }
+    RUN("completion", "tcsh");
+    check_wrong("unknown shell \"tcsh\"");
+}
+
+static void every_scene_to_start_from_runs(void **state)
+{
+    static const char *const kinds[] = {"dot", "lens", "transient", "ac", "sweep"};
+    (void)state;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        static char straight[TEXT_LENGTH];
+        char name[32];
+        snprintf(name, sizeof name, "start-%s.yaml", kinds[i]);
+        RUN("init", kinds[i]);
+        assert_int_equal(last.status, 0);
+        memcpy(straight, last.out, sizeof straight);
+        RUN("init", kinds[i], "-o", name);
+        assert_int_equal(last.status, 0);
+        assert_non_null(strstr(last.err, name));
+        read_file(name, last.out);
+        assert_string_equal(last.out, straight);
+        RUN("run", name, "-o", "start.csv");
+        assert_int_equal(last.status, 0);
+        assert_non_null(strstr(last.err, "ok"));
+        assert_null(strstr(last.err, "warning"));
+        write_file(name, "mine\n");
+        RUN("init", kinds[i], "-o", name);
+        check_wrong("is there already; choose another name, or give --force");
+        read_file(name, last.out);
+        assert_string_equal(last.out, "mine\n");
+        RUN("init", kinds[i], "-o", name, "--force", "--quiet");
+        assert_int_equal(last.status, 0);
+        assert_string_equal(last.err, "");
+        read_file(name, last.out);
+        assert_string_equal(last.out, straight);
+    }
+    RUN("init");
+    assert_int_equal(last.status, 0);
+    assert_int_equal(lines_of(last.out), 5);
+    RUN("init", "lense");
+    check_wrong("did you mean \"lens\"");
+}
+
 static void wrong_usage_is_told_with_a_guess(void **state)
 {
     (void)state;
@@ -775,6 +886,9 @@ int main(void)
         cmocka_unit_test(program_alone_shows_usage),
         cmocka_unit_test(help_and_version_succeed),
         cmocka_unit_test(help_of_a_command_is_its_own_help),
+        cmocka_unit_test(every_option_stands_in_its_help),
+        cmocka_unit_test(bash_completes),
+        cmocka_unit_test(every_scene_to_start_from_runs),
         cmocka_unit_test(wrong_usage_is_told_with_a_guess),
         cmocka_unit_test(run_prints_csv),
         cmocka_unit_test(raw_file_and_standard_output_hold_the_same),

@@ -456,11 +456,43 @@ static int leave(void **state)
     return rmdir(folder);
 }
 
+/* One cell: words to the letter, numbers to 12 digits. */
+static bool same_cell(const char *got, const char *wanted)
+{
+    char *after, *after_wanted;
+    const double number = strtod(got, &after), known = strtod(wanted, &after_wanted);
+    return after_wanted > wanted && *after_wanted == '\0' ? *after == '\0' && fabs(number - known) <= 1e-12 * fabs(known)
+                                                         : strcmp(got, wanted) == 0;
+}
+
+/* Rows that the program printed into a file, against the indented lines of a text. */
+static void compare_printed(const char *path, const char *text)
+{
+    char line[LINE_LENGTH], wanted[LINE_LENGTH];
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file)) {
+        char *left, *right;
+        snprintf(wanted, sizeof wanted, "%.*s", (int)strcspn(text, "\n"), text);
+        text += strcspn(text, "\n") + 1;
+        assert_int_equal(strncmp(wanted, "    ", 4), 0);
+        const char *got = strtok_r(line, ",\n", &left), *known = strtok_r(wanted + 4, ",", &right);
+        for (; got && known; got = strtok_r(NULL, ",\n", &left), known = strtok_r(NULL, ",", &right)) {
+            if (!same_cell(got, known)) {
+                fail_msg("the program prints %s, README %s", got, known);
+            }
+        }
+        assert_true(!got && !known);
+    }
+    assert_int_equal(*text, '\n');
+    assert_int_equal(fclose(file), 0);
+}
+
 /* README's scenes as a reader types them in: every block of YAML that has an actuator. */
 static void scenes_of_the_readme_run_as_written(void **state)
 {
     static char text[1 << 16];
-    size_t scenes = 0;
+    size_t scenes = 0, printed = 0;
     (void)state;
     FILE *file = fopen("README.md", "r");
     assert_non_null(file);
@@ -472,20 +504,26 @@ static void scenes_of_the_readme_run_as_written(void **state)
         assert_non_null(end);
         *end = '\0';
         if (strncmp(block, "actuator:", 9) == 0 || strstr(block, "\nactuator:")) {
-            char path[PATH_LENGTH], words[2 * PATH_LENGTH];
+            char path[PATH_LENGTH], rows[PATH_LENGTH], words[3 * PATH_LENGTH];
             snprintf(path, sizeof path, "%s/readme.yaml", folder);
             file = fopen(path, "w");
             assert_non_null(file);
             assert_true(fputs(block, file) >= 0);
             assert_int_equal(fclose(file), 0);
-            snprintf(words, sizeof words, "run --no-files %s", path);
+            snprintf(rows, sizeof rows, "%s/rows.csv", folder);
+            snprintf(words, sizeof words, "run --quiet --no-files %s -o %s", path, rows);
             run_program(words);
-            assert_int_equal(unlink(path), 0);
+            static const char prompt[] = "``\n\n    $ build/deaspice run dot.yaml\n"; /* and what it prints below */
+            if (strncmp(end + 1, prompt, sizeof prompt - 1) == 0) {
+                compare_printed(rows, end + sizeof prompt);
+                printed++;
+            }
+            assert_int_equal(unlink(path) + unlink(rows), 0);
             scenes++;
         }
         block = end + 1;
     }
-    assert_true(scenes > 0);
+    assert_true(scenes > 0 && printed > 0);
 }
 
 int main(void)

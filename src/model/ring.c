@@ -159,7 +159,12 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     }
     const double sign = dea_point_sign(point), s = sign * x, area = area_at(&r, s);
     const double force = 2.0 * DEA_PI * point->film_thickness * (dea_point_divide(point) / film->prestretch) * m;
-    dea_row_fill(row, point, s, sign * force * (1.0 + s) * area, film->square * area, is_taut(&r, k, x, area, &at));
+    dea_row_fill(row, point,
+                 (dea_found){.strain = s,
+                             .force = sign * force * (1.0 + s) * area,
+                             .stretch = film->square * area,
+                             .capacitance = dea_point_capacitance(point) * area * area,
+                             .taut = is_taut(&r, k, x, area, &at)});
 }
 
 /* Relative changes of the stretches, and what area stretch the electroded film has over lambda_pre^2. */

@@ -1,7 +1,9 @@
-/* NetCDF classic (64-bit offset; CDF-5 where a variable is too large for it): swept axes as dimensions, behind them time or
- * frequency, CF attributes. What a transient tells besides its samples stands in variables over the axes. The classic layout
- * keeps a variable in one piece, so blocks go straight to their place and every NetCDF reader opens it. No time stamp: the same
- * study gives the same bytes. libnetcdf is loaded when the first such file is opened; nobody else pays for it. */
+/* NetCDF classic (64-bit offset; CDF-5 where a variable is too large for it): swept axes as dimensions, before them time or
+ * frequency (CDO takes no other order for time), CF attributes. What a transient tells besides its samples
+ * stands in variables over the axes. The classic layout keeps a variable in one piece, so blocks go straight to their place and
+ * every NetCDF reader opens it; points with rows of their own are held until a write along the axes is long enough to be worth
+ * it. No time stamp: the same study gives the same bytes. libnetcdf is loaded when the first such file is opened; nobody else
+ * pays for it. */
 #include "output/writer.h"
 
 #include "deaspice/measures.h"
@@ -20,7 +22,7 @@
 #define DEA_VERSION "unknown"
 #endif
 
-enum { SLAB_ROWS = 4096, TEXT_LENGTH = 512, SUMMARIES = 12, AVERAGES = 2 };
+enum { SLAB_VALUES = 4096, HELD_BYTES = 1 << 25, TEXT_LENGTH = 512, SUMMARIES = 12, AVERAGES = 2 };
 
 /* Largest number of doubles in one variable of the 64-bit offset format: 2^32 - 4 bytes. */
 static const uint64_t offset_values = UINT64_C(4294967292) / sizeof(double);
@@ -83,23 +85,25 @@ typedef struct grid {
     dea_layout layout;
     const char *target;              /* for messages */
     int file;                        /* -1: not open */
+    size_t lead;                     /* dimensions before those of the points: 1 of time or frequency, 0 in a sweep */
     size_t point_rank;               /* dimensions of a variable over the axes: models, axes */
-    size_t rank;                     /* dimensions of a variable of the rows: those, then time or frequency */
-    size_t *shape, *start, *edge;    /* point_rank + 1 values each */
-    int *dimensions;                 /* point_rank + 1 values */
+    size_t *shape, *start, *edge;    /* of the lead, the points and the windows: point_rank + 2 values each */
+    int *dimensions;                 /* as many */
     int *axes;                       /* variable of each axis */
     int columns[DEA_LAYOUT_COLUMNS]; /* variables of the rows; that of the first may be a coordinate */
     int state, model;
     int summaries[SUMMARIES], averages[AVERAGES], window[2];
     int failed; /* first status of the library that is not 0 */
-    double values[SLAB_ROWS];
-    signed char states[SLAB_ROWS];
+    char *held; /* points that wait, NULL in a sweep; owned */
+    size_t held_first, held_count, held_room;
+    double values[SLAB_VALUES];
+    signed char states[SLAB_VALUES];
 } grid;
 
 /* Rows of a transient and of a frequency response lie along a coordinate of their own: their first column. */
 static bool has_coordinate(const grid *file)
 {
-    return file->rank > file->point_rank;
+    return file->lead > 0;
 }
 
 /* Keeps the first failure, so that a row of calls needs one check at its end. */
@@ -307,7 +311,7 @@ static size_t model_name_length(const dea_scene *scene)
     return longest;
 }
 
-/* Dimension and variable of the models, slowest of all. */
+/* Dimension and variable of the models, slowest of the points. */
 static void define_model(grid *file)
 {
     int pair[2] = {0, 0};
@@ -316,8 +320,8 @@ static void define_model(grid *file)
     grid_keep(file, file->nc.nc_def_var(file->file, "model", NC_CHAR, 2, pair, &file->model));
     put_text(file, file->model, "long_name", "model");
     put_text(file, file->model, "_Encoding", "utf-8");
-    file->dimensions[0] = pair[0];
-    file->shape[0] = file->scene->model_count;
+    file->dimensions[file->lead] = pair[0];
+    file->shape[file->lead] = file->scene->model_count;
 }
 
 /* Dimension and coordinate variable of an axis. */
@@ -343,19 +347,20 @@ static void define_coordinate(grid *file)
 {
     const dea_column *column = &file->layout.columns[0];
     char name[DEA_NAME_LENGTH];
-    int *dimension = &file->dimensions[file->point_rank];
+    int *dimension = &file->dimensions[0];
     snprintf(name, sizeof name, "%.*s", (int)strcspn(column->name, "_"), column->name);
-    file->shape[file->point_rank] = file->layout.rows;
+    file->shape[0] = file->layout.rows;
     grid_keep(file, file->nc.nc_def_dim(file->file, name, file->layout.rows, dimension));
     grid_keep(file, file->nc.nc_def_var(file->file, name, NC_DOUBLE, 1, dimension, &file->columns[0]));
     put_text(file, file->columns[0], "units", column->unit);
     put_text(file, file->columns[0], "long_name", column->long_name);
 }
 
-static int define_numbers(grid *file, const char *name, const char *long_name, const char *unit, size_t rank)
+/* A variable of numbers over the dimensions from @p first on. */
+static int define_numbers(grid *file, const char *name, const char *long_name, const char *unit, size_t first, size_t rank)
 {
     int variable = -1;
-    grid_keep(file, file->nc.nc_def_var(file->file, name, NC_DOUBLE, (int)rank, file->dimensions, &variable));
+    grid_keep(file, file->nc.nc_def_var(file->file, name, NC_DOUBLE, (int)rank, &file->dimensions[first], &variable));
     put_text(file, variable, "units", unit);
     put_text(file, variable, "long_name", long_name);
     put_number(file, variable, "_FillValue", (double)NAN);
@@ -364,11 +369,12 @@ static int define_numbers(grid *file, const char *name, const char *long_name, c
 
 static void define_columns(grid *file)
 {
+    const size_t rank = file->lead + file->point_rank;
     for (size_t i = has_coordinate(file) ? 1 : 0; i < file->layout.column_count; i++) {
         const dea_column *column = &file->layout.columns[i];
-        file->columns[i] = define_numbers(file, column->name, column->long_name, column->unit, file->rank);
+        file->columns[i] = define_numbers(file, column->name, column->long_name, column->unit, 0, rank);
     }
-    grid_keep(file, file->nc.nc_def_var(file->file, "state", NC_BYTE, (int)file->rank, file->dimensions, &file->state));
+    grid_keep(file, file->nc.nc_def_var(file->file, "state", NC_BYTE, (int)rank, file->dimensions, &file->state));
     signed char codes[DEA_STATE_COUNT];
     char names[TEXT_LENGTH] = "";
     size_t used = 0;
@@ -384,32 +390,32 @@ static void define_columns(grid *file)
 /* Variables over the axes: what a transient tells besides its samples, and its averages over a dimension of windows. */
 static void define_summaries(grid *file)
 {
-    const int time = file->dimensions[file->point_rank];
     for (size_t i = 0; i < SUMMARIES; i++) {
-        file->summaries[i] = define_numbers(file, summaries[i].name, summaries[i].long_name, summaries[i].unit, file->point_rank);
+        file->summaries[i] = define_numbers(file, summaries[i].name, summaries[i].long_name, summaries[i].unit, file->lead,
+                                            file->point_rank);
     }
     if (file->scene->transient.average_count == 0) {
         return;
     }
     static const char *const ends[] = {"window_from_s", "window_to_s"}, *const words[] = {"begin of the window",
                                                                                           "end of the window"};
-    int *window = &file->dimensions[file->point_rank];
+    int *window = &file->dimensions[file->lead + file->point_rank];
     grid_keep(file, file->nc.nc_def_dim(file->file, "window", file->scene->transient.average_count, window));
     for (size_t i = 0; i < AVERAGES; i++) {
-        file->averages[i] = define_numbers(file, averages[i].name, averages[i].long_name, averages[i].unit, file->point_rank + 1);
+        file->averages[i] = define_numbers(file, averages[i].name, averages[i].long_name, averages[i].unit, file->lead,
+                                           file->point_rank + 1);
     }
     for (size_t i = 0; i < 2; i++) {
         grid_keep(file, file->nc.nc_def_var(file->file, ends[i], NC_DOUBLE, 1, window, &file->window[i]));
         put_text(file, file->window[i], "units", "s");
         put_text(file, file->window[i], "long_name", words[i]);
     }
-    *window = time;
 }
 
 static void put_rows_coordinate(grid *file)
 {
-    for (size_t first = 0; first < file->layout.rows && !file->failed; first += SLAB_ROWS) {
-        const size_t left = file->layout.rows - first, count = left < SLAB_ROWS ? left : SLAB_ROWS;
+    for (size_t first = 0; first < file->layout.rows && !file->failed; first += SLAB_VALUES) {
+        const size_t left = file->layout.rows - first, count = left < SLAB_VALUES ? left : SLAB_VALUES;
         for (size_t i = 0; i < count; i++) {
             file->values[i] = dea_layout_place(file->scene, first + i);
         }
@@ -459,16 +465,14 @@ static void grid_define(grid *file, const char *path, const char *engine)
     }
     grid_keep(file, file->nc.nc_set_fill(file->file, NC_NOFILL, &old_fill)); /* every value is written */
     put_provenance(file, engine);
-    size_t dimension = 0;
-    if (scene->model_count > 1) {
-        define_model(file);
-        dimension = 1;
-    }
-    for (size_t i = 0; i < scene->axis_count; i++) {
-        define_axis(file, i, dimension + i);
-    }
     if (has_coordinate(file)) {
         define_coordinate(file);
+    }
+    if (scene->model_count > 1) {
+        define_model(file);
+    }
+    for (size_t i = 0; i < scene->axis_count; i++) {
+        define_axis(file, i, file->lead + file->point_rank - scene->axis_count + i);
     }
     define_columns(file);
     if (scene->study == DEA_STUDY_TRANSIENT) {
@@ -482,10 +486,160 @@ static void grid_free(grid *file)
 {
     free(file->shape);
     free(file->dimensions);
+    free(file->held);
     if (file->nc.handle) {
         dlclose(file->nc.handle);
     }
     free(file);
+}
+
+/* Room for as many points as HELD_BYTES take, at least one. */
+static dea_status grid_allocate(grid *file)
+{
+    const dea_scene *scene = file->scene;
+    const size_t points = dea_scene_point_count(scene) * scene->model_count, fit = HELD_BYTES / file->layout.point_size;
+    file->lead = scene->study != DEA_STUDY_SWEEP ? 1 : 0;
+    file->point_rank = scene->axis_count + (scene->model_count > 1 ? 1 : 0);
+    const size_t most = file->point_rank + 2;
+    file->shape = calloc(3 * most, sizeof *file->shape);
+    file->dimensions = calloc(most + scene->axis_count, sizeof *file->dimensions);
+    if (!file->shape || !file->dimensions) {
+        return DEA_ERROR_MEMORY;
+    }
+    file->start = file->shape + most;
+    file->edge = file->start + most;
+    file->axes = file->dimensions + most;
+    if (!has_coordinate(file)) {
+        return DEA_OK;
+    }
+    file->held_room = fit < 1 ? 1 : fit < points ? fit : points;
+    file->held = calloc(file->held_room, file->layout.point_size);
+    return file->held ? DEA_OK : DEA_ERROR_MEMORY;
+}
+
+/* The largest slab of the points' dimensions that starts at flattened point @p first and is one run of at most @p count points;
+ * its points. */
+static size_t slab_next(grid *file, size_t first, size_t count)
+{
+    const size_t end = file->lead + file->point_rank;
+    size_t rest = first;
+    for (size_t i = end; i-- > file->lead; rest /= file->shape[i]) {
+        file->start[i] = rest % file->shape[i];
+        file->edge[i] = 1;
+    }
+    size_t points = 1;
+    for (size_t i = end; i-- > file->lead;) {
+        const size_t left = file->shape[i] - file->start[i];
+        const size_t fits = count / points;
+        file->edge[i] = left < fits ? left : fits;
+        points *= file->edge[i];
+        if (file->edge[i] < file->shape[i]) {
+            break;
+        }
+    }
+    return points;
+}
+
+/* Puts @p rows rows of @p count points, which stand at @p row with those of the next point a point's size behind: row after row,
+ * the points side by side. */
+static void slab_put(grid *file, const char *row, size_t count, size_t rows)
+{
+    const dea_layout *layout = &file->layout;
+    for (size_t i = file->lead; i < layout->column_count; i++) {
+        for (size_t j = 0; j < count; j++) {
+            const char *value = row + j * layout->point_size + layout->columns[i].offset;
+            for (size_t k = 0; k < rows; k++, value += layout->row_size) {
+                memcpy(&file->values[k * count + j], value, sizeof *file->values);
+            }
+        }
+        grid_keep(file, file->nc.nc_put_vara_double(file->file, file->columns[i], file->start, file->edge, file->values));
+    }
+    for (size_t j = 0; j < count; j++) {
+        for (size_t k = 0; k < rows; k++) {
+            const dea_state state = dea_layout_state(layout, row + j * layout->point_size + k * layout->row_size);
+            file->states[k * count + j] = (signed char)state;
+        }
+    }
+    grid_keep(file, file->nc.nc_put_vara_schar(file->file, file->state, file->start, file->edge, file->states));
+}
+
+/* A figure of @p count points, whose summaries or averages stand at @p values, a point's size apart. */
+static void put_figures(grid *file, const int *variables, const figure *figures, size_t kinds, const char *values, size_t count)
+{
+    for (size_t i = 0; i < kinds; i++) {
+        for (size_t j = 0; j < count; j++) {
+            memcpy(&file->values[j], values + j * file->layout.point_size + figures[i].offset, sizeof *file->values);
+        }
+        grid_keep(file, file->nc.nc_put_vara_double(file->file, variables[i], &file->start[file->lead], &file->edge[file->lead],
+                                                    file->values));
+    }
+}
+
+static void put_summaries(grid *file, const char *point, size_t count)
+{
+    const size_t window = file->lead + file->point_rank;
+    const char *summary = point + file->layout.rows * file->layout.row_size;
+    put_figures(file, file->summaries, summaries, SUMMARIES, summary, count);
+    file->edge[window] = 1;
+    for (size_t i = 0; i < file->scene->transient.average_count; i++) {
+        file->start[window] = i;
+        put_figures(file, file->averages, averages, AVERAGES, summary + offsetof(dea_summary, averages) + i * sizeof(dea_average),
+                    count);
+    }
+}
+
+/* Puts a slab of points: rows as many at a time as there is room for. */
+static void put_slab(grid *file, const char *point, size_t count)
+{
+    const size_t rows = file->layout.rows, most = SLAB_VALUES / count;
+    for (size_t row = 0; row < rows && !file->failed; row += most) {
+        const size_t taken = rows - row < most ? rows - row : most;
+        if (has_coordinate(file)) {
+            file->start[0] = row;
+            file->edge[0] = taken;
+        }
+        slab_put(file, point + row * file->layout.row_size, count, taken);
+    }
+    if (file->scene->study == DEA_STUDY_TRANSIENT) {
+        put_summaries(file, point, count);
+    }
+}
+
+static void put_points(grid *file, size_t first, const char *points, size_t count)
+{
+    for (size_t done = 0; done < count && !file->failed;) {
+        const size_t left = count - done;
+        const size_t taken = slab_next(file, first + done, left < SLAB_VALUES ? left : SLAB_VALUES);
+        put_slab(file, points + done * file->layout.point_size, taken);
+        done += taken;
+    }
+}
+
+/* Puts the points that waited. */
+static void held_put(grid *file)
+{
+    put_points(file, file->held_first, file->held, file->held_count);
+    file->held_first += file->held_count;
+    file->held_count = 0;
+}
+
+static dea_status grid_points(void *state, size_t first, const void *points, size_t count, dea_error *error)
+{
+    grid *file = state;
+    const size_t size = file->layout.point_size;
+    if (!has_coordinate(file)) {
+        put_points(file, first, points, count);
+    }
+    for (size_t done = 0; has_coordinate(file) && done < count && !file->failed;) {
+        const size_t left = count - done, room = file->held_room - file->held_count, taken = left < room ? left : room;
+        memcpy(file->held + file->held_count * size, (const char *)points + done * size, taken * size);
+        file->held_count += taken;
+        done += taken;
+        if (file->held_count == file->held_room) {
+            held_put(file);
+        }
+    }
+    return grid_status(file, error);
 }
 
 static dea_status grid_close(void *state, bool keep, dea_error *error)
@@ -496,27 +650,14 @@ static dea_status grid_close(void *state, bool keep, dea_error *error)
     }
     dea_status status = DEA_OK;
     if (file->file >= 0) {
+        if (keep) {
+            held_put(file);
+        }
         grid_keep(file, file->nc.nc_close(file->file));
         status = keep ? grid_status(file, error) : DEA_OK;
     }
     grid_free(file);
     return status;
-}
-
-static dea_status grid_allocate(grid *file)
-{
-    file->point_rank = file->scene->axis_count + (file->scene->model_count > 1 ? 1 : 0);
-    file->rank = file->point_rank + (file->scene->study != DEA_STUDY_SWEEP ? 1 : 0);
-    const size_t most = file->point_rank + 1;
-    file->shape = calloc(3 * most, sizeof *file->shape);
-    file->dimensions = calloc(2 * most, sizeof *file->dimensions);
-    if (!file->shape || !file->dimensions) {
-        return DEA_ERROR_MEMORY;
-    }
-    file->start = file->shape + most;
-    file->edge = file->start + most;
-    file->axes = file->dimensions + most;
-    return DEA_OK;
 }
 
 static dea_status grid_open(const dea_scene *scene, const char *engine, dea_atomic *file, void **state, dea_error *error)
@@ -545,100 +686,6 @@ static dea_status grid_open(const dea_scene *scene, const char *engine, dea_atom
     }
     *state = opened;
     return DEA_OK;
-}
-
-/* Start of the flattened place @p first in a variable of @p rank dimensions, one value long. */
-static void slab_begin(grid *file, size_t rank, size_t first)
-{
-    size_t rest = first;
-    for (size_t i = rank; i-- > 0; rest /= file->shape[i]) {
-        file->start[i] = rest % file->shape[i];
-        file->edge[i] = 1;
-    }
-}
-
-/* The largest slab of the grid that starts at flattened row @p first and is one run of at most @p count rows; its rows. */
-static size_t slab_next(grid *file, size_t first, size_t count)
-{
-    slab_begin(file, file->rank, first);
-    size_t rows = 1;
-    for (size_t i = file->rank; i-- > 0;) {
-        const size_t left = file->shape[i] - file->start[i];
-        const size_t fits = count / rows;
-        file->edge[i] = left < fits ? left : fits;
-        rows *= file->edge[i];
-        if (file->edge[i] < file->shape[i]) {
-            break;
-        }
-    }
-    return rows;
-}
-
-static void slab_put(grid *file, const char *row, size_t rows)
-{
-    const dea_layout *layout = &file->layout;
-    for (size_t i = has_coordinate(file) ? 1 : 0; i < layout->column_count; i++) {
-        for (size_t j = 0; j < rows; j++) {
-            memcpy(&file->values[j], row + j * layout->row_size + layout->columns[i].offset, sizeof file->values[j]);
-        }
-        grid_keep(file, file->nc.nc_put_vara_double(file->file, file->columns[i], file->start, file->edge, file->values));
-    }
-    for (size_t j = 0; j < rows; j++) {
-        file->states[j] = (signed char)dea_layout_state(layout, row + j * layout->row_size);
-    }
-    grid_keep(file, file->nc.nc_put_vara_schar(file->file, file->state, file->start, file->edge, file->states));
-}
-
-static void put_rows(grid *file, size_t first, const char *rows, size_t count)
-{
-    for (size_t done = 0; done < count && !file->failed;) {
-        const size_t left = count - done;
-        const size_t taken = slab_next(file, first + done, left < SLAB_ROWS ? left : SLAB_ROWS);
-        slab_put(file, rows + done * file->layout.row_size, taken);
-        done += taken;
-    }
-}
-
-static void put_figures(grid *file, const int *variables, const figure *figures, size_t count, const void *values)
-{
-    for (size_t i = 0; i < count; i++) {
-        double value;
-        memcpy(&value, (const char *)values + figures[i].offset, sizeof value);
-        grid_keep(file, file->nc.nc_put_vara_double(file->file, variables[i], file->start, file->edge, &value));
-    }
-}
-
-static void put_summaries(grid *file, size_t number, const char *point)
-{
-    const dea_layout *layout = &file->layout;
-    const dea_transient *transient = &file->scene->transient;
-    dea_summary summary;
-    memcpy(&summary, point + layout->rows * layout->row_size, sizeof summary);
-    slab_begin(file, file->point_rank, number);
-    put_figures(file, file->summaries, summaries, SUMMARIES, &summary);
-    file->edge[file->point_rank] = 1;
-    for (size_t i = 0; i < transient->average_count; i++) {
-        file->start[file->point_rank] = i;
-        put_figures(file, file->averages, averages, AVERAGES, &summary.averages[i]);
-    }
-}
-
-static dea_status grid_points(void *state, size_t first, const void *points, size_t count, dea_error *error)
-{
-    grid *file = state;
-    const dea_layout *layout = &file->layout;
-    if (!has_coordinate(file)) {
-        put_rows(file, first, points, count); /* points are rows: they go out many at a time */
-        return grid_status(file, error);
-    }
-    for (size_t i = 0; i < count && !file->failed; i++) {
-        const char *point = (const char *)points + i * layout->point_size;
-        put_rows(file, (first + i) * layout->rows, point, layout->rows);
-        if (file->scene->study == DEA_STUDY_TRANSIENT) {
-            put_summaries(file, first + i, point);
-        }
-    }
-    return grid_status(file, error);
 }
 
 const dea_format dea_format_netcdf = {

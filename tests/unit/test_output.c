@@ -563,31 +563,37 @@ static void *netcdf_library(void)
     return library;
 }
 
+/* Samples that fit in what the writer holds, and samples that do not. */
 static void netcdf_of_a_transient_holds_time_samples_and_summaries(void **state)
 {
     (void)state;
-    const size_t counts[] = {3, 4};
-    dea_scene scene = transient_make(2, counts, 2, 57);
-    dea_error error = {0};
-    scene.transient.averages[0] = (dea_window){1.0, 2.0};
-    scene.transient.averages[1] = (dea_window){0.0, 28.0};
-    scene.transient.average_count = 2;
-    assert_int_equal(points_write(&scene, in_folder("a.nc"), 5, &error), DEA_OK);
+    const size_t counts[] = {3, 4}, samples[] = {57, 20001};
     void *library = netcdf_library();
     const char *path = in_folder("a.nc");
-    for (size_t number = 0; number < 24; number += 7) {
-        const size_t place[] = {number / 12, number / 4 % 3, number % 4, 56};
-        const size_t window[] = {number / 12, number / 4 % 3, number % 4, 1};
-        assert_true(netcdf_value(library, path, "displacement_m", place) == sample_displacement(number, 28.0));
-        assert_true(netcdf_value(library, path, "work_J", place) == 1.0 + (double)number);
-        assert_true(netcdf_value(library, path, "estimated_velocity_error", place) == 2e-9);
-        assert_true(netcdf_value(library, path, "resonance_Hz", place) == 700.0 + (double)number);
-        assert_true(netcdf_value(library, path, "state", place) == (double)DEA_STATE_OK);
-        assert_true(netcdf_value(library, path, "average_displacement_m", window) == 2e-3 + (double)number);
-        assert_true(netcdf_value(library, path, "average_strain", window) == 0.02);
+    for (size_t i = 0; i < sizeof samples / sizeof *samples; i++) {
+        dea_scene scene = transient_make(2, counts, 2, samples[i]);
+        const double until = 0.5 * (double)(samples[i] - 1);
+        dea_error error = {0};
+        scene.transient.averages[0] = (dea_window){1.0, 2.0};
+        scene.transient.averages[1] = (dea_window){0.0, 28.0};
+        scene.transient.average_count = 2;
+        assert_int_equal(points_write(&scene, path, 5, &error), DEA_OK);
+        for (size_t number = 0; number < 24; number++) {
+            const size_t place[] = {samples[i] - 1, number / 12, number / 4 % 3, number % 4};
+            const size_t early[] = {7, place[1], place[2], place[3]};
+            const size_t window[] = {number / 12, number / 4 % 3, number % 4, 1};
+            assert_true(netcdf_value(library, path, "displacement_m", place) == sample_displacement(number, until));
+            assert_true(netcdf_value(library, path, "displacement_m", early) == sample_displacement(number, 3.5));
+            assert_true(netcdf_value(library, path, "work_J", &place[1]) == 1.0 + (double)number);
+            assert_true(netcdf_value(library, path, "estimated_velocity_error", &place[1]) == 2e-9);
+            assert_true(netcdf_value(library, path, "resonance_Hz", &place[1]) == 700.0 + (double)number);
+            assert_true(netcdf_value(library, path, "state", place) == (double)DEA_STATE_OK);
+            assert_true(netcdf_value(library, path, "average_displacement_m", window) == 2e-3 + (double)number);
+            assert_true(netcdf_value(library, path, "average_strain", window) == 0.02);
+        }
+        assert_true(netcdf_value(library, path, "time", (const size_t[]){7}) == 3.5);
+        assert_true(netcdf_value(library, path, "window_to_s", (const size_t[]){1}) == 28.0);
     }
-    assert_true(netcdf_value(library, path, "time", (const size_t[]){7}) == 3.5);
-    assert_true(netcdf_value(library, path, "window_to_s", (const size_t[]){1}) == 28.0);
     dlclose(library);
 }
 
@@ -600,7 +606,7 @@ static void netcdf_of_a_frequency_response_lies_along_frequency(void **state)
     assert_int_equal(points_write(&scene, in_folder("a.nc"), 2, &error), DEA_OK);
     void *library = netcdf_library();
     for (size_t i = 0; i < 41; i++) {
-        const size_t place[] = {2, i};
+        const size_t place[] = {i, 2};
         const double frequency = netcdf_value(library, in_folder("a.nc"), "frequency", &i);
         assert_true(frequency == dea_layout_place(&scene, i));
         assert_true(netcdf_value(library, in_folder("a.nc"), "impedance_Ohm", place) == 1e9 / frequency);

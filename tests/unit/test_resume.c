@@ -7,7 +7,7 @@
 #include "deaspice/deaspice.h"
 #include "output/journal.h"
 
-enum { POINTS = 24000, BLOCK = 375, BLOCKS = 64, PACKED = 33, KILLS = 20 };
+enum { POINTS = 24000, BLOCK = 375, BLOCKS = 64, PACKED = 57, KILLS = 20 };
 
 static const char scene_text[] =
     "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
@@ -385,7 +385,7 @@ static void full_disk_is_told_and_what_is_there_goes_on(void **state)
     assert_false(file_exists(target));
     const size_t kept = points_kept();
     assert_true(kept > 0 && kept < POINTS / 2);
-    child_wait(child_start(1200000, WORDS(RESUME))); /* room for the journal, not for the result */
+    child_wait(child_start(POINTS * PACKED + 200000, WORDS(RESUME))); /* room for the journal, not for the result */
     assert_status(1);
     assert_says("cannot write result.csv: ");
     resume_completes(POINTS);

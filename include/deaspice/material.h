@@ -34,6 +34,13 @@ typedef struct dea_change {
     double value, slope, curve;
 } dea_change;
 
+/** Changes of the nominal stresses from the equi-biaxial pre-stretch to lambda_pre (1 + e1), lambda_pre (1 + e2), and the tangent
+ * moduli there [Pa]. */
+typedef struct dea_biaxial {
+    double p1, p2;
+    double w11, w12, w22;
+} dea_biaxial;
+
 /** One constant of a law. */
 typedef struct dea_constant {
     const char *name;     /**< e.g. "C1" */
@@ -73,6 +80,8 @@ typedef struct dea_law {
     void (*prepare)(struct dea_film *film);
     /** Changes of the equi-biaxial Cauchy stress at @p count strains; keep their digits however small the strains are. */
     void (*change)(const struct dea_film *film, size_t count, const double *strains, dea_change *changes);
+    /** Both nominal stresses and the moduli at once, as exact as rise(). NULL: they are made of rise() and stress(). */
+    dea_biaxial (*biaxial)(const struct dea_film *film, double e1, double e2);
     /** Whether the law stands in networks (true), or only in the engines' own equations. */
     bool networked;
 } dea_law;
@@ -156,6 +165,8 @@ DEA_API double dea_law_energy(const dea_law *law, const double constants[DEA_LAW
 DEA_API double dea_law_equibiaxial(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double stretch);
 /** Operating modulus Y = dsigma/dlambda of the equi-biaxial Cauchy stress [Pa]. */
 DEA_API double dea_law_modulus(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double stretch);
+/** Changes of both nominal stresses of a film from its pre-stretch, and moduli; NAN where the energy has ended. */
+DEA_API dea_biaxial dea_film_biaxial(const dea_film *film, double e1, double e2);
 /** Film of a law at rest under an equi-biaxial pre-stretch >= 0, its permittivity 0, without breakdown. */
 DEA_API dea_film dea_law_film(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double prestretch);
 

@@ -52,6 +52,11 @@ static void change(const dea_film *film, size_t count, const double *strains, de
     }
 }
 
+static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
+{
+    return dea_invariant_biaxial(slopes, gain, film, e1, e2);
+}
+
 static const dea_constant constants[] = {{"mu", "Pa", true, 0.0, NAN, "a shear modulus > 0, e.g. 44 kPa"}};
 
 const dea_law dea_law_neo_hookean = {
@@ -68,4 +73,5 @@ const dea_law dea_law_neo_hookean = {
     .rise = rise,
     .prepare = prepare,
     .change = change,
+    .biaxial = biaxial,
 };

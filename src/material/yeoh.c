@@ -53,6 +53,11 @@ static void change(const dea_film *film, size_t count, const double *strains, de
     }
 }
 
+static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
+{
+    return dea_invariant_biaxial(slopes, gain, film, e1, e2);
+}
+
 static const dea_constant constants[] = {
     {"C1", "Pa", true, 0.0, NAN, "a modulus > 0, e.g. 178426 Pa"},
     {"C2", "Pa", true, -INFINITY, 0.0, "a modulus, e.g. -6023 Pa"},
@@ -73,5 +78,6 @@ const dea_law dea_law_yeoh = {
     .rise = rise,
     .prepare = prepare,
     .change = change,
+    .biaxial = biaxial,
     .networked = true,
 };

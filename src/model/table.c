@@ -4,7 +4,7 @@
 #include "model/models.h"
 
 static const dea_model *const models[] = {
-    &dea_model_pelrine, &dea_model_constant_force, &dea_model_lumped, &dea_model_coverage, &dea_model_lame, &dea_model_field,
+    &dea_model_pelrine, &dea_model_constant_force, &dea_model_lumped, &dea_model_coverage, &dea_model_lame, &dea_model_ring, &dea_model_field,
 };
 
 size_t dea_model_count(void)

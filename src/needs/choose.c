@@ -234,12 +234,12 @@ static bool fits(const dea_scene *scene, const dea_engine *engine, const dea_mod
     return kind && dea_crew_of(scene, engine, model).count > 0;
 }
 
-/* Models that fit, the cheapest first. */
+/* Models that fit, the cheapest first, and of those that cost the same the nearest to the membrane: the last of the table. */
 static size_t list_models(const dea_scene *scene, const dea_engine *engine, const dea_model *list[MOST_MODELS])
 {
     size_t count = 0;
     for (int form = 0; form < DEA_FORMS; form++) {
-        for (size_t i = 0; i < dea_model_count() && count < MOST_MODELS; i++) {
+        for (size_t i = dea_model_count(); i-- > 0 && count < MOST_MODELS;) {
             const dea_model *model = dea_model_at(i);
             if ((int)dea_model_form(model) == form && fits(scene, engine, model)) {
                 list[count++] = model;
@@ -264,7 +264,7 @@ const dea_model *dea_needs_truth(dea_study_kind study)
     const dea_model *truth = NULL;
     for (size_t i = 0; i < dea_model_count(); i++) {
         const dea_model *model = dea_model_at(i);
-        const bool finer = !truth || dea_model_form(model) > dea_model_form(truth);
+        const bool finer = !truth || dea_model_form(model) >= dea_model_form(truth);
         truth = finer && (study == DEA_STUDY_SWEEP || model->dynamic) ? model : truth;
     }
     return truth;

@@ -146,8 +146,10 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
     const dea_expr pull = SUB(dea_network_load(network), MUL(dea_network_softening(network), network->edge));
     p->push = at_volts(pool, pull, 1.0);
     p->push_slope = dea_expr_slope(pool, p->push);
-    p->area = dea_network_area(network);
-    p->stress = dea_network_stress(network);
+    dea_network_stress stress[DEA_NETWORK_STRESSES];
+    (void)dea_network_stresses(network, stress);
+    p->area = stress[0].lever;
+    p->stress = stress[0].stress;
     p->stress_slope = dea_expr_slope(pool, p->stress);
     p->k_rest = SCALE(form_of(model)->stress, dea_expr_at_rest(pool, MUL(p->area, p->stress_slope)));
     p->capacitance = network->capacitance;

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/file.h"
+#include "support/file.h"
 #include "scene/reader.h"
 
 static dea_status base_read(dea_reader *reader, const dea_ref *ref, const dea_node *node);
@@ -126,14 +126,14 @@ static dea_status mapping_read(dea_reader *reader, const dea_node *node)
     return status ? status : dea_reader_children(reader, "material", node);
 }
 
-/* Does a line begin as a key of a material does? */
+/* Does a line begin as a key of a material does, and hardly one of another file? */
 static bool is_material_line(const char *line)
 {
     char path[DEA_NAME_LENGTH];
     dea_ref ref;
     const size_t word = strcspn(line, ":\n.#");
     return line[word] == ':' && snprintf(path, sizeof path, "material.%.*s", (int)word, line) < (int)sizeof path &&
-           dea_key_find(path, &ref);
+           dea_key_find(path, &ref) && ref.key.read != dea_read_source && ref.key.read != dea_read_later;
 }
 
 /* Keeps a material's text to be shown with messages; of a file that has no line of a material, nothing is. */

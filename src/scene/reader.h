@@ -3,7 +3,7 @@
 #define DEA_SCENE_READER_H
 
 #include "scene/keys.h"
-#include "scene/quantity.h"
+#include "support/quantity.h"
 #include "support/text.h"
 
 enum { DEA_READER_SLOTS = sizeof(dea_scene) / sizeof(double) + 1, DEA_MATERIAL_DEPTH = 8, DEA_WORD_ROOM = 256 };

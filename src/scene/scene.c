@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "deaspice/scene.h"
-#include "scene/file.h"
+#include "support/file.h"
 #include "scene/reader.h"
 
 static dea_status scene_clear(dea_scene *scene)

@@ -344,7 +344,8 @@ static void model_error_decides_which_model_is_chosen(void **state)
     (void)state;
     assert_string_equal(choice_at(5e-7, 4000.0, NULL).model->name, "field");
     assert_null(choice_at(5e-7, 4000.0, "ngspice").model);
-    assert_string_equal(choice_at(5e-7, 4000.0, "ngspice").next->name, "lame");
+    assert_string_equal(choice_at(5e-7, 4000.0, "ngspice").next->name, "ring");
+    assert_string_equal(choice_at(5e-4, 4000.0, NULL).model->name, "ring");
     assert_string_equal(choice_at(0.15, 4000.0, "ngspice").model->name, "lame");
     assert_string_equal(choice_at(5e-4, 200.0, NULL).model->name, "lame");
     assert_true(choice_at(5e-4, 200.0, NULL).bound < choice_at(0.15, 4000.0, NULL).bound);
@@ -400,14 +401,14 @@ static void a_swing_decides_which_model_is_chosen(void **state)
                                        "prestretch=1.02", "voltage=1600 V",         "every=57 us"};
     static const char *const weak[] = {"voltage=30 V"};
     dea_scene scene;
-    assert_string_equal(choice_in_time(NULL, 0, &scene).model->name, "coverage");
+    assert_string_equal(choice_in_time(NULL, 0, &scene).model->name, "ring");
     dea_scene_free(&scene);
-    assert_string_equal(choice_in_time(damped, 1, &scene).model->name, "coverage");
+    assert_string_equal(choice_in_time(damped, 1, &scene).model->name, "ring");
     dea_scene_free(&scene);
-    assert_string_equal(choice_in_time(lens, 7, &scene).model->name, "coverage");
+    assert_string_equal(choice_in_time(lens, 7, &scene).model->name, "ring");
     dea_scene_free(&scene);
     const dea_model_choice choice = choice_in_time(weak, 1, &scene);
-    assert_string_equal(choice.model->name, "lumped");
+    assert_string_equal(choice.model->name, "lame");
     assert_true(choice.bound > 0.0 && choice.bound <= 0.05);
     dea_scene_free(&scene);
 }

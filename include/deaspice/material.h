@@ -21,6 +21,8 @@ extern "C" {
 enum { DEA_LAW_CONSTANTS = 8, DEA_PRONY_MAX = 64, DEA_NAME_LENGTH = 64, DEA_SOURCE_LENGTH = 256 };
 
 struct dea_film;
+struct dea_law_form;
+struct dea_pool;
 
 /** Principal in-plane nominal stresses and tangent moduli of the passive film at stretches l1, l2 [Pa]. */
 typedef struct dea_stress {
@@ -82,8 +84,8 @@ typedef struct dea_law {
     void (*change)(const struct dea_film *film, size_t count, const double *strains, dea_change *changes);
     /** Both nominal stresses and the moduli at once, as exact as rise(). NULL: they are made of rise() and stress(). */
     dea_biaxial (*biaxial)(const struct dea_film *film, double e1, double e2);
-    /** Whether the law stands in networks (true), or only in the engines' own equations. */
-    bool networked;
+    /** The same law as expressions, for networks: constants and stretches l1, l2 are terms of a pool (src/material/form.h). */
+    void (*form)(struct dea_pool *pool, const int *constants, int l1, int l2, struct dea_law_form *form);
 } dea_law;
 
 /** One branch of a Prony series. */

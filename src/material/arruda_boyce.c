@@ -3,6 +3,7 @@
  *     f' = mu p(x),  f'' = mu p'(x)/lambda_m^2,  f''' = mu p''(x)/lambda_m^4,  p(x) = sum i C_i x^(i - 1) */
 #include <math.h>
 
+#include "material/form.h"
 #include "material/invariant.h"
 
 enum { MU, LAMBDA_M, TERMS = 5 };
@@ -90,6 +91,19 @@ static double locking(const double *c)
     return 3.0 * (c[LAMBDA_M] - 1.0) * (c[LAMBDA_M] + 1.0);
 }
 
+static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_law_form *form)
+{
+    const dea_form_invariants at = dea_form_invariants_of(pool, l1, l2);
+    const dea_expr most = SQUARE(c[LAMBDA_M]);
+    const dea_expr x = DIV(ADD(at.j, NUM(3.0)), most);
+    dea_expr p = NUM(0.0);
+    for (int i = TERMS - 1; i >= 0; i--) {
+        p = ADD(NUM(slope_shares[i]), MUL(p, x));
+    }
+    dea_form_stresses(pool, &at, MUL(c[MU], p), NUM(0.0), form);
+    form->room = SUB(SCALE(3.0, SUB(most, NUM(1.0))), at.j); /* I1 = 3 lambda_m^2 where the chains are straight */
+}
+
 static const dea_constant constants[] = {
     {"mu", "Pa", true, 0.0, NAN, "a modulus > 0, e.g. 40 kPa"},
     {"lambda_m", "1", false, 1.0, NAN, "the stretch > 1 at which the chains are straight, e.g. 5.99"},
@@ -110,4 +124,5 @@ const dea_law dea_law_arruda_boyce = {
     .prepare = prepare,
     .change = change,
     .biaxial = biaxial,
+    .form = form,
 };

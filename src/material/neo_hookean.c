@@ -1,6 +1,7 @@
 /* Neo-Hookean: W = mu/2 (I1 - 3), of chains without end. */
 #include <math.h>
 
+#include "material/form.h"
 #include "material/invariant.h"
 
 enum { MU };
@@ -57,6 +58,12 @@ static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
     return dea_invariant_biaxial(slopes, gain, film, e1, e2);
 }
 
+static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_law_form *form)
+{
+    const dea_form_invariants at = dea_form_invariants_of(pool, l1, l2);
+    dea_form_stresses(pool, &at, SCALE(0.5, c[MU]), NUM(0.0), form);
+}
+
 static const dea_constant constants[] = {{"mu", "Pa", true, 0.0, NAN, "a shear modulus > 0, e.g. 44 kPa"}};
 
 const dea_law dea_law_neo_hookean = {
@@ -74,4 +81,5 @@ const dea_law dea_law_neo_hookean = {
     .prepare = prepare,
     .change = change,
     .biaxial = biaxial,
+    .form = form,
 };

@@ -1,6 +1,7 @@
 /* Yeoh: W = C1 J + C2 J^2 + C3 J^3, J = I1 - 3 (Eq. 11). */
 #include <math.h>
 
+#include "material/form.h"
 #include "material/invariant.h"
 
 enum { C1, C2, C3 };
@@ -58,6 +59,13 @@ static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
     return dea_invariant_biaxial(slopes, gain, film, e1, e2);
 }
 
+static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_law_form *form)
+{
+    const dea_form_invariants at = dea_form_invariants_of(pool, l1, l2);
+    const dea_expr w = ADD(c[C1], MUL(at.j, ADD(SCALE(2.0, c[C2]), MUL(SCALE(3.0, c[C3]), at.j))));
+    dea_form_stresses(pool, &at, w, NUM(0.0), form);
+}
+
 static const dea_constant constants[] = {
     {"C1", "Pa", true, 0.0, NAN, "a modulus > 0, e.g. 178426 Pa"},
     {"C2", "Pa", true, -INFINITY, 0.0, "a modulus, e.g. -6023 Pa"},
@@ -79,5 +87,5 @@ const dea_law dea_law_yeoh = {
     .prepare = prepare,
     .change = change,
     .biaxial = biaxial,
-    .networked = true,
+    .form = form,
 };

@@ -53,20 +53,16 @@ static void print_relaxation(const dea_material *material)
         printf("prony %zu                g = %.9g, tau = %.9g s\n", i + 1, material->prony[i].g, material->prony[i].tau);
 }
 
-/* Constants of the law; those of a list by their paths. */
+/* The law and its constants, those of a list entry after entry. */
 static void print_law(const dea_material *material)
 {
     const dea_law *law = material->law;
-    printf("%-22s %s, %s\n", "law", law->title, law->energy_text);
-    for (size_t i = 0; i < law->constant_count * material->entry_count; i++) {
+    printf("%-22s %s: %s\n", "law", law->name, law->energy_text);
+    for (size_t i = 0; i < material->entry_count * law->constant_count; i++) {
         const dea_constant *constant = &law->constants[i % law->constant_count];
-        const size_t entry = i / law->constant_count;
-        char label[DEA_NAME_LENGTH];
-        if (law->entries > 1)
-            snprintf(label, sizeof label, "%s.%zu.%s", law->name, entry, constant->name);
-        else
-            snprintf(label, sizeof label, "%s", constant->name);
-        print_number(label, material->constants[i], constant->modulus ? " Pa" : "");
+        char name[DEA_NAME_LENGTH];
+        snprintf(name, sizeof name, law->entries > 1 ? "%s %zu" : "%s", constant->name, i / law->constant_count + 1);
+        printf("%-22s %.9g%s%s\n", name, material->constants[i], constant->modulus ? " " : "", constant->modulus ? constant->unit : "");
     }
 }
 

@@ -205,8 +205,7 @@ static const char *key_word(size_t index, char room[DEA_NAME_LENGTH])
     dea_key key;
     for (size_t i = 0; dea_key_at(i, &key); i++) {
         if (key.offset != DEA_KEY_NOWHERE && !strchr(key.path, '#') && index-- == 0) {
-            memcpy(room, key.path, DEA_NAME_LENGTH);
-            return room;
+            return memcpy(room, key.path, DEA_NAME_LENGTH);
         }
     }
     return NULL;
@@ -216,6 +215,13 @@ static const char *format_word(size_t index, char room[DEA_NAME_LENGTH])
 {
     (void)room;
     static const char *const words[] = {"csv", "nc", "raw"};
+    return index < sizeof words / sizeof *words ? words[index] : NULL;
+}
+
+static const char *axes_word(size_t index, char room[DEA_NAME_LENGTH])
+{
+    (void)room;
+    static const char *const words[] = {"x", "y", "xy"};
     return index < sizeof words / sizeof *words ? words[index] : NULL;
 }
 
@@ -264,7 +270,14 @@ static const dea_option entries[] = {
     TEXT("plot", 0, "FILE", NULL, DEA_TAKES_PLOT, take_text, plot, "draw the result"),
     COUNT("size", 0, "WxH", DEA_TAKES_PLOT, take_size, picture, 0,
           "width x height in mm, cm, in or pt, each from 4 cm to 2 m, for example 8.5x6cm", "size of the picture"),
-    COUNT("log", 0, "AXES", DEA_TAKES_LOG, take_log, picture, 0, "x, y or xy", "axes drawn logarithmic"),
+    {.name = "log",
+     .value = "AXES",
+     .words = axes_word,
+     .group = DEA_TAKES_LOG,
+     .take = take_log,
+     .offset = offsetof(dea_arguments, picture),
+     .needs = "x, y or xy",
+     .about = "logarithmic axes"},
     FLAG("force", 0, DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_PLOT, force, "overwrite also what is kept otherwise"),
     COUNT("jobs", 'j', "N", DEA_TAKES_JOBS, take_jobs, jobs, 1024, "a whole number up to 1024, or auto", "worker processes"),
     FLAG("quiet", 'q', DEA_TAKES_QUIET, quiet, "no summary and no progress"),

@@ -84,7 +84,7 @@ typedef struct dea_arguments {
     size_t operand_count;
 } dea_arguments;
 
-/** Word number @p index of a list, NULL past its end; @p room is for one that has to be made. */
+/** Word number @p index of a list, NULL past its end. */
 typedef const char *dea_word(size_t index, char room[DEA_NAME_LENGTH]);
 
 /** A command. */

@@ -339,7 +339,7 @@ static void wrong_usage_is_told_with_a_guess(void **state)
     RUN("--versoin");
     check_wrong("did you mean \"--version\"");
     RUN("run", "dot.yaml", "--plot", "x.jpg");
-    check_wrong("x.jpg: a picture ends in .svg or .png; write for example x.svg");
+    check_wrong("x.jpg: a picture ends in .svg, .png, .pdf, .eps or .gp; write for example x.svg");
 }
 
 static void raw_file_and_standard_output_hold_the_same(void **state)

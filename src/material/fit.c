@@ -420,13 +420,15 @@ static void choice_note(dea_fit *to, const dea_fit *tried)
     }
 }
 
-/* Keeps the better of two fits in @p best, with the choices of both. */
+/* Keeps the better of two fits in @p best, with the choices of both; of two that are the same film the simpler law. */
 static void better_keep(dea_fit *best, const dea_fit *tried, bool first)
 {
+    const bool same = fabs(tried->criterion - best->criterion) <= 1e-6;
+    const bool better = same ? tried->law->constant_count < best->law->constant_count : tried->criterion < best->criterion;
     dea_fit_choice choices[DEA_FIT_CHOICES];
     const size_t count = best->choice_count;
     memcpy(choices, best->choices, sizeof choices);
-    if (first || tried->criterion < best->criterion) {
+    if (first || better) {
         *best = *tried;
         memcpy(best->choices, choices, sizeof choices);
         best->choice_count = count;

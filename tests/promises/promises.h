@@ -69,6 +69,7 @@ typedef struct true_run {
     size_t count, good;  /* rows, and those before a pull-in */
     double error;
     double velocity_error, current_error; /* [m/s], [A] */
+    double means[DEA_WINDOWS], mean_error; /* of u over the windows, NAN behind the end of the motion [m] */
     double steps;
     const char *why; /* NULL: judged, else why the truth was not found */
 } true_run;
@@ -134,6 +135,9 @@ typedef struct column_error {
 
 /* Worst of them in the rows of a point, of those whose truth is good to a tenth of what it judges. */
 column_error columns_error(const judged *j, size_t point, const dea_sample *rows, double accuracy);
+
+/* Worst mean of a point's windows that its rows cover, over the peak; INFINITY where a film that never ends has none. */
+column_error means_error(const judged *j, size_t point, const dea_summary *summary, double peak, double accuracy);
 
 /* The tightest accuracy that the engine promises for such a study. */
 double best_accuracy(const dea_engine *engine, const dea_scene *scene);

@@ -176,21 +176,34 @@ $(BUILD)/make_netlists: tests/make_netlists.c $(BUILD)/libdeaspice.a
 	@echo "CC $@"
 	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) $^ -o $@ $(LDFLAGS) $(LIBS)
 
+SHARE = $(DESTDIR)$(PREFIX)/share
+COMPLETIONS = $(SHARE)/bash-completion/completions/deaspice $(SHARE)/zsh/site-functions/_deaspice \
+              $(SHARE)/fish/vendor_completions.d/deaspice.fish
 install: all
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/pkgconfig $(DESTDIR)$(PREFIX)/include/deaspice $(DESTDIR)$(PREFIX)/share/man/man1
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/pkgconfig $(DESTDIR)$(PREFIX)/include/deaspice $(SHARE)/man/man1 \
+	  $(SHARE)/deaspice $(dir $(COMPLETIONS))
 	install -m 755 $(BUILD)/deaspice $(DESTDIR)$(PREFIX)/bin/
 	install -m 644 $(BUILD)/libdeaspice.a $(DESTDIR)$(PREFIX)/lib/
 	install -m 755 $(BUILD)/libdeaspice.so $(DESTDIR)$(PREFIX)/lib/libdeaspice.so.0
 	ln -sf libdeaspice.so.0 $(DESTDIR)$(PREFIX)/lib/libdeaspice.so
 	install -m 644 include/deaspice/*.h $(DESTDIR)$(PREFIX)/include/deaspice/
-	install -m 644 src/program/deaspice.1 $(DESTDIR)$(PREFIX)/share/man/man1/
+	install -m 644 src/program/deaspice.1 $(SHARE)/man/man1/
+	$(BUILD)/deaspice completion bash >$(word 1,$(COMPLETIONS))
+	$(BUILD)/deaspice completion zsh >$(word 2,$(COMPLETIONS))
+	$(BUILD)/deaspice completion fish >$(word 3,$(COMPLETIONS))
+	rm -rf $(SHARE)/deaspice/netlists $(SHARE)/deaspice/examples
+	cp -R netlists examples $(SHARE)/deaspice/
+	chmod -R a+rX $(SHARE)/deaspice
 	printf 'prefix=%s\nlibdir=$${prefix}/lib\nincludedir=$${prefix}/include\n\nName: deaspice\nDescription: networks of dielectric elastomer actuators\nVersion: %s\nLibs: -L$${libdir} -ldeaspice\nLibs.private: %s\nCflags: -I$${includedir}\n' \
 	  '$(PREFIX)' '$(VERSION)' '$(LIBS)' >$(DESTDIR)$(PREFIX)/lib/pkgconfig/deaspice.pc
+	@printf '%s\n' "program      $(DESTDIR)$(PREFIX)/bin/deaspice" "library      $(DESTDIR)$(PREFIX)/lib/libdeaspice.{so,a}" \
+	  "headers      $(DESTDIR)$(PREFIX)/include/deaspice" "man page     $(SHARE)/man/man1/deaspice.1" \
+	  "examples     $(SHARE)/deaspice/examples" "netlists     $(SHARE)/deaspice/netlists" $(COMPLETIONS:%="completion   %")
 
 uninstall:
 	rm -f $(DESTDIR)$(PREFIX)/bin/deaspice $(DESTDIR)$(PREFIX)/lib/libdeaspice.a $(DESTDIR)$(PREFIX)/lib/libdeaspice.so* \
-	  $(DESTDIR)$(PREFIX)/lib/pkgconfig/deaspice.pc $(DESTDIR)$(PREFIX)/share/man/man1/deaspice.1
-	rm -rf $(DESTDIR)$(PREFIX)/include/deaspice
+	  $(DESTDIR)$(PREFIX)/lib/pkgconfig/deaspice.pc $(SHARE)/man/man1/deaspice.1 $(COMPLETIONS)
+	rm -rf $(DESTDIR)$(PREFIX)/include/deaspice $(SHARE)/deaspice
 
 clean:
 	rm -rf $(BUILD) demo

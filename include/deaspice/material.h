@@ -1,10 +1,11 @@
 /** @file material.h
- * Incompressible Yeoh film (Eq. 11) and what follows from it at a pre-stretch.
+ * Incompressible hyperelastic films: their laws, their constants, and what follows from them at a pre-stretch.
  */
 #ifndef DEASPICE_MATERIAL_H
 #define DEASPICE_MATERIAL_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 #include "deaspice/status.h"
 
@@ -16,7 +17,73 @@ extern "C" {
 #define DEA_EPSILON_0 8.8541878128e-12
 #define DEA_PI 3.14159265358979323846
 
-enum { DEA_YEOH_TERMS = 3, DEA_PRONY_MAX = 64, DEA_NAME_LENGTH = 64, DEA_SOURCE_LENGTH = 256 };
+/** Most constants of a law, most branches, lengths of texts. */
+enum { DEA_LAW_CONSTANTS = 8, DEA_PRONY_MAX = 64, DEA_NAME_LENGTH = 64, DEA_SOURCE_LENGTH = 256 };
+
+struct dea_film;
+
+/** Principal in-plane nominal stresses and tangent moduli of the passive film at stretches l1, l2 [Pa]. */
+typedef struct dea_stress {
+    double shear;         /**< (p2 - p1)/(l2 - l1), w11 - w12 where l1 = l2 */
+    double p1, p2;        /**< nominal stresses dW/dl1, dW/dl2 */
+    double w11, w12, w22; /**< tangent moduli d2W/dl1^2, d2W/dl1 dl2, d2W/dl2^2 */
+} dea_stress;
+
+/** Change of the equi-biaxial Cauchy stress from the pre-stretch to lambda_pre (1 + e), and its derivatives over e [Pa]. */
+typedef struct dea_change {
+    double value, slope, curve;
+} dea_change;
+
+/** Changes of the nominal stresses from the equi-biaxial pre-stretch to lambda_pre (1 + e1), lambda_pre (1 + e2), and the tangent
+ * moduli there [Pa]. */
+typedef struct dea_biaxial {
+    double p1, p2;
+    double w11, w12, w22;
+} dea_biaxial;
+
+/** One constant of a law. */
+typedef struct dea_constant {
+    const char *name;     /**< e.g. "C1" */
+    const char *unit;     /**< "Pa" or "1" */
+    bool modulus;         /**< a stress: a long-term share scales it */
+    double low;           /**< must lie above this [unit], -inf: anywhere */
+    double standard;      /**< default [unit], NAN: must be given */
+    const char *accepted; /**< range and an example, for messages */
+} dea_constant;
+
+/** A law: a strain energy W(l1, l2) of an incompressible film under plane stress. One row of a table (src/material/laws.c), one
+ * file a row. Constants are an array of DEA_LAW_CONSTANTS, 0 where the law has no such constant; those of a list stand entry after
+ * entry. The functions take them long-term and in range, and return NAN where the energy has ended. */
+typedef struct dea_law {
+    const char *name;              /**< key in a scene, e.g. "yeoh" */
+    const char *title;             /**< e.g. "Yeoh" */
+    const char *energy_text;       /**< W in words of its constants */
+    const dea_constant *constants; /**< constant_count of them; where it is a list, those of one entry */
+    size_t constant_count;         /**< >= 1 */
+    size_t entries;                /**< 1: a mapping of constants; more: a list of at most so many such mappings */
+    /** What is wrong with constants that are each in range, NULL: nothing. NULL: nothing ever is. */
+    const char *(*fault)(const double *constants);
+    /** I1 - 3 at which the chains are straight [1]: no film is pre-stretched so far. NULL: never. */
+    double (*locking)(const double *constants);
+    /** Whether the energy ends there (true) or goes on (false). */
+    bool ends;
+    /** W [Pa]; keeps its digits however close to 1 the stretches are. */
+    double (*energy)(const double *constants, double l1, double l2);
+    dea_stress (*stress)(const double *constants, double l1, double l2);
+    /** W11 at equi-biaxial stretch l in long double, for what is left where terms of the size of it cancel [Pa]; NULL: that of
+     * stress() has to do. */
+    long double (*fine_w11)(const double *constants, long double l);
+    /** P1(l + d1, l + d2) - P1(l, l) [Pa]; keeps its digits however small d1 and d2 are. */
+    double (*rise)(const double *constants, double l, double d1, double d2);
+    /** Notes in film->rest what change() wants to know of the film's pre-stretch. */
+    void (*prepare)(struct dea_film *film);
+    /** Change of the equi-biaxial Cauchy stress at the strain @p e; keeps its digits however small e is. */
+    dea_change (*change)(const struct dea_film *film, double e);
+    /** Both nominal stresses and the moduli at once, as exact as rise(). NULL: they are made of rise() and stress(). */
+    dea_biaxial (*biaxial)(const struct dea_film *film, double e1, double e2);
+    /** Whether the law stands in networks (true), or only in the engines' own equations. */
+    bool networked;
+} dea_law;
 
 /** One branch of a Prony series. */
 typedef struct dea_prony {
@@ -28,7 +95,9 @@ typedef struct dea_prony {
 typedef struct dea_material {
     char name[DEA_NAME_LENGTH];         /**< built-in name, file name or "scene" */
     char source[DEA_SOURCE_LENGTH];     /**< where the numbers come from, may be empty */
-    double yeoh[DEA_YEOH_TERMS];        /**< C1, C2, C3 [Pa], C1 > 0, default C2 = C3 = 0 */
+    const dea_law *law;                 /**< of the constants */
+    double constants[DEA_LAW_CONSTANTS]; /**< of the law, 0 beyond those in use */
+    size_t entry_count;                 /**< entries in use of a law that is a list, else 1 */
     double permittivity;                /**< relative, at stretch 0 of the line below [1], > 0 */
     double permittivity_per_stretch;    /**< slope of the relative permittivity over stretch [1], default 0 */
     double density;                     /**< [kg/m^3], > 0, NAN: no inertia */
@@ -41,14 +110,28 @@ typedef struct dea_material {
     dea_prony prony[DEA_PRONY_MAX];     /**< relaxation of the instantaneous modulus */
 } dea_material;
 
-/** Principal in-plane nominal stresses and tangent moduli of the passive film at stretches l1, l2 [Pa]. */
-typedef struct dea_stress {
-    double w;             /**< dW/dI */
-    double p1, p2;        /**< nominal stresses dW/dl1, dW/dl2 */
-    double w11, w12, w22; /**< tangent moduli d2W/dl1^2, d2W/dl1 dl2, d2W/dl2^2 */
-} dea_stress;
+/** The film at its pre-stretch: all that depends on material and pre-stretch alone, so that a sweep computes it once.
+ * With y = lambda_pre^2: J = I1 - 3, g = y - y^-2. */
+typedef struct dea_film {
+    const dea_law *law;
+    double constants[DEA_LAW_CONSTANTS]; /**< long-term */
+    bool valid;                          /**< constants in range, and the pre-stretch where the law holds */
+    double prestretch;                   /**< lambda_pre [1] */
+    double permittivity;                 /**< absolute permittivity at the pre-stretch [F/m] */
+    double breakdown;                    /**< breakdown strength [V/m], +inf: none */
+    double slope;                        /**< dsigma/dlambda at the pre-stretch [Pa] */
+    double curvature;                    /**< d2sigma/dlambda2 at the pre-stretch [Pa] */
+    double modulus;                      /**< operating modulus Y [Pa]: the scene's, else slope */
+    double tension;                      /**< nominal stress at the pre-stretch [Pa] */
+    double w11, w12;                     /**< tangent moduli at the pre-stretch [Pa] */
+    double square;                       /**< lambda_pre^2 [1] */
+    double inverse_fourth;               /**< lambda_pre^-4 [1] */
+    double j, g;                         /**< J, g at the pre-stretch [1] */
+    double least, most;                  /**< equi-biaxial stretches at which the energy ends [1], 0 and +inf: it does not */
+    double rest[DEA_LAW_CONSTANTS];      /**< what the law noted by prepare() */
+} dea_film;
 
-/** A material without any number: every optional scalar NAN, C2 = C3 = 0. */
+/** A material without any number: every optional scalar NAN, a Yeoh film whose C1 is NAN. */
 DEA_API dea_material dea_material_default(void);
 
 /** Number of built-in materials. */
@@ -60,19 +143,31 @@ DEA_API const dea_material *dea_material_find(const char *name);
 
 /** Long-term share of the given elastic constants [1]: 1 - sum g_i where they are instantaneous, else 1. */
 DEA_API double dea_material_long_term_share(const dea_material *material);
-/** Long-term Yeoh constants [Pa], 3 values. */
-DEA_API void dea_material_long_term(const dea_material *material, double yeoh[DEA_YEOH_TERMS]);
+/** Constants of the law with their moduli long-term, DEA_LAW_CONSTANTS values. */
+DEA_API void dea_material_long_term(const dea_material *material, double constants[DEA_LAW_CONSTANTS]);
 /** Relative permittivity at stretch @p stretch [1]. */
 DEA_API double dea_material_permittivity(const dea_material *material, double stretch);
 
-/** Stresses and tangent moduli of a Yeoh film (physics: W = sum C_i (I - 3)^i), l1, l2 > 0. */
-DEA_API dea_stress dea_yeoh_stress(const double yeoh[DEA_YEOH_TERMS], double l1, double l2);
+/** Number of laws. */
+DEA_API size_t dea_law_count(void);
+/** Law number @p index, NULL past the end. The library owns it. */
+DEA_API const dea_law *dea_law_at(size_t index);
+/** Law by name, NULL if there is none. The library owns it. */
+DEA_API const dea_law *dea_law_find(const char *name);
+/** True where every constant is in its range and they fit together. */
+DEA_API bool dea_law_valid(const dea_law *law, const double constants[DEA_LAW_CONSTANTS]);
+/** Stresses and tangent moduli, l1, l2 > 0; NAN where the energy has ended. */
+DEA_API dea_stress dea_law_stress(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double l1, double l2);
 /** Strain energy per reference volume W [Pa]. */
-DEA_API double dea_yeoh_energy(const double yeoh[DEA_YEOH_TERMS], double l1, double l2);
-/** Equi-biaxial Cauchy stress sigma = 2 (l^2 - l^-4) w [Pa]. */
-DEA_API double dea_yeoh_equibiaxial(const double yeoh[DEA_YEOH_TERMS], double stretch);
-/** Operating modulus Y = dsigma/dl of the equi-biaxial Cauchy stress [Pa]. */
-DEA_API double dea_yeoh_modulus(const double yeoh[DEA_YEOH_TERMS], double stretch);
+DEA_API double dea_law_energy(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double l1, double l2);
+/** Equi-biaxial Cauchy stress sigma = lambda P1(lambda, lambda) [Pa]. */
+DEA_API double dea_law_equibiaxial(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double stretch);
+/** Operating modulus Y = dsigma/dlambda of the equi-biaxial Cauchy stress [Pa]. */
+DEA_API double dea_law_modulus(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double stretch);
+/** Changes of both nominal stresses of a film from its pre-stretch, and moduli; NAN where the energy has ended. */
+DEA_API dea_biaxial dea_film_biaxial(const dea_film *film, double e1, double e2);
+/** Film of a law at rest under an equi-biaxial pre-stretch >= 0, its permittivity 0, without breakdown. */
+DEA_API dea_film dea_law_film(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double prestretch);
 
 #ifdef __cplusplus
 }

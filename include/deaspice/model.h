@@ -11,24 +11,6 @@
 extern "C" {
 #endif
 
-/** The film at its pre-stretch: all that depends on material and pre-stretch alone, so that a sweep computes it once.
- * With y = lambda_pre^2: J = I - 3, g = y - y^-2, w = dW/dI, so that sigma(lambda_pre) = 2 g w. */
-typedef struct dea_film {
-    double yeoh[DEA_YEOH_TERMS]; /**< long-term constants [Pa] */
-    double prestretch;           /**< lambda_pre [1] */
-    double permittivity;         /**< absolute permittivity at the pre-stretch [F/m] */
-    double breakdown;            /**< breakdown strength [V/m], +inf: none */
-    double slope;                /**< dsigma/dlambda at the pre-stretch [Pa] */
-    double curvature;            /**< d2sigma/dlambda2 at the pre-stretch [Pa] */
-    double modulus;              /**< operating modulus Y [Pa]: the scene's, else slope */
-    double tension;              /**< nominal stress at the pre-stretch [Pa] */
-    double w11, w12;             /**< tangent moduli at the pre-stretch [Pa] */
-    double square;               /**< lambda_pre^2 [1] */
-    double inverse_fourth;       /**< lambda_pre^-4 [1] */
-    double j, g;                 /**< J, g at the pre-stretch [1] */
-    double w;                    /**< w at the pre-stretch [Pa] */
-} dea_film;
-
 /** One static point: film, geometry and the voltage across the film. */
 typedef struct dea_point {
     dea_film film;
@@ -75,6 +57,18 @@ typedef struct dea_model {
     /** It is the boundary value problem of the axisymmetric membrane along the radius. */
     bool membrane;
 } dea_model;
+
+/** What solving a model takes, from the cheapest up. */
+typedef enum dea_form {
+    DEA_FORM_CLOSED,       /**< a closed form that is no network */
+    DEA_FORM_LINEAR,       /**< a network of linear springs */
+    DEA_FORM_HYPERELASTIC, /**< a network with others */
+    DEA_FORM_MEMBRANE,     /**< a boundary value problem */
+    DEA_FORMS
+} dea_form;
+
+/** Form of a model. */
+DEA_API dea_form dea_model_form(const dea_model *model);
 
 /** Number of models. */
 DEA_API size_t dea_model_count(void);

@@ -40,12 +40,13 @@ typedef enum dea_status {
 } dea_status;
 
 /** Room for one message, and for the log that an engine hands over with it. */
-enum { DEA_ERROR_LENGTH = 4096 };
+enum { DEA_ERROR_LENGTH = 4096, DEA_EXCERPT_LENGTH = 1024 };
 
 /** What went wrong, owned by the caller; `message` is empty while `status` is DEA_OK. */
 typedef struct dea_error {
     dea_status status;
-    char message[DEA_ERROR_LENGTH]; /**< UTF-8, one or more lines, no final line break */
+    char message[DEA_ERROR_LENGTH];   /**< UTF-8, one or more lines, no final line break */
+    char excerpt[DEA_EXCERPT_LENGTH]; /**< of a bad scene or material: the source line, and a caret under the place; may be empty */
 } dea_error;
 
 /** Text of a status code; never NULL. */

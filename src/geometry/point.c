@@ -1,41 +1,17 @@
 /* From the scene to one static point. */
 #include "model/models.h"
 
-/* d2sigma/dl2 of sigma = 2 g w, with dJ/dl = 4 g/l. */
-static double curvature(const dea_film *film)
-{
-    const double l = film->prestretch;
-    const double sixth = film->inverse_fourth / film->square;
-    const double wj = 2.0 * film->yeoh[1] + 6.0 * film->yeoh[2] * film->j;
-    const double wjj = 6.0 * film->yeoh[2];
-    const double dg = 2.0 * l * (1.0 + 2.0 * sixth);
-    const double dj = 4.0 * film->g / l;
-    return 2.0 * ((2.0 - 20.0 * sixth) * film->w + 2.0 * dg * wj * dj + film->g * (wjj * dj * dj + wj * (4.0 + 20.0 * sixth)));
-}
-
 void dea_film_prepare(const dea_scene *scene, dea_film *film)
 {
     const dea_material *material = &scene->material;
     const double stretch = scene->actuator.prestretch;
-    const double y = stretch * stretch;
-    const double p = (stretch - 1.0) * (stretch + 1.0);
+    double constants[DEA_LAW_CONSTANTS];
 
-    dea_material_long_term(material, film->yeoh);
-    film->prestretch = stretch;
+    dea_material_long_term(material, constants);
+    *film = dea_law_film(material->law, constants, stretch);
     film->permittivity = DEA_EPSILON_0 * dea_material_permittivity(material, stretch);
     film->breakdown = isnan(material->breakdown) ? INFINITY : material->breakdown;
-    film->slope = dea_yeoh_modulus(film->yeoh, stretch);
     film->modulus = isnan(material->modulus) ? film->slope : material->modulus * dea_material_long_term_share(material);
-    const dea_stress stress = dea_yeoh_stress(film->yeoh, stretch, stretch);
-    film->tension = stress.p1;
-    film->w11 = stress.w11;
-    film->w12 = stress.w12;
-    film->square = y;
-    film->inverse_fourth = 1.0 / (y * y);
-    film->j = p * p * (2.0 * y + 1.0) * film->inverse_fourth;
-    film->g = p * (y * y + y + 1.0) * film->inverse_fourth;
-    film->w = film->yeoh[0] + film->j * (2.0 * film->yeoh[1] + 3.0 * film->yeoh[2] * film->j);
-    film->curvature = curvature(film);
 }
 
 /* Share of the source voltage that a leaking film sees at rest: R_p/(R_s + R_p). */
@@ -61,7 +37,7 @@ bool dea_point_valid(const dea_point *point)
 {
     const dea_film *film = &point->film;
     return point->frame_radius > 0.0 && point->coverage > 0.0 && point->coverage < 1.0 && point->film_thickness > 0.0 &&
-           film->prestretch >= 1.0 && film->permittivity > 0.0 && film->yeoh[0] > 0.0 && isfinite(film->modulus) &&
+           film->prestretch >= 1.0 && film->permittivity > 0.0 && film->valid && isfinite(film->modulus) &&
            isfinite(point->voltage);
 }
 

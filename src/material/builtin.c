@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "deaspice/material.h"
+#include "material/law.h"
 
 /* Long-term shear modulus and branches of VHB 4910 [Pa]; g_i = G_i/(G_inf + sum G_i), C1 = G_inf/2. */
 #define VHB_LONG_TERM 15.36e3
@@ -12,7 +12,9 @@ static const dea_material materials[] = {
     {
         .name = "elastosil-2030",
         .source = "fit of the base paper to the manufacturer's data of Elastosil Film 2030",
-        .yeoh = {178426.0, -6023.0, 4234.0},
+        .law = &dea_law_yeoh,
+        .entry_count = 1,
+        .constants = {178426.0, -6023.0, 4234.0},
         .permittivity = 2.8,
         .density = 1080.0,
         .retardation = NAN,
@@ -23,7 +25,9 @@ static const dea_material materials[] = {
         .name = "elastosil-2030-solano",
         .source = "Solano, Zhang, Cattafesta, electroacoustic lumped element model of a DE membrane; permittivity citing Hodgins "
                   "and Seelecke 2016",
-        .yeoh = {180700.0, -16700.0, 6600.0},
+        .law = &dea_law_yeoh,
+        .entry_count = 1,
+        .constants = {180700.0, -16700.0, 6600.0},
         .permittivity = 2.76,
         .permittivity_per_stretch = -0.28,
         .density = 1080.0,
@@ -34,7 +38,9 @@ static const dea_material materials[] = {
     {
         .name = "vhb-4910",
         .source = "Wang et al., JMPS 2016: neo-Hookean equilibrium and three branches of VHB 4910",
-        .yeoh = {VHB_LONG_TERM / 2.0, 0.0, 0.0},
+        .law = &dea_law_yeoh,
+        .entry_count = 1,
+        .constants = {VHB_LONG_TERM / 2.0},
         .permittivity = 4.8,
         .density = NAN,
         .retardation = NAN,
@@ -52,7 +58,9 @@ enum { MATERIAL_COUNT = sizeof materials / sizeof *materials };
 dea_material dea_material_default(void)
 {
     return (dea_material){
-        .yeoh = {NAN, 0.0, 0.0},
+        .law = &dea_law_yeoh,
+        .entry_count = 1,
+        .constants = {NAN},
         .permittivity = NAN,
         .density = NAN,
         .retardation = NAN,

@@ -10,6 +10,7 @@
 
 #include "material/fit_errors.h"
 #include "material/fit_plausible.h"
+#include "material/law.h"
 #include "support/lapack.h"
 
 /* Condition number of the scaled columns beyond which the data does not tell the constants apart. */
@@ -74,15 +75,15 @@ static double stretch_across(dea_load load, double stretch)
     return load == DEA_LOAD_EQUIBIAXIAL ? stretch : 1.0 / sqrt(stretch);
 }
 
-double dea_fit_stress(const double yeoh[DEA_YEOH_TERMS], dea_load load, double stretch)
+double dea_fit_stress(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], dea_load load, double stretch)
 {
-    return dea_yeoh_stress(yeoh, stretch, stretch_across(load, stretch)).p1;
+    return law->stress(constants, stretch, stretch_across(load, stretch)).p1;
 }
 
 /* Slope of the nominal stress over stretch [Pa]: W11 + W12 equi-biaxial, W11 - W12^2/W22 uniaxial. */
-static double load_tangent(const double yeoh[DEA_YEOH_TERMS], dea_load load, double stretch)
+static double load_tangent(const dea_fit *fit, dea_load load, double stretch)
 {
-    const dea_stress s = dea_yeoh_stress(yeoh, stretch, stretch_across(load, stretch));
+    const dea_stress s = fit->law->stress(fit->constants, stretch, stretch_across(load, stretch));
     return load == DEA_LOAD_EQUIBIAXIAL ? s.w11 + s.w12 : s.w11 - s.w12 * s.w12 / s.w22;
 }
 
@@ -117,7 +118,7 @@ static double stress_largest(const dea_fit_data *data)
 
 static dea_status problem_fill(problem *p, const dea_fit_data *data, bool relative, dea_error *error)
 {
-    static const double units[DEA_YEOH_TERMS][DEA_YEOH_TERMS] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    static const double units[DEA_YEOH_TERMS][DEA_LAW_CONSTANTS] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
     const double largest = stress_largest(data);
     p->matrix = malloc(p->rows * (size_t)p->terms * sizeof *p->matrix);
     p->left = malloc(p->rows * (size_t)p->terms * sizeof *p->left);
@@ -130,7 +131,7 @@ static dea_status problem_fill(problem *p, const dea_fit_data *data, bool relati
         for (size_t i = 0; i < p->rows; i++) {
             const dea_fit_point *point = &data->points[i];
             const double weight = relative ? 1.0 / fmax(fabs(point->stress), relative_floor * largest) : 1.0;
-            column[i] = weight * dea_fit_stress(units[j], point->load, point->stretch);
+            column[i] = weight * dea_fit_stress(&dea_law_yeoh, units[j], point->load, point->stretch);
             p->right[i] = weight * point->stress;
             p->scale[j] = hypot(p->scale[j], column[i]);
         }
@@ -175,7 +176,7 @@ static void problem_solve(problem *p, dea_fit *fit)
     }
     for (int k = 0; k < p->terms; k++) {
         for (int j = 0; j < p->terms; j++) {
-            fit->yeoh[j] += p->vt[j * p->terms + k] / p->singular[k] * projection[k] / p->scale[j];
+            fit->constants[j] += p->vt[j * p->terms + k] / p->singular[k] * projection[k] / p->scale[j];
         }
         for (size_t i = 0; i < p->rows; i++) {
             p->right[i] -= p->left[(size_t)k * p->rows + i] * projection[k];
@@ -210,7 +211,7 @@ static void fit_judge(const dea_fit_data *data, dea_fit *fit)
     }
     for (size_t i = 0; i < data->count; i++) {
         const dea_fit_point *point = &data->points[i];
-        const double residual = point->stress - dea_fit_stress(fit->yeoh, point->load, point->stretch);
+        const double residual = point->stress - dea_fit_stress(fit->law, fit->constants, point->load, point->stretch);
         residuals += residual * residual;
         spread += (point->stress - mean) * (point->stress - mean);
         squares += point->stress * point->stress;
@@ -229,7 +230,7 @@ static void fit_walk(dea_fit *fit)
     for (int i = 0; i <= STEPS; i++) {
         const double stretch = from + (to - from) * i / STEPS;
         for (int load = 0; load < DEA_LOAD_COUNT; load++) {
-            if (!(load_tangent(fit->yeoh, (dea_load)load, stretch) > 0.0)) {
+            if (!(load_tangent(fit, (dea_load)load, stretch) > 0.0)) {
                 fit->unstable_stretch = stretch;
                 return;
             }
@@ -239,7 +240,7 @@ static void fit_walk(dea_fit *fit)
 
 static dea_status fit_examine(const dea_fit_data *data, int terms, dea_fit *fit, dea_error *error)
 {
-    *fit = (dea_fit){.terms = terms, .stretch_min = INFINITY, .stretch_max = -INFINITY, .unloads_from = dea_plausible_turn(data)};
+    *fit = (dea_fit){.law = &dea_law_yeoh, .terms = terms, .stretch_min = INFINITY, .stretch_max = -INFINITY, .unloads_from = dea_plausible_turn(data)};
     size_t deformed = 0;
     for (size_t i = 0; i < data->count; i++) {
         const dea_fit_point *point = &data->points[i];
@@ -319,13 +320,13 @@ static int terms_choose(const dea_fit *last)
 static dea_status sign_examine(const dea_fit *fit, dea_error *error)
 {
     const double doubt = isfinite(fit->deviation[0]) ? sign_certain * fit->deviation[0] : 0.0;
-    if (fit->yeoh[0] > doubt) {
+    if (fit->constants[0] > doubt) {
         return DEA_OK;
     }
     return dea_fail(error, DEA_ERROR_DATA,
                     "the data give no elasticity: C1, half the shear modulus at rest, is %.4g Pa +- %.3g Pa and has to be above 0; "
                     "measure nearer to stretch 1, look at the columns, or fit fewer constants (--terms)",
-                    fit->yeoh[0], isfinite(fit->deviation[0]) ? fit->deviation[0] : 0.0);
+                    fit->constants[0], isfinite(fit->deviation[0]) ? fit->deviation[0] : 0.0);
 }
 
 dea_status dea_fit_yeoh(const dea_fit_data *data, int terms, bool relative, dea_fit *fit, dea_error *error)

@@ -58,7 +58,7 @@ static void print_yeoh(const dea_fit *fit, FILE *stream)
     static const char *const before[DEA_YEOH_TERMS] = {"C1: ", ", C2: ", ", C3: "};
     fputs("yeoh: {", stream);
     for (int i = 0; i < fit->terms; i++) {
-        print_number(stream, before[i], fit->yeoh[i], 8, " Pa");
+        print_number(stream, before[i], fit->constants[i], 8, " Pa");
     }
     fputs("}\n", stream);
     print_number(stream, "stretches: [", fmin(fit->stretch_min, 1.0), 6, "");
@@ -122,7 +122,36 @@ static void print_prony(const dea_relaxation *fit, FILE *stream)
     }
 }
 
-dea_status dea_fit_print(const dea_fit *fit, const dea_relaxation *relaxation, FILE *stream, dea_error *error)
+/* How a scene names the file, with what it lacks. */
+static void print_use(const dea_fit *fit, const dea_material *film, FILE *stream)
+{
+    const bool whole = film && isfinite(film->permittivity);
+    if (fit && whole) {
+        fputs("# A material file: name it in a scene as  material: FILE\n", stream);
+    } else if (fit) {
+        fputs("# A material file: name it in a scene as  material: {base: FILE, permittivity: 2.8}  with the value of your film, "
+              "or "
+              "let\n# deaspice fit --permittivity 2.8  write that here.\n",
+              stream);
+    } else {
+        fprintf(stream,
+                "# A material file: name it in a scene as  material: {base: FILE, yeoh: {C1: 180 kPa}%s}  with the\n"
+                "# values of your film, or give it a line  base: elastosil-2030  with the name of yours.\n",
+                whole ? "" : ", permittivity: 2.8");
+    }
+}
+
+static void print_given(const char *key, double value, const char *unit, FILE *stream)
+{
+    enum { DECIMALS = 15 }; /* of any decimal number, as it was given */
+    if (isfinite(value)) {
+        fprintf(stream, "%s: ", key);
+        print_number(stream, "", value, DECIMALS, unit);
+    }
+}
+
+dea_status dea_fit_print(const dea_fit *fit, const dea_relaxation *relaxation, const dea_material *film, FILE *stream,
+                         dea_error *error)
 {
     if (fit) {
         print_yeoh_quality(fit, stream);
@@ -130,12 +159,7 @@ dea_status dea_fit_print(const dea_fit *fit, const dea_relaxation *relaxation, F
     if (relaxation) {
         print_relaxation_quality(relaxation, stream);
     }
-    fputs(fit ? "# A material file: name it in a scene as  material: {base: FILE, permittivity: 2.8}  with the value of your "
-                "film.\n"
-              : "# A material file: name it in a scene as  material: {base: FILE, yeoh: {C1: 180 kPa}, permittivity: 2.8}  with "
-                "the\n"
-                "# values of your film, or give it a line  base: elastosil-2030  with the name of yours.\n",
-          stream);
+    print_use(fit, film, stream);
     if (fit) {
         print_yeoh(fit, stream);
     }
@@ -144,6 +168,11 @@ dea_status dea_fit_print(const dea_fit *fit, const dea_relaxation *relaxation, F
     }
     if (relaxation) {
         print_prony(relaxation, stream);
+    }
+    if (film) {
+        print_given("permittivity", film->permittivity, "\n", stream);
+        print_given("density", film->density, " kg/m^3\n", stream);
+        print_given("breakdown", film->breakdown, " V/m\n", stream);
     }
     return ferror(stream) ? dea_fail(error, DEA_ERROR_IO, "the fit could not be printed") : DEA_OK;
 }

@@ -1,65 +1,80 @@
-/* Incompressible Yeoh film. I - 3 and l^2 - l^-4 are factored so that they keep their digits near l = 1. */
-#include "deaspice/material.h"
+/* Yeoh: W = C1 J + C2 J^2 + C3 J^3, J = I1 - 3 (Eq. 11). */
+#include <math.h>
 
-/* I - 3 at in-plane stretches l1, l2; with p = l1^2 - 1 and q = l2^2 - 1 it is (p^2 (1+q) + q^2 (1+p) + p q)/((1+p)(1+q)). */
-static double invariant_less_3(double l1, double l2)
+#include "material/invariant.h"
+
+enum { C1, C2, C3 };
+
+DEA_INLINE dea_slopes slopes(const double *c, double j)
 {
-    const double p = (l1 - 1.0) * (l1 + 1.0);
-    const double q = (l2 - 1.0) * (l2 + 1.0);
-    return (p * p * (1.0 + q) + q * q * (1.0 + p) + p * q) / ((1.0 + p) * (1.0 + q));
+    return (dea_slopes){
+        .w = c[C1] + j * (2.0 * c[C2] + 3.0 * c[C3] * j), .w1 = 2.0 * c[C2] + 6.0 * c[C3] * j, .w2 = 6.0 * c[C3]};
 }
 
-/* w = dW/dI. */
-static double energy_slope(const double yeoh[DEA_YEOH_TERMS], double j)
+DEA_INLINE double gain(const double *c, double j, double dj)
 {
-    return yeoh[0] + j * (2.0 * yeoh[1] + 3.0 * yeoh[2] * j);
+    return dj * (2.0 * c[C2] + 3.0 * c[C3] * (2.0 * j + dj));
 }
 
-dea_stress dea_yeoh_stress(const double yeoh[DEA_YEOH_TERMS], double l1, double l2)
+static double energy(const double *c, double l1, double l2)
 {
-    const double t3 = 1.0 / (l1 * l2); /* thickness stretch */
-    const double t3s = t3 * t3;
-    const double over1 = t3 * l2; /* 1/l1 */
-    const double over2 = t3 * l1;
-    const double p = (l1 - 1.0) * (l1 + 1.0);
-    const double r = (l2 - 1.0) * (l2 + 1.0);
-    const double j = (p * p * (1.0 + r) + r * r * (1.0 + p) + p * r) * t3s; /* as invariant_less_3(), with one division in all */
-    const double w = energy_slope(yeoh, j);
-    const double q = 2.0 * yeoh[1] + 6.0 * yeoh[2] * j;
-    const double a1 = 2.0 * (l1 - t3s * over1);
-    const double a2 = 2.0 * (l2 - t3s * over2);
-    return (dea_stress){
-        .w = w,
-        .p1 = w * a1,
-        .p2 = w * a2,
-        .w11 = w * (2.0 + 6.0 * t3s * over1 * over1) + q * a1 * a1,
-        .w12 = 4.0 * w * t3s * t3 + q * a1 * a2,
-        .w22 = w * (2.0 + 6.0 * t3s * over2 * over2) + q * a2 * a2,
-    };
+    const double j = dea_invariant(l1, l2);
+    return j * (c[C1] + j * (c[C2] + j * c[C3]));
 }
 
-double dea_yeoh_energy(const double yeoh[DEA_YEOH_TERMS], double l1, double l2)
+static dea_stress stress(const double *c, double l1, double l2)
 {
-    const double j = invariant_less_3(l1, l2);
-    return j * (yeoh[0] + j * (yeoh[1] + j * yeoh[2]));
+    return dea_invariant_stress(slopes, c, l1, l2);
 }
 
-double dea_yeoh_equibiaxial(const double yeoh[DEA_YEOH_TERMS], double stretch)
+/* W11 = w (2 + 6 l^-6) + w' a1^2, a1 = 2 l (1 - l^-6). */
+static long double fine_w11(const double *c, long double l)
 {
-    const double y = stretch * stretch;
-    const double p = (stretch - 1.0) * (stretch + 1.0);
-    const double j = p * p * (2.0 * y + 1.0) / (y * y);
-    return 2.0 * p * (y * y + y + 1.0) / (y * y) * energy_slope(yeoh, j);
+    const long double y = l * l, cube = 1.0L / (y * y * y), a = 1.0L - cube;
+    const long double j = 2.0L * y + 1.0L / (y * y) - 3.0L;
+    const long double w = c[C1] + j * (2.0L * c[C2] + 3.0L * c[C3] * j);
+    return w * (2.0L + 6.0L * cube) + (2.0L * c[C2] + 6.0L * c[C3] * j) * 4.0L * y * a * a;
 }
 
-double dea_yeoh_modulus(const double yeoh[DEA_YEOH_TERMS], double stretch)
+static double rise(const double *c, double l, double d1, double d2)
 {
-    const double y = stretch * stretch;
-    const double p = (stretch - 1.0) * (stretch + 1.0);
-    const double j = p * p * (2.0 * y + 1.0) / (y * y);
-    const double g = p * (y * y + y + 1.0) / (y * y);
-    const double w = energy_slope(yeoh, j);
-    const double slope = 2.0 * yeoh[1] + 6.0 * yeoh[2] * j;
-    /* dg/dl = 2 (l + 2 l^-5), dj/dl = 4 g/l */
-    return 4.0 * (stretch + 2.0 / (y * y * stretch)) * w + 8.0 * g * g * slope / stretch;
+    return dea_invariant_rise(slopes, gain, c, l, d1, d2);
 }
+
+static void prepare(dea_film *film)
+{
+    film->rest[0] = slopes(film->constants, film->j).w;
+}
+
+static dea_change change(const dea_film *film, double e)
+{
+    return dea_invariant_change(slopes, gain, film, e);
+}
+
+static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
+{
+    return dea_invariant_biaxial(slopes, gain, film, e1, e2);
+}
+
+static const dea_constant constants[] = {
+    {"C1", "Pa", true, 0.0, NAN, "a modulus > 0, e.g. 178426 Pa"},
+    {"C2", "Pa", true, -INFINITY, 0.0, "a modulus, e.g. -6023 Pa"},
+    {"C3", "Pa", true, -INFINITY, 0.0, "a modulus, e.g. 4234 Pa"},
+};
+
+const dea_law dea_law_yeoh = {
+    .name = "yeoh",
+    .title = "Yeoh",
+    .energy_text = "W = C1 (I1 - 3) + C2 (I1 - 3)^2 + C3 (I1 - 3)^3",
+    .constants = constants,
+    .constant_count = sizeof constants / sizeof *constants,
+    .entries = 1,
+    .energy = energy,
+    .stress = stress,
+    .fine_w11 = fine_w11,
+    .rise = rise,
+    .prepare = prepare,
+    .change = change,
+    .biaxial = biaxial,
+    .networked = true,
+};

@@ -2,7 +2,7 @@
  *
  * With D = lambda_2 - lambda_1 and e = lambda_2 - lambda_pre the equations of physics.md, section 3, read
  *
- *     de/dx = -D,   dD/dx = -D [ 1 + (2 w (1 + t^3) + k lambda_1 lambda_2 + s12)/s11 ],   t = 1/(lambda_1 lambda_2),
+ *     de/dx = -D,   dD/dx = -D [ 1 + ((P2 - P1)/D + k lambda_1 lambda_2 + s12)/s11 ],
  *
  * which keeps the digits of a strain of any size: D and e scale with the load. The one condition is e = 0 at the frame.
  */
@@ -48,19 +48,24 @@ typedef struct extremes {
     double edge_force;   /* lambda_1 lambda_2^2 of the electroded side at R_a [1] */
 } extremes;
 
+/* Stresses and moduli of the film. */
+static dea_stress stress_at(const membrane *m, double l1, double l2)
+{
+    return m->film->law->stress(m->film->constants, l1, l2);
+}
+
 static radial_state slope_at(const membrane *m, radial_state s)
 {
     const double l2 = m->film->prestretch + s.e;
     const double l1 = l2 - s.d;
     const double area = l1 * l2;
-    const double t = 1.0 / area;
-    const dea_stress stress = dea_yeoh_stress(m->film->yeoh, l1, l2);
+    const dea_stress stress = stress_at(m, l1, l2);
     const double s11 = stress.w11 - m->annulus_k * l2 * l2;
     const double s12 = stress.w12 - 2.0 * m->annulus_k * area;
     if (!(s11 > 0.0)) {
         return (radial_state){NAN, NAN}; /* loss of ellipticity: no such film is stable */
     }
-    const double rate = 1.0 + (2.0 * stress.w * (1.0 + t * t * t) + m->annulus_k * area + s12) / s11;
+    const double rate = 1.0 + (stress.shear + m->annulus_k * area + s12) / s11;
     return (radial_state){-s.d * rate, -s.d};
 }
 
@@ -103,23 +108,6 @@ static bool advance(const membrane *m, radial_state start, double step, radial_s
     return change <= m->mesh.change * fabs(start.d);
 }
 
-/* p1(l - d, l) - p1(l, l), factored in d. */
-static double stress_drop(const double yeoh[DEA_YEOH_TERMS], double l, double d)
-{
-    const double l1 = l - d;
-    const double i1 = 1.0 / l1;
-    const double il = 1.0 / l;
-    const dea_stress rest = dea_yeoh_stress(yeoh, l, l);
-    const double a_rest = rest.p1 / rest.w;
-    /* l1^-3 - l^-3 = d (l^2 + l l1 + l1^2)/(l1 l)^3 */
-    const double da = -2.0 * d * (1.0 + il * il * (l * l + l * l1 + l1 * l1) * i1 * i1 * i1 * il * il * il);
-    const double dj = -d * (l1 + l) * (1.0 - i1 * i1 * il * il * il * il);
-    const double p = (l - 1.0) * (l + 1.0);
-    const double j = p * p * (2.0 * l * l + 1.0) * il * il * il * il;
-    const double dw = dj * (2.0 * yeoh[1] + 3.0 * yeoh[2] * (2.0 * j + dj));
-    return (rest.w + dw) * da + dw * a_rest;
-}
-
 /* D on the annulus side of R_a from the continuity of s1 there; NAN where there is none.
  * s1 - s1_disc = p1(l - D, l) - p1(l, l) + (k_d - k_o) l^3 + k_o D l^2 = 0 */
 static double jump_at_edge(const membrane *m, double l)
@@ -127,8 +115,8 @@ static double jump_at_edge(const membrane *m, double l)
     const double jump = (m->disc_k - m->annulus_k) * l * l * l;
     double d = 0.0;
     for (int i = 0; i < 40; i++) {
-        const dea_stress here = dea_yeoh_stress(m->film->yeoh, l - d, l);
-        const double residual = stress_drop(m->film->yeoh, l, d) + jump + m->annulus_k * d * l * l;
+        const dea_stress here = stress_at(m, l - d, l);
+        const double residual = m->film->law->rise(m->film->constants, l, -d, 0.0) + jump + m->annulus_k * d * l * l;
         const double s11 = here.w11 - m->annulus_k * l * l;
         const double most = 0.25 * (l - d); /* lambda_1 moves by a quarter at most: the first root from lambda_2 on is meant */
         const double step = s11 > 0.0 ? residual / s11 : copysign(most, residual);
@@ -146,7 +134,7 @@ static void note(const membrane *m, radial_state s, extremes *x)
 {
     const double l2 = m->film->prestretch + s.e;
     const double l1 = l2 - s.d;
-    const dea_stress stress = dea_yeoh_stress(m->film->yeoh, l1, l2);
+    const dea_stress stress = stress_at(m, l1, l2);
     const double area = l1 * l2;
     x->least_stress = fmin(x->least_stress, fmin(stress.p1 - m->annulus_k * area * l2, stress.p2 - m->annulus_k * area * l1));
     if (m->annulus_k > 0.0) {
@@ -163,7 +151,7 @@ static double miss_at_frame(const membrane *m, double edge, extremes *x)
     }
     radial_state s = {jump_at_edge(m, l), edge};
     if (x) {
-        const double disc = dea_yeoh_stress(m->film->yeoh, l, l).p1 - m->disc_k * l * l * l;
+        const double disc = stress_at(m, l, l).p1 - m->disc_k * l * l * l;
         const bool lens = m->annulus_k > 0.0;
         *x = (extremes){disc, lens ? (l - s.d) * l : l * l, lens ? (l - s.d) * l * l : l * l * l};
         note(m, s, x);
@@ -221,7 +209,7 @@ static bool stays_elliptic(const membrane *full, place from, place to, double le
         const double l2 = full->film->prestretch + from.edge + t * (to.edge - from.edge);
         const double l1 = from.stretch + t * (to.stretch - from.stretch);
         const double k = full->annulus_k * (from.share + t * (to.share - from.share));
-        if (!(dea_yeoh_stress(full->film->yeoh, l1, l2).w11 - k * l2 * l2 > least)) {
+        if (!(stress_at(full, l1, l2).w11 - k * l2 * l2 > least)) {
             return false;
         }
     }

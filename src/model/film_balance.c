@@ -1,39 +1,7 @@
-/* See film_balance.h. Stress differences to the pre-stretch are factored in the strain, so that a strain of 1e-12 keeps its
- * digits. */
+/* See film_balance.h. The law gives stress differences to the pre-stretch that keep their digits at a strain of 1e-12. */
 #include "model/film_balance.h"
 
-/* sigma(lambda_pre (1 + e)) - sigma(lambda_pre) and its first two derivatives over e. */
-typedef struct stress_change {
-    double value;
-    double slope;
-    double curve;
-} stress_change;
-
-static inline stress_change change_of_stress(const dea_film *film, double e)
-{
-    const double y0 = film->square;
-    const double d = y0 * e * (2.0 + e); /* y - y0, y = lambda^2 */
-    const double y = y0 + d;
-    const double inverse = 1.0 / (y * y);
-    const double q = (y + y0) * inverse * film->inverse_fourth;
-    const double dg = d * (1.0 + q); /* g - g0, g = y - y^-2 */
-    const double dj = d * (2.0 - q); /* J - J0, J = 2 y + y^-2 - 3 */
-    const double c2 = 2.0 * film->yeoh[1];
-    const double c3 = 3.0 * film->yeoh[2];
-    const double dw = dj * (c2 + c3 * (2.0 * film->j + dj));
-    const double w = film->w + dw;
-    const double g = film->g + dg;
-    const double wj = c2 + 2.0 * c3 * (film->j + dj);
-    const double cube = inverse * inverse * y; /* y^-3 */
-    /* with respect to y: g' = 1 + 2 y^-3, J' = 2 - 2 y^-3, g'' = -6 y^-4, J'' = 6 y^-4 */
-    const double g1 = 1.0 + 2.0 * cube;
-    const double j1 = 2.0 - 2.0 * cube;
-    const double second = 6.0 * inverse * inverse;
-    const double slope = 2.0 * (g1 * w + g * wj * j1);
-    const double curve = 2.0 * (2.0 * g1 * wj * j1 + 2.0 * c3 * g * j1 * j1 + second * (g * wj - w));
-    const double dy = 2.0 * y0 * (1.0 + e);
-    return (stress_change){2.0 * (dg * w + film->g * dw), slope * dy, curve * dy * dy + slope * 2.0 * y0};
-}
+#include "model/path.h"
 
 typedef struct balance {
     double load;  /* N = sigma_A - sigma_P [Pa] */
@@ -42,12 +10,18 @@ typedef struct balance {
     double fold;  /* (1 + e) dN/de - 4 N, sign of dU/de */
 } balance;
 
+/* Two films of which the passive one gives back `ratio` of the active one's strain. */
+typedef struct film_pair {
+    const dea_film *film;
+    double ratio;
+} film_pair;
+
 static inline balance balance_at(const dea_film *film, double ratio, double e)
 {
-    const stress_change active = change_of_stress(film, e);
+    const dea_change active = film->law->change(film, e);
     balance b = {active.value, active.slope, active.curve, 0.0};
     if (ratio > 0.0) {
-        const stress_change passive = change_of_stress(film, -ratio * e);
+        const dea_change passive = film->law->change(film, -ratio * e);
         b.load -= passive.value;
         b.slope += ratio * passive.slope;
         b.curve -= ratio * ratio * passive.curve;
@@ -56,118 +30,26 @@ static inline balance balance_at(const dea_film *film, double ratio, double e)
     return b;
 }
 
-static double fourth(double x)
+static dea_path_place place_at(const void *user, double e)
 {
-    return x * x * x * x;
+    const film_pair *pair = user;
+    const balance b = balance_at(pair->film, pair->ratio, e);
+    const double cube = (1.0 + e) * (1.0 + e) * (1.0 + e);
+    return (dea_path_place){b.load, b.slope, cube * (1.0 + e), 4.0 * cube};
 }
 
-/* Width in strain below which `fold` between two samples of like size is trusted to keep its sign: 5 % of stretch in either
- * region. */
-static double trusted_width(double ratio, double e)
+/* Strain of the active film at which a region vanishes, or the energy of the material ends. */
+static double end_of(const dea_film *film, double ratio)
 {
-    return 0.05 * (1.0 + e) / (1.0 + ratio);
-}
-
-/* Looks for a fold on [low, high], where `fold` has the values at_low > 0 and at_high. Returns true and a narrow bracket of the
- * first sample with fold <= 0, else false. Samples lie so close that `fold` at most halves, or moves by 5 % of stretch, between
- * two of them. */
-static bool find_fold(const dea_film *film, double ratio, double low, double at_low, double high, double at_high, double *before,
-                      double *after)
-{
-    double at = low;
-    double fold = at_low;
-    double next = high;
-    double next_fold = at_high;
-    while (at < high) {
-        const double width = next - at;
-        const double trusted = trusted_width(ratio, at);
-        const bool finest = width <= 1e-5 * trusted;
-        if (finest && !(next_fold > 0.0)) {
-            *before = at;
-            *after = next;
-            return true;
-        }
-        if (finest || (width <= trusted && fmin(fold, next_fold) > 0.5 * fmax(fold, next_fold))) {
-            at = next;
-            fold = next_fold;
-            next = fmin(high, at + 2.0 * width);
-        } else {
-            next = at + 0.5 * width;
-        }
-        next_fold = next == high ? at_high : balance_at(film, ratio, next).fold;
-    }
-    return false;
-}
-
-/* Root of N - m (1+e)^4 in [low, high], where it changes sign from - to +: Newton, with bisection where Newton leaves the
- * bracket. */
-static double bracketed_root(const dea_film *film, double ratio, double m, double low, double high)
-{
-    double e = 0.5 * (low + high);
-    for (int i = 0; i < 200 && high - low > 1e-16 * high; i++) {
-        const balance b = balance_at(film, ratio, e);
-        const double residual = b.load - m * fourth(1.0 + e);
-        if (residual == 0.0) {
-            return e;
-        }
-        *(residual < 0.0 ? &low : &high) = e;
-        const double next = e - residual / (b.slope - 4.0 * m * (1.0 + e) * (1.0 + e) * (1.0 + e));
-        const double step = fabs(next - e);
-        e = next > low && next < high ? next : 0.5 * (low + high);
-        if (e == next && step <= 2e-16 * fabs(e)) {
-            break;
-        }
-    }
-    return e;
-}
-
-/* The fold itself, where `fold` changes sign in [before, after]. */
-static double locate_fold(const dea_film *film, double ratio, double before, double after)
-{
-    for (int i = 0; i < 100; i++) {
-        const double middle = 0.5 * (before + after);
-        if (middle <= before || middle >= after) {
-            break;
-        }
-        *(balance_at(film, ratio, middle).fold > 0.0 ? &before : &after) = middle;
-    }
-    return before;
-}
-
-/* Follows the equilibrium from rest with growing strain until the load reaches m, or a fold, or the end of the film. */
-static bool trace(const dea_film *film, double ratio, double m, double *strain)
-{
-    const double end = ratio > 0.0 ? (1.0 - 1e-12) / ratio : 1e4; /* the passive stretch reaches 0 */
-    double low = 0.0;
-    double fold = balance_at(film, ratio, low).fold;
-    while (low < end) {
-        double high = fmin(end, low + trusted_width(ratio, low));
-        double before = 0.0;
-        double after = 0.0;
-        balance at = balance_at(film, ratio, high);
-        const bool folds = find_fold(film, ratio, low, fold, high, at.fold, &before, &after);
-        if (folds) {
-            high = locate_fold(film, ratio, before, after);
-            at = balance_at(film, ratio, high);
-        }
-        if (at.load >= m * fourth(1.0 + high)) {
-            *strain = bracketed_root(film, ratio, m, low, high);
-            return true;
-        }
-        if (folds) {
-            return false;
-        }
-        low = high;
-        fold = at.fold;
-    }
-    return false;
+    const double active = fmin(1e4, film->most / film->prestretch - 1.0);
+    return ratio > 0.0 ? fmin(active, (1.0 - film->least / film->prestretch) / ratio) : active;
 }
 
 /* Halley's iteration from the second-order answer; false where it does not settle. Convergence is cubic, so the step after the
  * next one is foreseen as step^4/last^3, and where that is below rounding the present step was the last one needed. */
 static bool halley(const dea_film *film, double ratio, double m, double stiffness, double *strain, balance *at)
 {
-    const double end = ratio > 0.0 ? 1.0 / ratio : 1e4;
+    const double end = end_of(film, ratio);
     /* N = K e + c e^2/2 + ..., m (1 + e)^4 = m (1 + 4 e + 6 e^2 + ...) */
     const double bend = 0.5 * film->square * film->curvature * (1.0 - ratio * ratio) - 6.0 * m;
     const double linear = m / (stiffness - 4.0 * m);
@@ -195,13 +77,14 @@ static bool halley(const dea_film *film, double ratio, double m, double stiffnes
 }
 
 /* True where `fold` keeps far from zero all the way from rest to e, near which @p at was taken: over so short a way two values
- * and two tangents of it that stay within a factor of two leave no room for a fold between. Spares the samples of find_fold(). */
+ * and two tangents of it that stay within a factor of two leave no room for a fold between. Spares the samples of
+ * dea_path_grows(). */
 static bool cannot_fold(const dea_film *film, double ratio, double stiffness, double e, const balance *at)
 {
     const double slope_at_rest = film->square * film->curvature * (1.0 - ratio * ratio) - 3.0 * stiffness;
     const double slope_at_end = (1.0 + e) * at->curve - 3.0 * at->slope;
     const double tangents = fmin(stiffness + slope_at_rest * e, at->fold - slope_at_end * e);
-    return e <= 3.0 * trusted_width(ratio, 0.0) && fmin(tangents, fmin(stiffness, at->fold)) > 0.5 * fmax(stiffness, at->fold);
+    return e <= 0.15 / (1.0 + ratio) && fmin(tangents, fmin(stiffness, at->fold)) > 0.5 * fmax(stiffness, at->fold);
 }
 
 bool dea_film_balance(const dea_film *film, double ratio, double m, double *strain)
@@ -214,13 +97,12 @@ bool dea_film_balance(const dea_film *film, double ratio, double m, double *stra
     if (!(stiffness > 0.0) || !isfinite(m)) {
         return false;
     }
+    const film_pair pair = {film, ratio};
+    const dea_path path = {place_at, &pair, stiffness, end_of(film, ratio), 1.0 / (1.0 + ratio)};
     balance at;
-    double before;
-    double after;
     if (halley(film, ratio, m, stiffness, strain, &at) && at.fold > 0.0 &&
-        (cannot_fold(film, ratio, stiffness, *strain, &at) ||
-         !find_fold(film, ratio, 0.0, stiffness, *strain, at.fold, &before, &after))) {
+        (cannot_fold(film, ratio, stiffness, *strain, &at) || dea_path_grows(&path, *strain))) {
         return true; /* U grows all the way from rest to this root, so it is the first */
     }
-    return trace(film, ratio, m, strain);
+    return dea_path_trace(&path, m, strain);
 }

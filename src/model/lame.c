@@ -1,6 +1,6 @@
 /* Plane elasticity about the pre-stretched film: Lame's disc and annulus, with electrostatic softening. */
 #include "model/film_balance.h"
-#include "network/formula.h"
+#include "expression/formula.h"
 #include "network/network.h"
 
 /* Are both nominal stresses positive at one place of a region with moduli a, b, under the changes d1, d2 of the radial and hoop
@@ -18,10 +18,9 @@ static const double nearly = 1e-2;
 static double fine_stiffness(const dea_point *point)
 {
     const dea_film *film = &point->film;
-    const long double y = (long double)film->prestretch * film->prestretch, cube = 1.0L / (y * y * y);
-    const long double j = 2.0L * y + 1.0L / (y * y) - 3.0L, a = 1.0L - cube; /* a1^2 = 4 y a^2 */
-    const long double w = film->yeoh[0] + j * (2.0L * film->yeoh[1] + 3.0L * film->yeoh[2] * j);
-    const long double w11 = w * (2.0L + 6.0L * cube) + (2.0L * film->yeoh[1] + 6.0L * film->yeoh[2] * j) * 4.0L * y * a * a;
+    const dea_law *law = film->law;
+    const long double l = film->prestretch, y = l * l;
+    const long double w11 = law->fine_w11 ? law->fine_w11(film->constants, l) : film->w11;
     const long double b2 = (long double)point->coverage * point->coverage,
                       field = (long double)point->voltage / point->film_thickness;
     const long double share = point->kind == DEA_DOT ? 3.0L : (1.0L + b2) / (1.0L - b2) - 2.0L;

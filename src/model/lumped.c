@@ -1,6 +1,6 @@
 /* Eqs. 19-23: two linear springs and a force source. */
 #include "model/film_balance.h"
-#include "network/formula.h"
+#include "expression/formula.h"
 #include "network/network.h"
 
 static void solve(const dea_point *point, double accuracy, dea_row *row)

@@ -13,7 +13,6 @@ static const dea_dialect dialects[] = {
         .close = "",
         .left = "({",
         .right = "})",
-        .ln = "ln",
         .inside = ".",
         .solver = ".options",
         .inductor = "",
@@ -33,7 +32,6 @@ static const dea_dialect dialects[] = {
         .close = "",
         .left = "({",
         .right = "})",
-        .ln = "ln",
         .inside = ":",
         .solver = ".options",
         .inductor = " rser=0", /* else 1 mOhm */
@@ -51,7 +49,6 @@ static const dea_dialect dialects[] = {
         .close = "}",
         .left = "",
         .right = "",
-        .ln = "ln",
         .inside = ":",
         .solver = NULL,
         .inductor = "",
@@ -71,7 +68,8 @@ static const dea_dialect dialects[] = {
         .close = "}",
         .left = "",
         .right = "",
-        .ln = "log", /* PSpice calls the natural logarithm log, and has no ln */
+        /* PSpice calls the natural logarithm log, and has no ln */
+        .text = {[DEA_LN] = "log(@)", [DEA_POW] = "pwr(@,#)"},
         .inside = ".",
         .solver = ".options",
         .inductor = "",
@@ -117,6 +115,24 @@ void dea_dialect_source_end(const dea_dialect *dialect, FILE *out)
 void dea_dialect_parameter(const dea_dialect *dialect, FILE *out, const char *name)
 {
     fprintf(out, "%s%s%s", dialect->left, name, dialect->right);
+}
+
+void dea_dialect_operation(const dea_dialect *dialect, FILE *out, dea_operation operation, bool moves,
+                           dea_operand_writer *operand, void *user)
+{
+    const dea_operation_row *row = dea_operation_of(operation);
+    const char *text = dialect->text[operation] ? dialect->text[operation] : row->text;
+    for (; *text; text++) {
+        if (*text == '@' && moves && row->held) {
+            for (const char *held = row->held; *held; held++) {
+                *held == '@' ? operand(user, 0) : (void)fputc(*held, out);
+            }
+        } else if (*text == '@' || *text == '#') {
+            operand(user, *text == '#');
+        } else {
+            fputc(*text, out);
+        }
+    }
 }
 
 void dea_dialect_comment(FILE *out, const char *text)

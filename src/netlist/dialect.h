@@ -8,21 +8,23 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "expression/operation.h"
+
 typedef struct dea_dialect {
-    const char *name;         /* as on the command line, e.g. "ngspice" */
-    const char *title;        /* as its makers write it */
-    const char *source[2];    /* letter of a behavioural source of voltage, of current: "b", or "e" and "g" */
-    const char *equals[2];    /* what stands before its expression: " v=", " i=", or " value=" */
-    const char *open, *close; /* round the expression of a behavioural source */
-    const char *left, *right; /* round a parameter inside such an expression; brackets where it is put in as text */
-    const char *ln;           /* natural logarithm */
-    const char *inside;       /* between the name of an instance and a node of it: v(x1.u) */
-    const char *solver;       /* card of solver options that reltol, abstol and vntol follow, NULL: none */
-    const char *inductor;     /* what stands behind every inductor */
-    const char *transient;    /* lines before a transient of a whole study, */
-    const char *ac;           /* its frequency response, */
-    const char *sweep;        /* its sweep */
-    const char *save;         /* card that the nodes to be kept follow, NULL: none */
+    const char *name;                 /* as on the command line, e.g. "ngspice" */
+    const char *title;                /* as its makers write it */
+    const char *source[2];            /* letter of a behavioural source of voltage, of current: "b", or "e" and "g" */
+    const char *equals[2];            /* what stands before its expression: " v=", " i=", or " value=" */
+    const char *open, *close;         /* round the expression of a behavioural source */
+    const char *left, *right;         /* round a parameter inside such an expression; brackets where it is put in as text */
+    const char *text[DEA_OPERATIONS]; /* of an operation, where it is not that of its row */
+    const char *inside;               /* between the name of an instance and a node of it: v(x1.u) */
+    const char *solver;               /* card of solver options that reltol, abstol and vntol follow, NULL: none */
+    const char *inductor;             /* what stands behind every inductor */
+    const char *transient;            /* lines before a transient of a whole study, */
+    const char *ac;                   /* its frequency response, */
+    const char *sweep;                /* its sweep */
+    const char *save;                 /* card that the nodes to be kept follow, NULL: none */
 } dea_dialect;
 
 typedef enum dea_quantity { DEA_VOLTAGE, DEA_CURRENT } dea_quantity;
@@ -38,6 +40,11 @@ void dea_dialect_source_begin(const dea_dialect *dialect, FILE *out, dea_quantit
 void dea_dialect_source_end(const dea_dialect *dialect, FILE *out);
 /* A parameter inside the expression of a behavioural source. */
 void dea_dialect_parameter(const dea_dialect *dialect, FILE *out, const char *name);
+/* Writes operand number 0 or 1 of an operation. */
+typedef void dea_operand_writer(void *user, int operand);
+/* The text of an operation; one that moves holds its operand inside its range. */
+void dea_dialect_operation(const dea_dialect *dialect, FILE *out, dea_operation operation, bool moves,
+                           dea_operand_writer *operand, void *user);
 /* One comment line: printable ASCII of at most DEA_COMMENT_LENGTH characters, without backslashes, which can join lines; anything
  * else becomes a space, so that text of strangers stays a comment. NULL is an empty one. */
 enum { DEA_COMMENT_LENGTH = 120 };

@@ -14,7 +14,7 @@ void dea_netlist_number(FILE *out, double value)
 bool dea_expression_text_open(dea_expression_text *text, const dea_pool *pool, FILE *out, const char *node)
 {
     const size_t size = (size_t)pool->count + 1;
-    *text = (dea_expression_text){.pool = pool, .out = out, .node = node};
+    *text = (dea_expression_text){.pool = pool, .dialect = dea_dialect_at(0), .out = out, .node = node};
     text->uses = calloc(size, sizeof *text->uses);
     text->named = calloc(size, sizeof *text->named);
     text->rest = calloc(size, sizeof *text->rest);
@@ -37,9 +37,7 @@ static bool is_plain(double value)
 
 static int precedence(const dea_term *term)
 {
-    return term->operation == DEA_ADD || term->operation == DEA_SUB   ? 1
-           : term->operation == DEA_MUL || term->operation == DEA_DIV ? 2
-                                                                      : 3;
+    return dea_operation_of(term->operation)->precedence;
 }
 
 static void expression(const dea_expression_text *t, dea_expr ref, bool as_node);
@@ -53,6 +51,22 @@ static void operand(const dea_expression_text *t, dea_expr ref, bool brackets)
     } else {
         expression(t, ref, true);
     }
+}
+
+/* A term whose operands are to be written. */
+typedef struct written_term {
+    const dea_expression_text *text;
+    const dea_term *term;
+} written_term;
+
+static void write_side(void *user, int side)
+{
+    const written_term *w = user;
+    const dea_operation_row *row = dea_operation_of(w->term->operation);
+    const dea_expr ref = side == 0 ? w->term->a : w->term->b;
+    const int its = precedence(&w->text->pool->terms[ref]);
+    const bool brackets = row->precedence < 3 && (its < row->precedence || (side == 1 && row->strict && its == row->precedence));
+    operand(w->text, ref, brackets);
 }
 
 /* Writes a term; as_node: by its node where it has one. A parameter is put in as text, so a negative one stands in brackets. */
@@ -71,18 +85,8 @@ static void expression(const dea_expression_text *t, dea_expr ref, bool as_node)
         fputs(t->node, t->out);
     } else if (as_node && t->named[ref]) {
         fprintf(t->out, "v(x%d)", ref);
-    } else if (term->operation == DEA_LN) {
-        fputs("ln(", t->out);
-        expression(t, term->a, true);
-        fputc(')', t->out);
     } else {
-        static const char signs[] = {[DEA_ADD] = '+', [DEA_SUB] = '-', [DEA_MUL] = '*', [DEA_DIV] = '/'};
-        const int mine = precedence(term);
-        const bool strict = term->operation == DEA_SUB || term->operation == DEA_DIV;
-        const int right = precedence(&t->pool->terms[term->b]);
-        operand(t, term->a, precedence(&t->pool->terms[term->a]) < mine);
-        fputc(signs[term->operation], t->out);
-        operand(t, term->b, right < mine || (right == mine && strict));
+        dea_dialect_operation(t->dialect, t->out, term->operation, true, write_side, &(written_term){t, term});
     }
 }
 
@@ -101,7 +105,9 @@ void dea_expression_text_use(dea_expression_text *text, dea_expr ref)
     const dea_term *term = &text->pool->terms[ref];
     if (text->uses[ref]++ == 0 && term->operation >= DEA_ADD) {
         dea_expression_text_use(text, term->a);
-        dea_expression_text_use(text, term->b);
+        if (dea_operation_of(term->operation)->operands == 2) {
+            dea_expression_text_use(text, term->b);
+        }
     }
 }
 

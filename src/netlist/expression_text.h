@@ -1,14 +1,16 @@
 /* Expressions of a network as text of ngspice B sources. A term that is used more than once gets a voltage node of its own, and
- * every number stands in a .param: literals inside B expressions keep 11 digits only. Expressions use + - * / and ln alone. */
+ * every number stands in a .param: literals inside B expressions keep 11 digits only. */
 #ifndef DEA_EXPRESSION_TEXT_H
 #define DEA_EXPRESSION_TEXT_H
 
 #include <stdio.h>
 
-#include "network/expression.h"
+#include "expression/expression.h"
+#include "netlist/dialect.h"
 
 typedef struct dea_expression_text {
     const dea_pool *pool;
+    const dea_dialect *dialect; /* ngspice */
     FILE *out;
     const char *node; /* what stands for node 0, e.g. "v(edge)" */
     int *uses;        /* owned: how often an expression of the netlist uses the term */

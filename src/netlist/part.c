@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "expression/derivative.h"
+#include "expression/formula.h"
 #include "netlist/part_text.h"
-#include "network/derivative.h"
-#include "network/formula.h"
 #include "network/network.h"
 #include "support/text.h"
 
@@ -41,15 +41,15 @@ typedef struct part {
     dea_network network; /* owned */
     dea_part_text text;  /* owned */
     /* expressions of the displacement and the symbols, the voltage taken out */
-    dea_expr area, stress, stress_slope;   /* A, S, dS/du */
-    dea_expr push, push_slope;             /* phi = (1/2) dC/du [N/V^2] and its slope */
-    dea_expr capacitance, c_rest;          /* C(u), C(0) */
-    dea_expr k_rest;                       /* d(A S)/du at rest [N/m] */
-    dea_expr field;                        /* true field of 1 V */
-    dea_expr mass;                         /* of film and electrodes */
-    dea_expr divide, width;                /* r_a, r - r_a */
-    dea_expr taut[DEA_NETWORK_TENSIONS];   /* > 0 while taut, without voltage */
-    dea_expr loosen[DEA_NETWORK_TENSIONS]; /* what 1 V adds to it; grows with U^2 */
+    dea_expr area, stress, stress_slope; /* A, S, dS/du */
+    dea_expr push, push_slope;           /* phi = (1/2) dC/du [N/V^2] and its slope */
+    dea_expr capacitance, c_rest;        /* C(u), C(0) */
+    dea_expr k_rest;                     /* d(A S)/du at rest [N/m] */
+    dea_expr field;                      /* true field of 1 V */
+    dea_expr mass;                       /* of film and electrodes */
+    dea_expr divide, width;              /* r_a, r - r_a */
+    dea_expr *taut;                      /* owned; > 0 while taut, without voltage */
+    dea_expr *loosen;                    /* owned; what 1 V adds to it; grows with U^2 */
 } part;
 
 /* Models that are parts. */
@@ -87,36 +87,9 @@ const char *dea_part_name_of(dea_kind kind, const dea_model *model, char name[DE
     return name;
 }
 
-/* @p ref with the displacement, or the voltage, replaced by a number; the same term where it holds none. */
-static dea_expr put(dea_pool *pool, dea_expr ref, dea_operation place, double number)
-{
-    const dea_term term = pool->terms[ref]; /* a copy: the pool grows */
-    if (term.operation == place && (place == DEA_NODE || term.a == VOLTAGE)) {
-        return NUM(number);
-    }
-    if (term.operation < DEA_ADD) {
-        return ref;
-    }
-    const dea_expr a = put(pool, term.a, place, number);
-    const dea_expr b = put(pool, term.b, place, number);
-    if (a == term.a && b == term.b) {
-        return ref;
-    }
-    return term.operation == DEA_ADD   ? ADD(a, b)
-           : term.operation == DEA_SUB ? SUB(a, b)
-           : term.operation == DEA_MUL ? MUL(a, b)
-           : term.operation == DEA_DIV ? DIV(a, b)
-                                       : LN(a);
-}
-
 static dea_expr at_volts(dea_pool *pool, dea_expr ref, double volts)
 {
-    return put(pool, ref, DEA_SYMBOL, volts);
-}
-
-static dea_expr at_rest(dea_pool *pool, dea_expr ref)
-{
-    return put(pool, ref, DEA_NODE, 0.0);
+    return dea_expr_put(pool, ref, DEA_SYMBOL, VOLTAGE, NUM(volts));
 }
 
 static dea_symbols symbols_of(dea_pool *pool, dea_kind kind)
@@ -173,16 +146,23 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
     const dea_expr pull = SUB(dea_network_load(network), MUL(dea_network_softening(network), network->edge));
     p->push = at_volts(pool, pull, 1.0);
     p->push_slope = dea_expr_slope(pool, p->push);
-    p->area = dea_network_area(network);
-    p->stress = dea_network_stress(network);
+    dea_network_stress stress[DEA_NETWORK_STRESSES];
+    (void)dea_network_stresses(network, stress);
+    p->area = stress[0].lever;
+    p->stress = stress[0].stress;
     p->stress_slope = dea_expr_slope(pool, p->stress);
-    p->k_rest = SCALE(form_of(model)->stress, at_rest(pool, MUL(p->area, p->stress_slope)));
+    p->k_rest = SCALE(form_of(model)->stress, dea_expr_at_rest(pool, MUL(p->area, p->stress_slope)));
     p->capacitance = network->capacitance;
-    p->c_rest = at_rest(pool, p->capacitance);
+    p->c_rest = dea_expr_at_rest(pool, p->capacitance);
     p->field = at_volts(pool, network->field, 1.0);
     p->mass = moving_mass(&symbols);
     p->divide = MUL(symbols.frame_radius, symbols.coverage);
     p->width = dea_symbols_annulus_width(&symbols);
+    p->taut = calloc((size_t)network->tension_count + 1, sizeof *p->taut);
+    p->loosen = calloc((size_t)network->tension_count + 1, sizeof *p->loosen);
+    if (!p->taut || !p->loosen) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is made");
+    }
     for (int i = 0; i < network->tension_count; i++) {
         const dea_expr tension = SCALE(form_of(model)->tension, network->tension[i]);
         p->taut[i] = at_volts(pool, tension, 0.0);
@@ -366,9 +346,10 @@ static void write_numbers(const part *p)
     line(p, ".param inertia={m_film+1e-24*%s}", dea_part_text_parameter(&p->text, p->k_rest, name));
 }
 
-/* The current of the film is that of a capacitor, without a gain: what a simulator adds to nodes and pivots (gmin, rshunt, cshunt)
- * stays what it is. v(plate) makes it a voltage, whose tolerance, 1e-6, is one of 1 nA, which the digits of kilovolts can keep in
- * short steps; fed back into v(q), it leaves the capacitor its whole voltage. A conductance has no noise, as a resistor would. */
+/* The current of the film is that of a capacitor, without a gain: what a simulator adds to nodes and pivots (gmin, rshunt,
+ * cshunt) stays what it is. v(plate) makes it a voltage, whose tolerance, 1e-6, is one of 1 nA, which the digits of kilovolts can
+ * keep in short steps; fed back into v(q), it leaves the capacitor its whole voltage. A conductance has no noise, as a resistor
+ * would. */
 static void write_port(const part *p)
 {
     line(p, "* film: v(q) = charge/c_rest on a capacitor of c_rest, whose current is d(C U)/dt; v(plate) is this current [mA]");
@@ -381,15 +362,16 @@ static void write_port(const part *p)
     line(p, "gforce 0 edge force 0 {many}");
 }
 
-/* The velocity enters with a large factor, so that pivoting finds it from the integrator and not from a difference of forces: only
- * so do springs in parallel share right at the operating point. */
+/* The velocity enters with a large factor, so that pivoting finds it from the integrator and not from a difference of forces:
+ * only so do springs in parallel share right at the operating point. */
 static void write_integrator(FILE *out, const char *from, const char *to)
 {
-    fprintf(out,
-            "* u = displacement [um], the integral of the velocity; it leaks 1e-9 of itself a second, so that springs in parallel\n"
-            "* have an operating point\n"
-            "gdisp 0 u %s %s 1e6\ncdisp u 0 1\ngdrift u 0 u 0 1e-9\n",
-            from, to);
+    fprintf(
+        out,
+        "* u = displacement [um], the integral of the velocity; it leaks 1e-9 of itself a second, so that springs in parallel\n"
+        "* have an operating point\n"
+        "gdisp 0 u %s %s 1e6\ncdisp u 0 1\ngdrift u 0 u 0 1e-9\n",
+        from, to);
 }
 
 static void write_displacement(const part *p)
@@ -525,7 +507,7 @@ static void add(dea_part_parameter *list, size_t *count, const char *name, const
 static void add_film(const dea_scene *scene, dea_part_parameter *list, size_t *count)
 {
     const dea_material *material = &scene->material;
-    double yeoh[DEA_YEOH_TERMS];
+    double yeoh[DEA_LAW_CONSTANTS];
     dea_material_long_term(material, yeoh);
     add(list, count, "c1", "Pa", "first Yeoh constant, long-term", yeoh[0]);
     add(list, count, "c2", "Pa", "second Yeoh constant, long-term", yeoh[1]);
@@ -633,6 +615,8 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
     free(text);
     dea_part_text_close(&p.text);
     dea_network_free(&p.network);
+    free(p.taut);
+    free(p.loosen);
     return status;
 }
 
@@ -646,16 +630,17 @@ void dea_part_write_mechanics(const char *prefix, FILE *out)
             prefix, prefix);
     write_integrator(out, "a", "b");
     fprintf(out, "gspring a b u 0 {k_um}\n.ends %s_spring\n", prefix);
-    fprintf(out,
-            "* %s_lever: v(b) = ratio v(a), force on a = ratio times force on b; ratio = -1 turns the sense of an edge; m levers\n"
-            "* side by side are one\n"
-            ".subckt %s_lever a b\n"
-            "+ params: ratio=-1 m=1\n"
-            "elever turned 0 a 0 {ratio}\n"
-            "vsense turned b 0\n"
-            "flever a 0 vsense {ratio}\n"
-            ".ends %s_lever\n",
-            prefix, prefix, prefix);
+    fprintf(
+        out,
+        "* %s_lever: v(b) = ratio v(a), force on a = ratio times force on b; ratio = -1 turns the sense of an edge; m levers\n"
+        "* side by side are one\n"
+        ".subckt %s_lever a b\n"
+        "+ params: ratio=-1 m=1\n"
+        "elever turned 0 a 0 {ratio}\n"
+        "vsense turned b 0\n"
+        "flever a 0 vsense {ratio}\n"
+        ".ends %s_lever\n",
+        prefix, prefix, prefix);
 }
 
 static void write_preamble(const dea_dialect *dialect, const char *title, const char *prefix, FILE *out)

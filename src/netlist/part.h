@@ -27,8 +27,9 @@ bool dea_part_name_valid(const char *name);
  * no name holds, "dea_" before what is no letter, as long as a name can be. False where the file has none: "-", ".lib". */
 bool dea_part_name_after(const char *path, char name[DEA_PART_NAME_LENGTH + 1]);
 
-/* Writes one subcircuit called @p name, NULL: as dea_part_name_of() says. Its defaults are the numbers of the scene, an axis at its first value. As many Prony branches as the
- * scene has, but three at least. DEA_ERROR_UNSUPPORTED for a model that is no part. */
+/* Writes one subcircuit called @p name, NULL: as dea_part_name_of() says. Its defaults are the numbers of the scene, an axis at
+ * its first value. As many Prony branches as the scene has, but three at least. DEA_ERROR_UNSUPPORTED for a model that is no
+ * part. */
 dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, const char *name, const dea_dialect *dialect,
                           FILE *out, dea_error *error);
 

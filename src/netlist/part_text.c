@@ -22,7 +22,7 @@ enum { WORTH = 2, MANY = 100 };
  * products of the displacement are: 0.37 stands for every symbol. */
 static void mark_moving(const dea_pool *pool, dea_part_text *text, double *rest)
 {
-    dea_pool_values(pool, 0.37, 0.0, rest);
+    dea_pool_values_uniform(pool, 0.37, 0.0, rest);
     for (int i = 0; i < pool->count; i++) {
         const dea_term *term = &pool->terms[i];
         const bool made = term->operation >= DEA_ADD;
@@ -52,9 +52,8 @@ bool dea_part_text_open(dea_part_text *text, const dea_pool *pool, const dea_dia
     text->nodal = calloc(size, sizeof *text->nodal);
     text->written = calloc(size, sizeof *text->written);
     double *rest = calloc(size, sizeof *rest);
-    const bool ready =
-        !pool->exhausted && text->uses && text->carded && text->moves && text->places && text->divides && text->nodal &&
-        text->written && rest;
+    const bool ready = !pool->exhausted && text->uses && text->carded && text->moves && text->places && text->divides &&
+                       text->nodal && text->written && rest;
     if (ready) {
         mark_moving(pool, text, rest);
     }
@@ -64,6 +63,7 @@ bool dea_part_text_open(dea_part_text *text, const dea_pool *pool, const dea_dia
 
 void dea_part_text_close(dea_part_text *text)
 {
+    free(text->names);
     free(text->uses);
     free(text->carded);
     free(text->moves);
@@ -92,12 +92,19 @@ static const dea_part_name *name_of(const dea_part_text *text, dea_expr ref)
 
 void dea_part_text_name(dea_part_text *text, dea_expr ref, const char *name, const char *meaning)
 {
-    if (text->pool->terms[ref].operation >= DEA_ADD && !name_of(text, ref) && text->name_count < DEA_PART_NAMES) {
-        dea_part_name *entry = &text->names[text->name_count++];
-        entry->ref = ref;
-        snprintf(entry->name, sizeof entry->name, "%s", name);
-        snprintf(entry->meaning, sizeof entry->meaning, "%s", meaning);
+    if (text->pool->terms[ref].operation < DEA_ADD || name_of(text, ref)) {
+        return;
     }
+    dea_part_name *names = realloc(text->names, (text->name_count + 1) * sizeof *names);
+    if (!names) {
+        text->exhausted = true;
+        return;
+    }
+    dea_part_name *entry = &names[text->name_count++];
+    entry->ref = ref;
+    snprintf(entry->name, sizeof entry->name, "%s", name);
+    snprintf(entry->meaning, sizeof entry->meaning, "%s", meaning);
+    text->names = names;
 }
 
 static void use(dea_part_text *text, dea_expr ref, bool in_source)
@@ -107,7 +114,7 @@ static void use(dea_part_text *text, dea_expr ref, bool in_source)
     text->carded[ref] = text->carded[ref] || (in_source && !moves);
     if (text->uses[ref]++ == 0 && term->operation >= DEA_ADD) {
         use(text, term->a, moves);
-        if (term->operation != DEA_LN) {
+        if (dea_operation_of(term->operation)->operands == 2) {
             use(text, term->b, moves);
         }
     }
@@ -153,9 +160,7 @@ const char *dea_part_text_parameter(const dea_part_text *text, dea_expr ref, cha
 
 static int precedence(const dea_term *term)
 {
-    return term->operation == DEA_ADD || term->operation == DEA_SUB   ? 1
-           : term->operation == DEA_MUL || term->operation == DEA_DIV ? 2
-                                                                      : 3;
+    return dea_operation_of(term->operation)->precedence;
 }
 
 /* An expression on its way out: a behavioural source refers to parameters otherwise than a .param card, and in a divisor nothing
@@ -194,28 +199,33 @@ static void write_operand(const stream *s, dea_expr ref, bool brackets)
     }
 }
 
+/* A term whose operands are to be written. */
+typedef struct written_term {
+    const stream *stream;
+    const dea_term *term;
+} written_term;
+
+static void write_side(void *user, int side)
+{
+    const written_term *w = user;
+    const dea_part_text *t = w->stream->text;
+    const dea_operation_row *row = dea_operation_of(w->term->operation);
+    const dea_expr ref = side == 0 ? w->term->a : w->term->b;
+    const int its = precedence(&t->pool->terms[ref]);
+    const bool brackets = row->precedence < 3 && (its < row->precedence || (side == 1 && row->strict && its == row->precedence));
+    const stream behind = {t, w->stream->source, w->stream->divisor || (side == 1 && w->term->operation == DEA_DIV)};
+    write_operand(&behind, ref, brackets);
+}
+
 /* Writes what a term is made of. */
 static void write_term(const stream *s, dea_expr ref)
 {
-    static const char signs[] = {[DEA_ADD] = '+', [DEA_SUB] = '-', [DEA_MUL] = '*', [DEA_DIV] = '/'};
     const dea_part_text *t = s->text;
     const dea_term *term = &t->pool->terms[ref];
     if (term->operation < DEA_ADD) {
         write_operand(s, ref, false);
-    } else if (term->operation == DEA_LN) {
-        /* an iterate on its way can leave the range that the solution has */
-        const bool guard = t->moves[ref];
-        fprintf(t->out, "%s(%s", t->dialect->ln, guard ? "max(" : "");
-        write_operand(s, term->a, false);
-        fputs(guard ? ",1e-6))" : ")", t->out);
     } else {
-        const int mine = precedence(term);
-        const bool strict = term->operation == DEA_SUB || term->operation == DEA_DIV;
-        const int right = precedence(&t->pool->terms[term->b]);
-        write_operand(s, term->a, precedence(&t->pool->terms[term->a]) < mine);
-        fputc(signs[term->operation], t->out);
-        const stream behind = {t, s->source, s->divisor || term->operation == DEA_DIV};
-        write_operand(&behind, term->b, right < mine || (right == mine && strict));
+        dea_dialect_operation(t->dialect, t->out, term->operation, t->moves[ref], write_side, &(written_term){s, term});
     }
 }
 

@@ -3,10 +3,10 @@
 #ifndef DEA_PART_TEXT_H
 #define DEA_PART_TEXT_H
 
+#include "expression/expression.h"
 #include "netlist/dialect.h"
-#include "network/expression.h"
 
-enum { DEA_PART_NAME = 24, DEA_PART_NAMES = 48 };
+enum { DEA_PART_NAME = 24 };
 
 /* A term that has a name and a meaning of its own. */
 typedef struct dea_part_name {
@@ -21,27 +21,28 @@ typedef struct dea_part_text {
     FILE *out;
     const char *const *symbols; /* names of the parameters behind the pool's symbols */
     const char *node;           /* what stands for the displacement [m], a factor */
-    dea_part_name names[DEA_PART_NAMES];
+    dea_part_name *names;       /* owned */
     size_t name_count;
-    int *uses;     /* owned: how often a term is written */
-    bool *carded;  /* owned: a source refers to it, so that it needs a .param card */
-    bool *moves;   /* owned: depends on the displacement */
-    int *places;   /* owned: how often the displacement stands in it, up to a bound */
-    bool *divides; /* owned: stands in a divisor or a logarithm */
-    bool *nodal;   /* owned: becomes a node where it is shared */
-    bool *written; /* owned: has its .param card or its node */
+    int *uses;      /* owned: how often a term is written */
+    bool *carded;   /* owned: a source refers to it, so that it needs a .param card */
+    bool *moves;    /* owned: depends on the displacement */
+    int *places;    /* owned: how often the displacement stands in it, up to a bound */
+    bool *divides;  /* owned: stands in a divisor or a logarithm */
+    bool *nodal;    /* owned: becomes a node where it is shared */
+    bool *written;  /* owned: has its .param card or its node */
+    bool exhausted; /* memory ran out: a name is missing */
 } dea_part_text;
 
 /* Starts a text; the pool must not grow any more. False without memory. End it with dea_part_text_close() in either case. */
 bool dea_part_text_open(dea_part_text *text, const dea_pool *pool, const dea_dialect *dialect, FILE *out);
 void dea_part_text_close(dea_part_text *text);
 
-/* Names a term that depends on the parameters alone. */
+/* Names a term that depends on the parameters alone; the first of two names of a term stays. */
 void dea_part_text_name(dea_part_text *text, dea_expr ref, const char *name, const char *meaning);
 /* Declares that a source will write the expression, as a whole or as a number on a card of its own. */
 void dea_part_text_use(dea_part_text *text, dea_expr ref);
-/* The same of an expression that multiplies what is 0 at the start of Newton's iterations, the last to be declared: its shared terms
- * become nodes whatever they are at rest, which keeps derivatives short. */
+/* The same of an expression that multiplies what is 0 at the start of Newton's iterations, the last to be declared: its shared
+ * terms become nodes whatever they are at rest, which keeps derivatives short. */
 void dea_part_text_use_as_factor(dea_part_text *text, dea_expr ref);
 
 /* The cards that the declared expressions need: .param, then nodes of shared moving terms. */

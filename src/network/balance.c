@@ -1,26 +1,41 @@
 #include "network/balance.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum { ELASTIC, LOAD };
-enum { STRAIN, FORCE, FIELD, BREAKDOWN, LENGTH, END, IN_RANGE, TENSION = IN_RANGE + DEA_NETWORK_RANGES };
+enum { STRAIN, FORCE, FIELD, BREAKDOWN, LENGTH, END, LISTS };
+
+/* What a row needs, then the ranges, then the tensions. */
+static dea_status compile_limits(dea_network *network, dea_balance *balance, dea_expr load, dea_error *error)
+{
+    const int ranges = network->range_count, count = LISTS + ranges + network->tension_count;
+    dea_expr *limits = malloc((size_t)count * sizeof *limits);
+    if (!limits) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built");
+    }
+    limits[STRAIN] = network->strain;
+    limits[FORCE] = load;
+    limits[FIELD] = network->field;
+    limits[BREAKDOWN] = network->breakdown;
+    limits[LENGTH] = network->length;
+    limits[END] = network->end;
+    for (int i = 0; i < count - LISTS; i++) {
+        limits[LISTS + i] = i < ranges ? network->range[i] : network->tension[i - ranges];
+    }
+    const dea_status status = dea_tape_compile(&network->pool, limits, count, &balance->limits, error);
+    free(limits);
+    return status;
+}
 
 dea_status dea_balance_open(dea_network *network, dea_balance *balance, dea_error *error)
 {
-    *balance = (dea_balance){.tension_count = network->tension_count, .sign = network->sign};
+    *balance = (dea_balance){.range_count = network->range_count, .tension_count = network->tension_count, .sign = network->sign};
     const dea_expr load = dea_network_load(network);
     const dea_expr forces[] = {dea_network_elastic(network), load};
-    dea_expr limits[DEA_TAPE_OUTPUTS] = {network->strain, load,        network->field, network->breakdown,
-                                         network->length, network->end};
-    for (int i = 0; i < DEA_NETWORK_RANGES; i++) {
-        limits[IN_RANGE + i] = network->range[i];
-    }
-    for (int i = 0; i < network->tension_count; i++) {
-        limits[TENSION + i] = network->tension[i];
-    }
     dea_status status = dea_tape_compile(&network->pool, forces, 2, &balance->forces, error);
     if (status == DEA_OK) {
-        status = dea_tape_compile(&network->pool, limits, TENSION + network->tension_count, &balance->limits, error);
+        status = compile_limits(network, balance, load, error);
     }
     if (status != DEA_OK) {
         dea_balance_close(balance);
@@ -39,8 +54,8 @@ void dea_balance_close(dea_balance *balance)
 /* True where everything that must be positive is, at the values that the limits hold now. */
 static bool in_range(const dea_balance *balance)
 {
-    for (int i = 0; i < DEA_NETWORK_RANGES; i++) {
-        if (!(dea_tape_value(&balance->limits, IN_RANGE + i) > 0.0)) {
+    for (int i = 0; i < balance->range_count; i++) {
+        if (!(dea_tape_value(&balance->limits, LISTS + i) > 0.0)) {
             return false;
         }
     }
@@ -177,7 +192,7 @@ static dea_row row_of(const dea_balance *balance, double u)
         return dea_row_failed();
     }
     for (int i = 0; i < balance->tension_count; i++) {
-        if (!(dea_tape_value(limits, TENSION + i) > 0.0)) {
+        if (!(dea_tape_value(limits, LISTS + balance->range_count + i) > 0.0)) {
             row.state = DEA_STATE_SLACK;
         }
     }

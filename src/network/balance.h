@@ -10,7 +10,7 @@
 typedef struct dea_balance {
     dea_tape forces; /* owned: R, F */
     dea_tape limits; /* owned: what a row and the ranges need */
-    int tension_count;
+    int range_count, tension_count;
     double sign; /* of u */
 } dea_balance;
 

@@ -1,4 +1,4 @@
-/* Hyperelastic springs of an equi-biaxially stretched region, measured from the pre-stretch. */
+/* Hyperelastic springs of a region of film, measured from the pre-stretch. */
 #ifndef DEA_HYPERELASTIC_H
 #define DEA_HYPERELASTIC_H
 
@@ -6,6 +6,9 @@
 
 /* sigma(lambda_pre (1 + e)) - sigma(lambda_pre) [Pa], factored in e so that a small strain keeps its digits. */
 dea_expr dea_hyperelastic_change(const dea_symbols *symbols, dea_expr e);
+
+/* sigma_1 - sigma(lambda_pre) [Pa] at the stretches lambda_pre (1 + e1), lambda_pre (1 + e2), as well factored. */
+dea_expr dea_hyperelastic_principal(const dea_symbols *symbols, dea_expr e1, dea_expr e2);
 
 /* A(lambda_a) = 2 pi r_a H/(lambda_pre^2 (1 + s)) [m^2]. */
 dea_expr dea_hyperelastic_area(const dea_symbols *symbols, dea_expr strain);

@@ -1,24 +1,64 @@
 #include "network/network.h"
 
 #include <math.h>
+#include <stdlib.h>
 
-#include "network/formula.h"
+#include "expression/formula.h"
 
 void dea_network_free(dea_network *network)
 {
     if (network) {
         dea_pool_free(&network->pool);
+        free(network->elements);
+        free(network->tension);
+        free(network->range);
+        network->elements = NULL;
+        network->tension = network->range = NULL;
     }
+}
+
+static void add_element(dea_network *network, dea_element element)
+{
+    const size_t count = (size_t)network->element_count;
+    dea_element *elements = realloc(network->elements, (count + 1) * sizeof *elements);
+    if (!elements) {
+        network->pool.exhausted = true;
+        return;
+    }
+    elements[network->element_count++] = element;
+    network->elements = elements;
 }
 
 void dea_network_add(dea_network *network, dea_role role, const char *name, const char *meaning, dea_expr value)
 {
-    network->elements[network->element_count++] = (dea_element){role, name, meaning, value};
+    add_element(network, (dea_element){role, name, meaning, value, 0});
+}
+
+void dea_network_add_stress(dea_network *network, const char *name, const char *meaning, dea_expr stress, dea_expr lever)
+{
+    add_element(network, (dea_element){DEA_ROLE_HYPERELASTIC, name, meaning, stress, lever});
+}
+
+/* One more expression at the end of a list. */
+static void append(dea_network *network, dea_expr **list, int *count, dea_expr ref)
+{
+    dea_expr *longer = realloc(*list, ((size_t)*count + 1) * sizeof *longer);
+    if (!longer) {
+        network->pool.exhausted = true;
+        return;
+    }
+    longer[(*count)++] = ref;
+    *list = longer;
 }
 
 void dea_network_taut(dea_network *network, dea_expr tension)
 {
-    network->tension[network->tension_count++] = tension;
+    append(network, &network->tension, &network->tension_count, tension);
+}
+
+void dea_network_demand(dea_network *network, dea_expr range)
+{
+    append(network, &network->range, &network->range_count, range);
 }
 
 void dea_network_limit_area(const dea_symbols *symbols, dea_network *network)
@@ -110,8 +150,8 @@ static dea_symbols symbols_of(const dea_scene *scene, const dea_axis *axis, dea_
     s.coverage = given(pool, divide) ? DIV(divide, s.frame_radius) : scalar(pool, scene, axis, &actuator->coverage);
     s.film_thickness = scalar(pool, scene, axis, &actuator->film_thickness);
     s.prestretch = scalar(pool, scene, axis, &actuator->prestretch);
-    for (int i = 0; i < DEA_YEOH_TERMS; i++) {
-        s.yeoh[i] = MUL(share, scalar(pool, scene, axis, &material->yeoh[i]));
+    for (int i = 0; i < 3; i++) {
+        s.yeoh[i] = MUL(share, scalar(pool, scene, axis, &material->constants[i]));
     }
     const dea_expr modulus = scalar(pool, scene, axis, &material->modulus);
     s.modulus = given(pool, modulus) ? MUL(share, modulus) : dea_symbols_modulus(&s);
@@ -184,10 +224,10 @@ static void place_edge(const dea_symbols *symbols, dea_network *network)
     network->sign = symbols->kind == DEA_DOT ? 1.0 : -1.0;
     network->length = MUL(divide_radius(symbols), SUB(one, symbols->coverage)); /* below both r_a and r - r_a */
     network->end = NUM(0.0);
-    network->range[0] = symbols->coverage;
-    network->range[1] = SUB(one, symbols->coverage);
-    network->range[2] = symbols->permittivity;
-    network->range[3] = symbols->yeoh[0];
+    dea_network_demand(network, symbols->coverage);
+    dea_network_demand(network, SUB(one, symbols->coverage));
+    dea_network_demand(network, symbols->permittivity);
+    dea_network_demand(network, symbols->yeoh[0]);
     network->breakdown = symbols->breakdown;
 }
 
@@ -207,6 +247,11 @@ dea_status dea_network_build(const dea_scene *scene, const dea_model *model, con
     *network = (dea_network){0};
     if (!model->network) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is not a network", model->name);
+    }
+    if (!scene->material.law->networked) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED,
+                        "a film of the law %s has no network yet: run its static models with the engine direct, or field with ida",
+                        scene->material.law->name);
     }
     (void)dea_expr_number(&network->pool, 0.0);
     if (network->pool.exhausted) {
@@ -228,25 +273,33 @@ static dea_expr sum_of(dea_network *network, dea_role role)
     return sum;
 }
 
-static bool is_hyperelastic(const dea_network *network)
-{
-    for (int i = 0; i < network->element_count; i++) {
-        if (network->elements[i].role == DEA_ROLE_HYPERELASTIC) {
-            return true;
-        }
-    }
-    return false;
-}
-
-dea_expr dea_network_area(dea_network *network)
-{
-    return is_hyperelastic(network) ? network->area : dea_expr_number(&network->pool, 1.0);
-}
-
-dea_expr dea_network_stress(dea_network *network)
+int dea_network_stresses(dea_network *network, dea_network_stress *stresses)
 {
     dea_pool *pool = &network->pool;
-    return ADD(MUL(sum_of(network, DEA_ROLE_SPRING), network->edge), sum_of(network, DEA_ROLE_HYPERELASTIC));
+    int count = 0;
+    for (int i = 0; i < network->element_count; i++) {
+        const dea_element *element = &network->elements[i];
+        int k = 0;
+        while (k < count && stresses[k].lever != element->lever) {
+            k++;
+        }
+        if (element->role == DEA_ROLE_HYPERELASTIC && k < count) {
+            stresses[k].stress = ADD(stresses[k].stress, element->value);
+        } else if (element->role == DEA_ROLE_HYPERELASTIC && count < DEA_NETWORK_STRESSES) {
+            stresses[count++] = (dea_network_stress){element->value, element->lever};
+        } else if (element->role == DEA_ROLE_HYPERELASTIC) {
+            pool->exhausted = true; /* a network that holds more is not built */
+        }
+    }
+    if (count == 0) {
+        stresses[count++] = (dea_network_stress){MUL(sum_of(network, DEA_ROLE_SPRING), network->edge), NUM(1.0)};
+    }
+    return count;
+}
+
+dea_expr dea_network_tension(dea_network *network)
+{
+    return sum_of(network, DEA_ROLE_TENSION);
 }
 
 dea_expr dea_network_softening(dea_network *network)
@@ -258,10 +311,10 @@ dea_expr dea_network_elastic(dea_network *network)
 {
     dea_pool *pool = &network->pool;
     const dea_expr stiffness = ADD(sum_of(network, DEA_ROLE_SPRING), sum_of(network, DEA_ROLE_SOFTENING));
-    dea_expr force = NUM(0.0);
+    dea_expr force = dea_network_tension(network);
     for (int i = 0; i < network->element_count; i++) {
         if (network->elements[i].role == DEA_ROLE_HYPERELASTIC) {
-            force = ADD(force, MUL(network->area, network->elements[i].value));
+            force = ADD(force, MUL(network->elements[i].lever, network->elements[i].value));
         }
     }
     return ADD(MUL(stiffness, network->edge), force);

@@ -111,19 +111,49 @@ static void put_study(FILE *out, const dea_scene *scene)
     }
 }
 
+static bool same_crew(const dea_crew *a, const dea_crew *b)
+{
+    return a->count == b->count && memcmp(a->engines, b->engines, a->count * sizeof *a->engines) == 0;
+}
+
+/* All who may be asked, model by model where they are not the same: what comes out depends on each. */
+static void put_engines(FILE *out, const dea_scene *scene, const dea_engine *engine)
+{
+    bool asked[DEA_ENGINES] = {false};
+    dea_crew before = {0};
+    fputs("engine=", out);
+    for (size_t m = 0; m < scene->model_count; m++) {
+        const dea_crew crew = dea_crew_of(scene, engine, scene->models[m]);
+        const bool told = same_crew(&crew, &before);
+        for (size_t i = 0; i < crew.count && !told; i++) {
+            fprintf(out, "%s%s", i > 0 ? "," : m > 0 ? "; " : "", crew.engines[i]->name);
+            for (size_t k = 0; dea_engine_at(k); k++) {
+                asked[k] = asked[k] || dea_engine_at(k) == crew.engines[i];
+            }
+        }
+        before = crew;
+    }
+    fputs("\nlibrary of the engine=", out);
+    for (size_t k = 0; dea_engine_at(k); k++) {
+        char library[DEA_NAME_LENGTH] = "none";
+        if (asked[k] && dea_engine_at(k)->library) {
+            dea_engine_at(k)->library(library, sizeof library);
+        }
+        fprintf(out, "%s%s", asked[k] ? library : "", asked[k] ? " " : "");
+    }
+    fputc('\n', out);
+}
+
 dea_status dea_identity_write(const dea_scene *scene, const dea_engine *engine, char **text, dea_error *error)
 {
     size_t length;
-    char library[DEA_NAME_LENGTH] = "none";
     *text = NULL;
     FILE *out = open_memstream(text, &length);
     if (!out) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
-    if (engine->library) {
-        engine->library(library, sizeof library);
-    }
-    fprintf(out, "program version=%s\nengine=%s\nlibrary of the engine=%s\n", DEA_VERSION, engine->name, library);
+    fprintf(out, "program version=%s\n", DEA_VERSION);
+    put_engines(out, scene, engine);
     put_study(out, scene);
     put_scalars(out, scene);
     put_lists(out, scene);

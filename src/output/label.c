@@ -20,11 +20,28 @@ static bool unit_scales(const char *unit)
     return false;
 }
 
+/* Longer times are told in the units of clocks and calendars; false where seconds will do. */
+static bool scale_time(double largest, const char *unit, dea_scale *scale)
+{
+    static const struct {
+        double from, length; /* [s] */
+        const char *name;
+    } units[] = {{3.0 * 86400.0, 86400.0, "d"}, {7200.0, 3600.0, "h"}, {300.0, 60.0, "min"}};
+    for (size_t i = 0; i < sizeof units / sizeof *units && strcmp(unit, "s") == 0 && isfinite(largest); i++) {
+        if (largest >= units[i].from) {
+            *scale = (dea_scale){.factor = 1.0 / units[i].length};
+            snprintf(scale->unit, sizeof scale->unit, "%s", units[i].name);
+            return true;
+        }
+    }
+    return false;
+}
+
 dea_scale dea_scale_choose(double largest, const char *unit)
 {
     static const char *const prefixes[] = {"p", "n", "µ", "m", "", "k", "M", "G", "T"};
     dea_scale scale = {.factor = 1.0};
-    if (strcmp(unit, "1") == 0) {
+    if (strcmp(unit, "1") == 0 || scale_time(largest, unit, &scale)) {
         return scale;
     }
     const char *shown = strcasecmp(unit, "ohm") == 0 ? "Ω" : unit;

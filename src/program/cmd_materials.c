@@ -10,7 +10,13 @@
 
 enum { CURVE_POINTS = 101, MOST_MATERIALS = 64, CURVE_COLUMNS = 4 };
 
-static const double curve_end = 2; /* stretch */
+static const double usual_end = 2; /* stretch of curves and tables */
+
+static const char *material_word(size_t index)
+{
+    const dea_material *material = dea_material_builtin(index);
+    return material ? material->name : NULL;
+}
 
 static void print_list(void)
 {
@@ -23,6 +29,14 @@ static void print_list(void)
         const dea_material *material = dea_material_builtin(i);
         printf("%-*s  %s\n", width, material->name, material->source);
     }
+}
+
+static void print_number(const char *name, double value, const char *unit)
+{
+    if (isnan(value))
+        printf("%-22s not given, and a scene needs it\n", name);
+    else
+        printf("%-22s %.9g%s\n", name, value, unit);
 }
 
 static void print_optional(const char *name, double value, const char *unit)
@@ -38,16 +52,37 @@ static void print_relaxation(const dea_material *material)
         printf("prony %zu                g = %.9g, tau = %.9g s\n", i + 1, material->prony[i].g, material->prony[i].tau);
 }
 
+/* Constants of the law; those of a list by their paths. */
+static void print_law(const dea_material *material)
+{
+    const dea_law *law = material->law;
+    printf("%-22s %s, %s\n", "law", law->title, law->energy_text);
+    for (size_t i = 0; i < law->constant_count * law->entries; i++) {
+        const dea_constant *constant = &law->constants[i % law->constant_count];
+        const size_t entry = i / law->constant_count;
+        char label[DEA_NAME_LENGTH];
+        if (entry > 0 && fabs(material->constants[entry * law->constant_count]) <= 0)
+            break; /* of the entries in use */
+        if (law->entries > 1)
+            snprintf(label, sizeof label, "%s.%zu.%s", law->name, entry, constant->name);
+        else
+            snprintf(label, sizeof label, "%s", constant->name);
+        print_number(label, material->constants[i], strcmp(constant->unit, "1") == 0 ? "" : " Pa");
+    }
+}
+
 static void print_constants(const dea_material *material)
 {
     printf("%-22s %s\n", "name", material->name);
-    printf("%-22s %s\n", "source", material->source);
-    for (size_t i = 0; i < DEA_YEOH_TERMS; i++)
-        printf("C%zu                     %.9g Pa\n", i + 1, material->yeoh[i]);
+    if (material->source[0] != '\0')
+        printf("%-22s %s\n", "source", material->source);
+    print_law(material);
+    if (material->stretches[1] > 0)
+        printf("%-22s %.9g to %.9g\n", "data of stretches", material->stretches[0], material->stretches[1]);
     if (fabs(material->permittivity_per_stretch) > 0)
         printf("%-22s %.9g %+.9g stretch\n", "permittivity", material->permittivity, material->permittivity_per_stretch);
     else
-        printf("%-22s %.9g\n", "permittivity", material->permittivity);
+        print_number("permittivity", material->permittivity, "");
     print_optional("density", material->density, " kg/m^3");
     print_optional("retardation", material->retardation, " s");
     print_optional("modulus", material->modulus, " Pa");
@@ -57,24 +92,26 @@ static void print_constants(const dea_material *material)
 }
 
 /* What follows from the long-term constants at usual pre-stretches. */
-static void print_moduli(const dea_material *material)
+static void print_moduli(const dea_material *material, double to)
 {
-    static const double stretches[] = {1.0, 1.1, 1.2, 1.3, 1.5, 2.0};
-    double yeoh[DEA_YEOH_TERMS];
-    dea_material_long_term(material, yeoh);
+    static const double stretches[] = {1.0, 1.1, 1.2, 1.3, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0, 10.0};
+    double constants[DEA_LAW_CONSTANTS];
+    dea_material_long_term(material, constants);
     printf("\n%10s %12s %12s %12s %12s\n", "prestretch", "stress_Pa", "Y_Pa", "W11_Pa", "W12_Pa");
-    for (size_t i = 0; i < sizeof stretches / sizeof stretches[0]; i++) {
+    for (size_t i = 0; i < sizeof stretches / sizeof stretches[0] && stretches[i] <= to; i++) {
         double stretch = stretches[i];
-        dea_stress stress = dea_yeoh_stress(yeoh, stretch, stretch);
-        printf("%10g %12.1f %12.1f %12.1f %12.1f\n", stretch, stress.p1, dea_yeoh_modulus(yeoh, stretch), stress.w11, stress.w12);
+        const dea_stress stress = dea_law_stress(material->law, constants, stretch, stretch);
+        printf("%10g %12.1f %12.1f %12.1f %12.1f\n", stretch, stress.p1, dea_law_modulus(material->law, constants, stretch),
+               stress.w11, stress.w12);
     }
 }
 
 /* A film pulled one way only narrows by stretch^-1/2 in both other directions. */
-static dea_status write_curve_row(dea_atomic *file, const double yeoh[DEA_YEOH_TERMS], double stretch, dea_error *error)
+static dea_status write_curve_row(dea_atomic *file, const dea_law *law, const double *constants, double stretch, dea_error *error)
 {
-    const double values[CURVE_COLUMNS] = {stretch, dea_yeoh_stress(yeoh, stretch, 1 / sqrt(stretch)).p1,
-                                          dea_yeoh_stress(yeoh, stretch, stretch).p1, dea_yeoh_modulus(yeoh, stretch)};
+    const double values[CURVE_COLUMNS] = {stretch, dea_law_stress(law, constants, stretch, 1 / sqrt(stretch)).p1,
+                                          dea_law_stress(law, constants, stretch, stretch).p1,
+                                          dea_law_modulus(law, constants, stretch)};
     char line[CURVE_COLUMNS * (DEA_NUMBER_LENGTH + 1)];
     size_t used = 0;
     for (size_t i = 0; i < CURVE_COLUMNS; i++) {
@@ -84,86 +121,118 @@ static dea_status write_curve_row(dea_atomic *file, const double yeoh[DEA_YEOH_T
     return dea_atomic_write(file, line, used, error);
 }
 
-static dea_status write_curves(const dea_material *material, const char *path, dea_error *error)
+static dea_status write_curves(const dea_material *material, double to, const char *path, dea_error *error)
 {
     static const char header[] = "stretch,uniaxial_Pa,equibiaxial_Pa,modulus_Pa\n";
-    double yeoh[DEA_YEOH_TERMS];
+    double constants[DEA_LAW_CONSTANTS];
     dea_atomic file;
-    dea_material_long_term(material, yeoh);
+    dea_material_long_term(material, constants);
     dea_status status = dea_atomic_open(&file, path, error);
     if (status != DEA_OK)
         return status;
     status = dea_atomic_write(&file, header, sizeof header - 1, error);
     for (int i = 0; i < CURVE_POINTS && status == DEA_OK; i++)
-        status = write_curve_row(&file, yeoh, 1 + (curve_end - 1) * i / (CURVE_POINTS - 1), error);
+        status = write_curve_row(&file, material->law, constants, 1 + (to - 1) * i / (CURVE_POINTS - 1), error);
     dea_status closed = dea_atomic_close(&file, status == DEA_OK, status == DEA_OK ? error : NULL);
     return status != DEA_OK ? status : closed;
 }
 
-static const dea_material *material_choose(const char *name)
+/* The built-in material or the file of that name; says what is wrong. */
+static bool material_choose(const char *name, dea_material *material, dea_exit *outcome)
 {
     const char *names[MOST_MATERIALS];
     size_t count = 0;
-    const dea_material *material = dea_material_find(name);
+    dea_error error = {0};
+    const dea_material *builtin = dea_material_find(name);
+    *outcome = DEA_EXIT_USAGE;
+    if (builtin) {
+        *material = *builtin;
+        return true;
+    }
+    if (strpbrk(name, "./")) {
+        if (dea_material_read(name, material, &error) == DEA_OK)
+            return true;
+        *outcome = dea_complain_error(&error);
+        return false;
+    }
     for (; count < MOST_MATERIALS && dea_material_builtin(count); count++)
         names[count] = dea_material_builtin(count)->name;
-    if (!material)
-        dea_complain_unknown("material", name, names, count);
-    return material;
+    dea_complain_unknown("material", name, names, count);
+    return false;
+}
+
+static dea_status show(const dea_material *material, const dea_arguments *arguments, double to, dea_error *error)
+{
+    const bool elastic = !isnan(material->constants[0]);
+    dea_status status = DEA_OK;
+    if (!arguments->output && !arguments->plot) {
+        print_constants(material);
+        if (elastic)
+            print_moduli(material, to);
+        return DEA_OK;
+    }
+    if (!elastic)
+        return dea_fail(error, DEA_ERROR_USAGE, "%s gives no elastic constants, e.g. yeoh: {C1: 180 kPa}", material->name);
+    if (arguments->output)
+        status = write_curves(material, to, arguments->output, error);
+    if (arguments->plot && status == DEA_OK)
+        status = dea_plot_material(material, to, arguments->plot, &arguments->picture, error);
+    return status;
 }
 
 static dea_exit run(const dea_arguments *arguments)
 {
     if (arguments->operand_count == 0) {
-        if (arguments->output || arguments->plot) {
-            dea_complain("-o and --plot need the name of a material");
+        if (arguments->output || arguments->plot || !isnan(arguments->to)) {
+            dea_complain("-o, --plot and --to need the name of a material");
             return DEA_EXIT_USAGE;
         }
         print_list();
         return DEA_EXIT_DONE;
     }
-    const dea_material *material = material_choose(arguments->operands[0].path);
-    if (!material)
-        return DEA_EXIT_USAGE;
+    const char *name = arguments->operands[0].path;
+    dea_material material;
+    dea_exit outcome;
+    if (!material_choose(name, &material, &outcome))
+        return outcome;
     dea_files files = {0};
-    const bool apart = dea_targets_free(arguments, &files);
+    const bool file = !dea_material_find(name);
+    const bool apart = (!file || dea_inputs_note(arguments, &files)) && dea_targets_free(arguments, &files);
     dea_files_free(&files);
     if (!apart)
         return DEA_EXIT_USAGE;
     dea_error error = {0};
-    dea_status status = DEA_OK;
     dea_signals_catch();
-    if (!arguments->output && !arguments->plot) {
-        print_constants(material);
-        print_moduli(material);
-    }
-    if (arguments->output)
-        status = write_curves(material, arguments->output, &error);
-    if (arguments->plot && status == DEA_OK)
-        status = dea_plot_material(material, arguments->plot, &error);
+    const dea_status status = show(&material, arguments, isnan(arguments->to) ? usual_end : arguments->to, &error);
     return status == DEA_OK ? DEA_EXIT_DONE : dea_complain_error(&error);
 }
 
 const dea_command dea_command_materials = {
     .name = "materials",
-    .summary = "what is built in",
-    .help = "Usage: deaspice materials [OPTION]... [NAME]\n"
+    .summary = "what is built in, or what a material file holds",
+    .help = "Usage: deaspice materials [OPTION]... [NAME | FILE]\n"
             "\n"
-            "Lists the built-in materials, or shows the constants of one and what follows from\n"
-            "them at usual pre-stretches: nominal stress, operating modulus Y, tangent moduli.\n"
+            "Lists the built-in materials, or shows the constants of one, or of a material\n"
+            "file, and what follows from them at usual pre-stretches: nominal stress, operating\n"
+            "modulus Y, tangent moduli.\n"
             "\n"
             "  -o, --output FILE     write stress and modulus over stretch as CSV, - is standard\n"
             "                        output\n"
-            "      --plot FILE       draw them, FILE ends in .svg or .png\n"
-            "      --force               a target may overwrite a file that was read\n"
+            "      --plot FILE       draw them, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)\n"
+            "      --size WxH        of the picture, for example 17x8cm (mm, cm, in, pt)\n"
+            "      --to STRETCH      largest stretch of table and curves, default 2\n"
+            "      --force           a target may overwrite a file that was read\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"
             "\n"
             "Examples:\n"
             "  deaspice materials\n"
-            "  deaspice materials elastosil-2030 --plot elastosil.svg\n",
-    .takes = DEA_TAKES_OUTPUT | DEA_TAKES_PLOT,
+            "  deaspice materials elastosil-2030 --plot elastosil.svg\n"
+            "  deaspice materials film.yaml --to 4 -o film.csv\n",
+    .takes = DEA_TAKES_OUTPUT | DEA_TAKES_PLOT | DEA_TAKES_CURVES,
     .least = 0,
     .most = 1,
+    .words = material_word,
+    .files = ".yaml",
     .run = run,
 };

@@ -256,7 +256,7 @@ static void print_edges(const dea_findings *findings)
 }
 
 /* What was left out, found anew for a single run. */
-static void print_omissions(const dea_findings *findings, const dea_engine *engine)
+static void print_omissions(const dea_findings *findings)
 {
     char text[DEA_OMISSION_LENGTH];
     dea_needs needs;
@@ -269,7 +269,8 @@ static void print_omissions(const dea_findings *findings, const dea_engine *engi
         return;
     }
     const dea_scene placed = dea_scene_of_run(findings->scene, 0);
-    if (dea_needs_find(&placed, placed.models[0], engine, &needs, NULL) == DEA_OK && needs.count > 0) {
+    const dea_crew crew = dea_crew_of(&placed, NULL, placed.models[0]);
+    if (crew.count > 0 && dea_needs_find(&placed, placed.models[0], crew.engines[0], &needs, NULL) == DEA_OK && needs.count > 0) {
         for (size_t i = 0; i < needs.count; i++) {
             fprintf(stderr, "%s%s", i == 0 ? "left out: " : ", ", dea_omission_text(&needs.omissions[i], &placed, text));
         }
@@ -289,7 +290,7 @@ static void print_rates(const dea_findings *findings)
     }
 }
 
-static void print_transients(const dea_findings *findings, const dea_engine *engine)
+static void print_transients(const dea_findings *findings)
 {
     const char *worst = findings->points > 1 ? "worst " : "";
     if (!isnan(findings->error)) {
@@ -300,7 +301,7 @@ static void print_transients(const dea_findings *findings, const dea_engine *eng
     if (!isnan(findings->residual)) {
         fprintf(stderr, "%senergy balance off by %.2g\n", worst, findings->residual);
     }
-    print_omissions(findings, engine);
+    print_omissions(findings);
     if (findings->points == 1 && !isnan(findings->summary.resonance)) {
         fputs("first resonance ", stderr);
         print_quantity(findings->summary.resonance, "Hz");
@@ -348,13 +349,15 @@ static void print_responses(const dea_findings *findings)
     }
 }
 
-void dea_findings_print(const dea_findings *findings, const dea_engine *engine, double seconds)
+void dea_findings_print(const dea_findings *findings, double seconds)
 {
+    char names[512];
+    dea_crew_names(findings->scene, NULL, names, sizeof names);
     print_amount(findings);
-    fprintf(stderr, " in %.3g s (%s)", seconds, engine->name);
+    fprintf(stderr, " in %.3g s (%s)", seconds, names);
     print_states(findings);
     if (findings->scene->study == DEA_STUDY_TRANSIENT) {
-        print_transients(findings, engine);
+        print_transients(findings);
     } else if (findings->scene->study == DEA_STUDY_AC) {
         print_responses(findings);
     }

@@ -35,6 +35,6 @@ dea_findings dea_findings_begin(const dea_scene *scene, FILE *averages);
 /** Takes points as a run hands them over; prints their averages. */
 void dea_findings_take(dea_findings *findings, size_t first, const void *points, size_t count);
 /** Prints the summary of the run on standard error. */
-void dea_findings_print(const dea_findings *findings, const dea_engine *engine, double seconds);
+void dea_findings_print(const dea_findings *findings, double seconds);
 
 #endif

@@ -3,17 +3,25 @@
 #include <stdio.h>
 #include <string.h>
 #include <sundials/sundials_config.h>
+#include <unistd.h>
 
 #include "program/program.h"
+#include "support/text.h"
 
 #ifndef DEA_VERSION
 #define DEA_VERSION "unknown"
 #endif
 
-static const dea_command *const commands[] = {&dea_command_run,    &dea_command_merge, &dea_command_check,    &dea_command_bench,
-                                              &dea_command_export, &dea_command_fit,   &dea_command_materials};
+static const dea_command *const commands[] = {&dea_command_run,       &dea_command_merge,  &dea_command_check,
+                                              &dea_command_bench,     &dea_command_export, &dea_command_fit,
+                                              &dea_command_materials, &dea_command_init,   &dea_command_completion};
 
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
+
+const dea_command *dea_command_at(size_t index)
+{
+    return index < COMMANDS ? commands[index] : NULL;
+}
 
 static void print_usage(FILE *out)
 {
@@ -31,7 +39,7 @@ static void print_usage(FILE *out)
     for (size_t i = 0; i < dea_engine_count(); i++)
         fprintf(out, "  %-10s %s\n", dea_engine_at(i)->name, dea_engine_at(i)->summary);
     fputs("\n"
-          "deaspice COMMAND --help tells more about a command, deaspice --version the version.\n"
+          "deaspice help COMMAND tells more about a command, deaspice --version the version.\n"
           "Exit status: 0 done, 1 a run failed, 2 usage or a bad scene, 3 a check disagreed.\n",
           out);
 }
@@ -52,7 +60,10 @@ static const dea_command *command_find(const char *name)
         if (strcmp(names[i], name) == 0)
             return commands[i];
     }
-    dea_complain_unknown("command", name, names, COMMANDS);
+    if (access(name, F_OK) == 0)
+        dea_complain("\"%s\" is a file; the command comes first, for example deaspice run %s", name, name);
+    else
+        dea_complain_unknown("command", name, names, COMMANDS);
     return NULL;
 }
 
@@ -79,6 +90,39 @@ static dea_exit command_run(const dea_command *command, int argc, char **argv)
     return outcome;
 }
 
+/* deaspice help, or deaspice help COMMAND. */
+static dea_exit help(const char *name)
+{
+    const dea_command *command = name ? command_find(name) : NULL;
+    if (name && !command)
+        return DEA_EXIT_USAGE;
+    if (command)
+        fputs(command->help, stdout);
+    else
+        print_usage(stdout);
+    return DEA_EXIT_DONE;
+}
+
+/* An option before any command. */
+static dea_exit option_alone(const char *option)
+{
+    static const char *const names[] = {"--help", "--version"};
+    if (strcmp(option, names[0]) == 0 || strcmp(option, "-h") == 0)
+        return help(NULL);
+    if (strcmp(option, names[1]) == 0 || strcmp(option, "-V") == 0) {
+        print_version();
+        return DEA_EXIT_DONE;
+    }
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        if (dea_text_likely(names[i] + 2, dea_text_distance(option, names[i]))) {
+            dea_complain_unknown("option", option, names, sizeof names / sizeof *names);
+            return DEA_EXIT_USAGE;
+        }
+    }
+    dea_complain("the command comes first: deaspice COMMAND %s ...; see deaspice --help", option);
+    return DEA_EXIT_USAGE;
+}
+
 static dea_exit dispatch(int argc, char **argv)
 {
     if (argc < 2) {
@@ -86,18 +130,10 @@ static dea_exit dispatch(int argc, char **argv)
         return DEA_EXIT_USAGE;
     }
     const char *first = argv[1];
-    if (strcmp(first, "--help") == 0 || strcmp(first, "-h") == 0 || strcmp(first, "help") == 0) {
-        print_usage(stdout);
-        return DEA_EXIT_DONE;
-    }
-    if (strcmp(first, "--version") == 0 || strcmp(first, "-V") == 0) {
-        print_version();
-        return DEA_EXIT_DONE;
-    }
-    if (first[0] == '-') {
-        dea_complain("the command comes first: deaspice COMMAND %s ...; see deaspice --help", first);
-        return DEA_EXIT_USAGE;
-    }
+    if (first[0] == '-')
+        return option_alone(first);
+    if (strcmp(first, "help") == 0)
+        return help(argv[2]);
     const dea_command *command = command_find(first);
     return command ? command_run(command, argc - 1, argv + 1) : DEA_EXIT_USAGE;
 }

@@ -36,7 +36,8 @@ static dea_exit exit_of(dea_status status)
 dea_exit dea_complain_error(const dea_error *error)
 {
     if (dea_signals_caught() == 0)
-        dea_complain("%s", error->message[0] != '\0' ? error->message : dea_status_text(error->status));
+        dea_complain("%s%s%s", error->message[0] != '\0' ? error->message : dea_status_text(error->status),
+                     error->excerpt[0] != '\0' ? "\n" : "", error->excerpt);
     return exit_of(error->status);
 }
 

@@ -8,20 +8,15 @@
 #include <string.h>
 
 #include "deaspice/fit.h"
-#include "program/program.h"
-#include "scene/quantity.h"
+#include "deaspice/model.h"
+#include "netlist/dialect.h"
+#include "netlist/export.h"
+#include "program/options.h"
+#include "scene/keys.h"
+#include "support/quantity.h"
 #include "support/text.h"
 
-enum { MOST_JOBS = 1024, MOST_SHARDS = 1000000, MOST_RUNS = 1000 };
-
-/* An option of any command: what takes it, and what it does with its value; false when the value is wrong. */
-typedef struct option_entry {
-    const char *name;
-    char letter; /* 0: none */
-    bool valued;
-    unsigned group; /* dea_takes; 0: every command */
-    bool (*set)(dea_arguments *arguments, const char *value);
-} option_entry;
+_Static_assert(DEA_RELAXATION_MOST == 10 && DEA_YEOH_TERMS == 3, "the messages of --branches and --terms name them");
 
 size_t dea_core_count(void)
 {
@@ -30,49 +25,83 @@ size_t dea_core_count(void)
     return count > 0 ? (size_t)count : 1;
 }
 
-static bool set_text(const char **place, const char *name, const char *value)
+static void *place_of(const dea_option *entry, dea_arguments *arguments)
 {
-    if (*place) {
-        dea_complain("--%s is given twice", name);
-        return false;
-    }
-    if (*value == '\0') {
-        dea_complain("--%s needs a value", name);
+    return (char *)arguments + entry->offset;
+}
+
+/* "--runs 0: needs a whole number ..."; @p why stands between, NULL: nothing does. */
+static bool complain_value(const dea_option *entry, const char *value, const char *why)
+{
+    char shown[DEA_TEXT_ROOM];
+    dea_text_clip(value, DEA_TEXT_SHOWN, shown, sizeof shown);
+    dea_complain("--%s %s: %s%s %s", entry->name, shown, why ? why : "", why ? "; accepted:" : "needs", entry->needs);
+    return false;
+}
+
+static bool take_flag(const dea_option *entry, const char *value, dea_arguments *arguments)
+{
+    (void)value;
+    *(bool *)place_of(entry, arguments) = true;
+    return true;
+}
+
+static bool take_text(const dea_option *entry, const char *value, dea_arguments *arguments)
+{
+    const char **place = place_of(entry, arguments);
+    if (*place || *value == '\0') {
+        dea_complain("--%s %s", entry->name, *place ? "is given twice" : "needs a value");
         return false;
     }
     *place = value;
     return true;
 }
 
-static bool set_engine(dea_arguments *arguments, const char *value)
+static bool take_setting(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
-    return set_text(&arguments->engine, "engine", value) && dea_engine_choose(value) != NULL;
-}
-
-static bool set_model(dea_arguments *arguments, const char *value)
-{
-    return set_text(&arguments->model, "model", value);
-}
-
-static bool set_setting(dea_arguments *arguments, const char *value)
-{
+    (void)entry;
     arguments->settings[arguments->setting_count++].text = value;
     return true;
 }
 
-static bool set_output(dea_arguments *arguments, const char *value)
+/* Metres of a unit of --size, NAN for a word that is none. */
+static double size_unit(const char *name)
 {
-    return set_text(&arguments->output, "output", value);
+    static const struct {
+        const char *name;
+        double length; /* [m] */
+    } units[] = {{"mm", 1e-3}, {"cm", 1e-2}, {"in", 0.0254}, {"pt", 0.0254 / 72.0}};
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        if (strcmp(name, units[i].name) == 0) {
+            return units[i].length;
+        }
+    }
+    return NAN;
 }
 
-static bool set_format(dea_arguments *arguments, const char *value)
+static bool take_size(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
-    return set_text(&arguments->format, "format", value);
+    dea_plot_options *picture = &arguments->picture;
+    char first[3] = "", second[3] = "", more;
+    bool read = sscanf(value, "%lf %2[a-z] x %lf %2[a-z] %c", &picture->width, first, &picture->height, second, &more) == 4;
+    if (!read) { /* one unit for both */
+        read = sscanf(value, "%lf x %lf %2[a-z] %c", &picture->width, &picture->height, second, &more) == 3;
+        strcpy(first, second);
+    }
+    picture->width *= size_unit(first);
+    picture->height *= size_unit(second);
+    if (!read || !(picture->width >= DEA_PLOT_SIDE_LEAST && picture->width <= DEA_PLOT_SIDE_MOST) ||
+        !(picture->height >= DEA_PLOT_SIDE_LEAST && picture->height <= DEA_PLOT_SIDE_MOST)) {
+        return complain_value(entry, value, NULL);
+    }
+    return true;
 }
 
-static bool set_plot(dea_arguments *arguments, const char *value)
+static bool take_log(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
-    return set_text(&arguments->plot, "plot", value);
+    arguments->picture.log_x = strcmp(value, "x") == 0 || strcmp(value, "xy") == 0;
+    arguments->picture.log_y = strcmp(value, "y") == 0 || strcmp(value, "xy") == 0;
+    return arguments->picture.log_x || arguments->picture.log_y || complain_value(entry, value, NULL);
 }
 
 /* Whole number of at most @p most, -1 where it is none. */
@@ -85,170 +114,56 @@ static long whole_number(const char *text, long most)
     return digits && *end == '\0' && errno == 0 && value <= most ? value : -1;
 }
 
-static bool set_jobs(dea_arguments *arguments, const char *value)
+static bool take_count(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
-    long jobs = strcmp(value, "auto") == 0 ? 0 : whole_number(value, MOST_JOBS);
-    if (jobs < 0) {
-        dea_complain("--jobs %s: needs a whole number up to %d, or auto", value, MOST_JOBS);
-        return false;
+    const long count = whole_number(value, (long)entry->high);
+    if (count < 1) {
+        return complain_value(entry, value, NULL);
     }
-    arguments->jobs = jobs > 0 ? (size_t)jobs : dea_core_count();
+    *(size_t *)place_of(entry, arguments) = (size_t)count;
     return true;
 }
 
-static bool set_quiet(dea_arguments *arguments, const char *value)
+static bool take_jobs(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
-    (void)value;
-    arguments->quiet = true;
-    return true;
-}
-
-static bool set_full(dea_arguments *arguments, const char *value)
-{
-    (void)value;
-    arguments->full = true;
-    return true;
-}
-
-static bool set_force(dea_arguments *arguments, const char *value)
-{
-    (void)value;
-    arguments->force = true;
-    return true;
-}
-
-static bool set_no_files(dea_arguments *arguments, const char *value)
-{
-    (void)value;
-    arguments->no_files = true;
-    return true;
-}
-
-static bool set_tolerance(dea_arguments *arguments, const char *value)
-{
-    char *end;
-    arguments->tolerance = strtod(value, &end);
-    if (end == value || *end != '\0' || !(arguments->tolerance > 0 && arguments->tolerance < 1)) {
-        dea_complain("--tolerance %s: needs a number between 0 and 1, for example 1e-6", value);
-        return false;
+    if (strcmp(value, "auto") == 0 || strcmp(value, "0") == 0) {
+        arguments->jobs = dea_core_count();
+        return true;
     }
-    return true;
+    return take_count(entry, value, arguments);
 }
 
-static bool set_terms(dea_arguments *arguments, const char *value)
+static bool in_range(const dea_option *entry, double value)
 {
-    long terms = whole_number(value, DEA_YEOH_TERMS);
-    if (terms < 1) {
-        dea_complain("--terms %s: needs 1, 2 or 3", value);
-        return false;
-    }
-    arguments->terms = (unsigned)terms;
-    return true;
+    return (entry->closed ? value >= entry->low : value > entry->low) && value < entry->high;
 }
 
-static bool set_relative(dea_arguments *arguments, const char *value)
-{
-    (void)value;
-    arguments->relative = true;
-    return true;
-}
-
-static bool set_relaxation(dea_arguments *arguments, const char *value)
-{
-    return set_text(&arguments->relaxation, "relaxation", value);
-}
-
-static bool set_ramp(dea_arguments *arguments, const char *value)
+static bool take_number(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
     char reason[DEA_REASON_LENGTH] = "out of memory";
+    double *place = place_of(entry, arguments);
     dea_units *units = dea_units_open();
-    const bool read = units && dea_quantity_read(units, value, "s", &arguments->ramp, reason);
+    const bool read = units && dea_quantity_read(units, value, entry->unit, place, reason);
     dea_units_close(units);
-    if (!read || !(arguments->ramp >= 0.0)) {
-        dea_complain("--ramp %s: %s; needs a time, for example \"2 s\", or \"0 s\" for an ideal step", value,
-                     read ? "is negative" : reason);
-        return false;
-    }
-    return true;
+    return read && in_range(entry, *place) ? true : complain_value(entry, value, read ? "out of range" : reason);
 }
 
-static bool set_branches(dea_arguments *arguments, const char *value)
-{
-    const long branches = whole_number(value, DEA_RELAXATION_MOST);
-    if (branches < 1) {
-        dea_complain("--branches %s: needs a whole number from 1 to %d", value, DEA_RELAXATION_MOST);
-        return false;
-    }
-    arguments->branches = (size_t)branches;
-    return true;
-}
-
-static bool set_as(dea_arguments *arguments, const char *value)
-{
-    return set_text(&arguments->as, "as", value);
-}
-
-static bool set_dialect(dea_arguments *arguments, const char *value)
-{
-    return set_text(&arguments->dialect, "dialect", value);
-}
-
-static bool set_analogy(dea_arguments *arguments, const char *value)
-{
-    return set_text(&arguments->analogy, "analogy", value);
-}
-
-static bool set_name(dea_arguments *arguments, const char *value)
-{
-    return set_text(&arguments->name, "name", value);
-}
-
-static bool set_runs(dea_arguments *arguments, const char *value)
-{
-    const long runs = whole_number(value, MOST_RUNS);
-    if (runs < 1) {
-        dea_complain("--runs %s: needs a whole number from 1 to %d", value, MOST_RUNS);
-        return false;
-    }
-    arguments->runs = (size_t)runs;
-    return true;
-}
-
-static bool set_budget(dea_arguments *arguments, const char *value)
-{
-    char *end;
-    arguments->budget = strtod(value, &end);
-    if (end == value || *end != '\0' || !(arguments->budget > 0.0 && arguments->budget < HUGE_VAL)) {
-        dea_complain("--budget %s: needs a number of seconds above 0, for example 60", value);
-        return false;
-    }
-    return true;
-}
-
-static bool set_shard(dea_arguments *arguments, const char *value)
+static bool take_shard(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
     char number[16];
     const size_t digits = strcspn(value, "/");
     snprintf(number, sizeof number, "%.*s", (int)digits, value);
-    const long shards = value[digits] == '/' ? whole_number(value + digits + 1, MOST_SHARDS) : -1;
+    const long shards = value[digits] == '/' ? whole_number(value + digits + 1, (long)entry->high) : -1;
     const long shard = digits < sizeof number ? whole_number(number, shards) : -1;
     if (shard < 1) {
-        dea_complain("--shard %.40s: needs I/N with whole numbers 1 <= I <= N <= %d, for example 3/10", value, MOST_SHARDS);
-        return false;
+        return complain_value(entry, value, NULL);
     }
     if (arguments->shard > 0) {
-        dea_complain("--shard is given twice");
+        dea_complain("--%s is given twice", entry->name);
         return false;
     }
     arguments->shard = (size_t)shard;
     arguments->shards = (size_t)shards;
-    return true;
-}
-
-static bool set_resume(dea_arguments *arguments, const char *value)
-{
-    (void)value;
-    arguments->resume = true;
     return true;
 }
 
@@ -258,53 +173,148 @@ static bool add_operand(dea_arguments *arguments, const char *path, dea_given_mo
     return true;
 }
 
-static bool add_uniaxial(dea_arguments *arguments, const char *value)
+static bool take_uniaxial(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
+    (void)entry;
     return add_operand(arguments, value, DEA_GIVEN_UNIAXIAL);
 }
 
-static bool add_equibiaxial(dea_arguments *arguments, const char *value)
+static bool take_equibiaxial(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
+    (void)entry;
     return add_operand(arguments, value, DEA_GIVEN_EQUIBIAXIAL);
 }
 
-static const option_entry entries[] = {
-    {"engine", 0, true, DEA_TAKES_ENGINE, set_engine},
-    {"model", 0, true, DEA_TAKES_SCENE, set_model},
-    {"set", 0, true, DEA_TAKES_SCENE, set_setting},
-    {"no-files", 0, false, DEA_TAKES_SCENE, set_no_files},
-    {"output", 'o', true, DEA_TAKES_OUTPUT, set_output},
-    {"format", 0, true, DEA_TAKES_FORMAT, set_format},
-    {"plot", 0, true, DEA_TAKES_PLOT, set_plot},
-    {"force", 0, false, DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_PLOT, set_force},
-    {"jobs", 'j', true, DEA_TAKES_JOBS, set_jobs},
-    {"quiet", 'q', false, DEA_TAKES_QUIET, set_quiet},
-    {"full", 0, false, DEA_TAKES_FULL, set_full},
-    {"tolerance", 0, true, DEA_TAKES_TOLERANCE, set_tolerance},
-    {"uniaxial", 0, true, DEA_TAKES_FIT, add_uniaxial},
-    {"equibiaxial", 0, true, DEA_TAKES_FIT, add_equibiaxial},
-    {"terms", 0, true, DEA_TAKES_FIT, set_terms},
-    {"relaxation", 0, true, DEA_TAKES_FIT, set_relaxation},
-    {"ramp", 0, true, DEA_TAKES_FIT, set_ramp},
-    {"branches", 0, true, DEA_TAKES_FIT, set_branches},
-    {"relative", 0, false, DEA_TAKES_FIT, set_relative},
-    {"as", 0, true, DEA_TAKES_EXPORT, set_as},
-    {"dialect", 0, true, DEA_TAKES_EXPORT, set_dialect},
-    {"analogy", 0, true, DEA_TAKES_EXPORT, set_analogy},
-    {"name", 0, true, DEA_TAKES_EXPORT, set_name},
-    {"runs", 0, true, DEA_TAKES_BENCH, set_runs},
-    {"budget", 0, true, DEA_TAKES_BENCH, set_budget},
-    {"shard", 0, true, DEA_TAKES_JOURNAL, set_shard},
-    {"resume", 0, false, DEA_TAKES_JOURNAL, set_resume},
-    {"help", 'h', false, 0, NULL},
-    {"version", 'V', false, 0, NULL},
+static const char *engine_word(size_t index)
+{
+    const dea_engine *engine = dea_engine_at(index);
+    return engine ? engine->name : index == dea_engine_count() ? "auto" : NULL;
+}
+
+static const char *model_word(size_t index)
+{
+    const dea_model *model = dea_model_at(index);
+    return model ? model->name : index == dea_model_count() ? "auto" : NULL;
+}
+
+/* Scalars of a scene by their paths. */
+static const char *key_word(size_t index)
+{
+    for (size_t i = 0; dea_key_at(i); i++) {
+        const dea_key *key = dea_key_at(i);
+        if (key->offset != DEA_KEY_NOWHERE && !strchr(key->path, '#') && index-- == 0) {
+            return key->path;
+        }
+    }
+    return NULL;
+}
+
+static const char *format_word(size_t index)
+{
+    static const char *const words[] = {"csv", "nc", "raw"};
+    return index < sizeof words / sizeof *words ? words[index] : NULL;
+}
+
+static const char *dialect_word(size_t index)
+{
+    const dea_dialect *dialect = dea_dialect_at(index);
+    return dialect ? dialect->name : NULL;
+}
+
+static const char *analogy_word(size_t index)
+{
+    const dea_analogy *analogy = dea_analogy_at(index);
+    return analogy ? analogy->name : NULL;
+}
+
+#define FLAG(long_name, short_name, groups, member, help)                                                                        \
+    {                                                                                                                            \
+        .name = long_name, .letter = short_name, .group = groups, .take = take_flag, .offset = offsetof(dea_arguments, member),  \
+        .about = help                                                                                                            \
+    }
+#define TEXT(long_name, short_name, shown, accepted, groups, reader, member, help)                                               \
+    {                                                                                                                            \
+        .name = long_name, .letter = short_name, .value = shown, .words = accepted, .group = groups, .take = reader,             \
+        .offset = offsetof(dea_arguments, member), .about = help                                                                 \
+    }
+#define COUNT(long_name, short_name, shown, groups, reader, member, most, accepted, help)                                        \
+    {                                                                                                                            \
+        .name = long_name, .letter = short_name, .value = shown, .group = groups, .take = reader,                                \
+        .offset = offsetof(dea_arguments, member), .high = most, .needs = accepted, .about = help                                \
+    }
+#define NUMBER(long_name, shown, groups, member, si, from, ends, to, accepted, help)                                             \
+    {                                                                                                                            \
+        .name = long_name, .value = shown, .group = groups, .take = take_number, .offset = offsetof(dea_arguments, member),      \
+        .unit = si, .low = from, .closed = ends, .high = to, .needs = accepted, .about = help                                    \
+    }
+
+static const dea_option entries[] = {
+    TEXT("engine", 0, "ENGINE", engine_word, DEA_TAKES_ENGINE, take_text, engine, "engine that solves"),
+    TEXT("model", 0, "MODEL", model_word, DEA_TAKES_SCENE, take_text, model, "model instead of that of the scene"),
+    TEXT("set", 0, "KEY=VALUE", key_word, DEA_TAKES_SCENE, take_setting, settings, "change a value of the scene"),
+    FLAG("no-files", 0, DEA_TAKES_SCENE, no_files, "refuse a scene that names other files"),
+    TEXT("output", 'o', "FILE", NULL, DEA_TAKES_OUTPUT, take_text, output, "write the result to a file"),
+    TEXT("format", 0, "FORMAT", format_word, DEA_TAKES_FORMAT, take_text, format, "format of the result"),
+    TEXT("plot", 0, "FILE", NULL, DEA_TAKES_PLOT, take_text, plot, "draw the result"),
+    COUNT("size", 0, "WxH", DEA_TAKES_PLOT, take_size, picture, 0,
+          "width x height in mm, cm, in or pt, each from 4 cm to 2 m, for example 8.5x6cm", "size of the picture"),
+    COUNT("log", 0, "AXES", DEA_TAKES_LOG, take_log, picture, 0, "x, y or xy", "axes drawn logarithmic"),
+    FLAG("force", 0, DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_PLOT, force, "overwrite also what is kept otherwise"),
+    COUNT("jobs", 'j', "N", DEA_TAKES_JOBS, take_jobs, jobs, 1024, "a whole number up to 1024, or auto", "worker processes"),
+    FLAG("quiet", 'q', DEA_TAKES_QUIET, quiet, "no summary and no progress"),
+    FLAG("full", 0, DEA_TAKES_FULL, full, "leave out nothing"),
+    NUMBER("tolerance", "T", DEA_TAKES_TOLERANCE, tolerance, "1", 0, false, 1, "a number between 0 and 1, for example 1e-6",
+           "difference that still agrees"),
+    TEXT("uniaxial", 0, "FILE", NULL, DEA_TAKES_FIT, take_uniaxial, operands, "data of a uniaxial test"),
+    TEXT("equibiaxial", 0, "FILE", NULL, DEA_TAKES_FIT, take_equibiaxial, operands, "data of an equi-biaxial test"),
+    COUNT("terms", 0, "N", DEA_TAKES_FIT, take_count, terms, DEA_YEOH_TERMS, "1, 2 or 3", "Yeoh constants"),
+    TEXT("relaxation", 0, "FILE", NULL, DEA_TAKES_FIT, take_text, relaxation, "data of a relaxation test"),
+    NUMBER("ramp", "TIME", DEA_TAKES_FIT, ramp, "s", 0, true, INFINITY,
+           "a time, for example \"2 s\", or \"0 s\" for an ideal step", "duration of the ramp before the hold"),
+    NUMBER("length", "LENGTH", DEA_TAKES_FIT, specimen.length, "m", 0, false, INFINITY,
+           "the length of the specimen at rest, for example \"80 mm\"", "length of the specimen, for a displacement"),
+    NUMBER("area", "AREA", DEA_TAKES_FIT, specimen.area, "m^2", 0, false, INFINITY,
+           "the cross-section of the specimen at rest, for example \"22 mm^2\"", "cross-section of the specimen, for a force"),
+    COUNT("branches", 0, "N", DEA_TAKES_FIT, take_count, branches, DEA_RELAXATION_MOST, "a whole number from 1 to 10",
+          "Prony branches"),
+    FLAG("relative", 0, DEA_TAKES_FIT, relative, "relative errors count"),
+    NUMBER("permittivity", "NUMBER", DEA_TAKES_FIT, permittivity, "1", 0, false, INFINITY,
+           "a relative permittivity above 0, for example 2.8", "relative permittivity of the film"),
+    NUMBER("density", "DENSITY", DEA_TAKES_FIT, density, "kg/m^3", 0, false, INFINITY,
+           "a density above 0, for example \"1080 kg/m^3\"", "density of the film"),
+    NUMBER("breakdown", "FIELD", DEA_TAKES_FIT, breakdown, "V/m", 0, false, INFINITY, "a field above 0, for example \"80 V/um\"",
+           "breakdown strength of the film"),
+    TEXT("as", 0, "KIND", dea_export_word, DEA_TAKES_EXPORT, take_text, as, "kind of export"),
+    TEXT("dialect", 0, "DIALECT", dialect_word, DEA_TAKES_EXPORT, take_text, dialect, "simulator that reads it"),
+    TEXT("analogy", 0, "ANALOGY", analogy_word, DEA_TAKES_EXPORT, take_text, analogy, "what voltage and current stand for"),
+    TEXT("name", 0, "NAME", NULL, DEA_TAKES_EXPORT, take_text, name, "name of the part"),
+    COUNT("runs", 0, "N", DEA_TAKES_BENCH, take_count, runs, 1000, "a whole number from 1 to 1000", "timed runs of a setting"),
+    NUMBER("budget", "SECONDS", DEA_TAKES_BENCH, budget, "1", 0, false, INFINITY, "a number of seconds above 0, for example 60",
+           "time that all may take"),
+    COUNT("shard", 0, "I/N", DEA_TAKES_JOURNAL, take_shard, shard, 1000000,
+          "I/N with whole numbers 1 <= I <= N <= 1000000, for example 3/10", "solve only part I of N"),
+    FLAG("resume", 0, DEA_TAKES_JOURNAL, resume, "go on where a run stopped"),
+    NUMBER("to", "STRETCH", DEA_TAKES_CURVES, to, "1", 1, false, 100, "a stretch above 1 and below 100, for example 4",
+           "largest stretch of curves"),
+    {.name = "help", .letter = 'h', .about = "tell what the command does"},
+    {.name = "version", .letter = 'V', .about = "tell the version"},
 };
 
 enum { ENTRIES = sizeof entries / sizeof entries[0], FIRST_CODE = 256 };
 
-static bool takes(const dea_command *command, const option_entry *entry)
+static bool takes(const dea_command *command, const dea_option *entry)
 {
     return entry->group == 0 || (command->takes & entry->group) != 0;
+}
+
+const dea_option *dea_option_at(const dea_command *command, size_t index)
+{
+    for (int i = 0; i < ENTRIES; i++) {
+        if (takes(command, &entries[i]) && index-- == 0) {
+            return &entries[i];
+        }
+    }
+    return NULL;
 }
 
 static void complain_option(const dea_command *command, const char *given)
@@ -331,13 +341,13 @@ static void fill_getopt(const dea_command *command, struct option *longs, char *
 {
     *letters++ = ':';
     for (int i = 0; i < ENTRIES; i++) {
-        const option_entry *entry = &entries[i];
+        const dea_option *entry = &entries[i];
         if (!takes(command, entry))
             continue;
-        *longs++ = (struct option){entry->name, entry->valued ? required_argument : no_argument, NULL, FIRST_CODE + i};
+        *longs++ = (struct option){entry->name, entry->value ? required_argument : no_argument, NULL, FIRST_CODE + i};
         if (entry->letter) {
             *letters++ = entry->letter;
-            if (entry->valued)
+            if (entry->value)
                 *letters++ = ':';
         }
     }
@@ -345,7 +355,7 @@ static void fill_getopt(const dea_command *command, struct option *longs, char *
     *letters = '\0';
 }
 
-static const option_entry *entry_of(int code)
+static const dea_option *entry_of(int code)
 {
     for (int i = 0; i < ENTRIES; i++) {
         if (code == FIRST_CODE + i || (entries[i].letter && code == entries[i].letter))
@@ -356,11 +366,11 @@ static const option_entry *entry_of(int code)
 
 static dea_parsed take_option(const dea_command *command, int code, char **argv, dea_arguments *arguments)
 {
-    const option_entry *entry = entry_of(code);
+    const dea_option *entry = entry_of(code);
     const char *word = argv[optind - 1];
     char letter[3] = {'-', (char)optopt, '\0'};
     if (code == ':') {
-        const option_entry *lacking = entry_of(optopt);
+        const dea_option *lacking = entry_of(optopt);
         dea_complain("--%s needs a value", lacking ? lacking->name : letter);
         return DEA_PARSED_WRONG;
     }
@@ -372,16 +382,19 @@ static dea_parsed take_option(const dea_command *command, int code, char **argv,
         complain_option(command, optopt ? letter : word);
         return DEA_PARSED_WRONG;
     }
-    if (!entry->set)
+    if (!entry->take)
         return entry->letter == 'h' ? DEA_PARSED_HELP : DEA_PARSED_VERSION;
-    return entry->set(arguments, optarg) ? DEA_PARSED_FINE : DEA_PARSED_WRONG;
+    return entry->take(entry, optarg, arguments) ? DEA_PARSED_FINE : DEA_PARSED_WRONG;
 }
 
 static dea_parsed count_operands(const dea_command *command, const dea_arguments *arguments)
 {
     if (arguments->operand_count < command->least)
         dea_complain("%s needs %s; see deaspice %s --help", command->name,
-                     command->least > 1 ? "a scene and its parts" : "a file", command->name);
+                     command->least > 1 ? "a scene and its parts"
+                     : command->files   ? "a file"
+                                        : "an operand",
+                     command->name);
     else if (arguments->operand_count > command->most)
         dea_complain("%s takes one operand, \"%s\" is one too many", command->name, arguments->operands[command->most].path);
     else
@@ -393,7 +406,11 @@ dea_parsed dea_arguments_parse(const dea_command *command, int argc, char **argv
 {
     struct option longs[ENTRIES + 1];
     char letters[2 * ENTRIES + 2];
-    *arguments = (dea_arguments){.tolerance = NAN, .ramp = NAN, .budget = NAN};
+    *arguments = (dea_arguments){.tolerance = NAN};
+    for (size_t i = 0; i < ENTRIES; i++) {
+        if (entries[i].take == take_number)
+            *(double *)place_of(&entries[i], arguments) = NAN;
+    }
     arguments->settings = calloc((size_t)argc + 1, sizeof *arguments->settings);
     arguments->operands = calloc((size_t)argc + 1, sizeof *arguments->operands);
     if (!arguments->settings || !arguments->operands) {

@@ -11,6 +11,24 @@ typedef struct need {
     const char *parent, *path;
 } need;
 
+/* A material that lacks a key gets it in its file, or in the scene on top of it. */
+static dea_status material_missing(dea_reader *reader, const char *path)
+{
+    dea_ref ref;
+    char shown[DEA_TEXT_ROOM];
+    const dea_node *material = dea_tree_child(reader->root, "material");
+    const dea_node *base = material->kind == DEA_NODE_MAPPING ? dea_tree_child(material, "base") : material;
+    if (!base || !dea_key_find(path, &ref)) {
+        return dea_reader_missing(reader, "material", path);
+    }
+    dea_reader_show(base, shown);
+    const char *name = strrchr(path, '.') + 1;
+    return dea_place_fail(
+        &base->place, reader->error, path,
+        "missing: %s gives none; write one there (%s: 2.8), or here, material: {base: %s, %s: 2.8}; accepted: %s", shown, name,
+        shown, name, ref.key->accepted);
+}
+
 static dea_status needs_check(dea_reader *reader)
 {
     static const need needs[] = {
@@ -29,7 +47,9 @@ static dea_status needs_check(dea_reader *reader)
             continue;
         }
         if (dea_key_find(needs[i].path, &ref) && isnan(*(const double *)((const char *)reader->scene + dea_ref_offset(&ref)))) {
-            return dea_reader_missing(reader, needs[i].parent, needs[i].path);
+            return strcmp(needs[i].path, "material.permittivity") == 0
+                       ? material_missing(reader, needs[i].path)
+                       : dea_reader_missing(reader, needs[i].parent, needs[i].path);
         }
     }
     const dea_actuator *actuator = &reader->scene->actuator;
@@ -60,6 +80,20 @@ static dea_status radius_check(dea_reader *reader)
                           actuator->frame_radius);
 }
 
+/* A film as thick as its frame is wide is no film: most likely the unit is another one. */
+static dea_status thickness_check(dea_reader *reader)
+{
+    const dea_actuator *actuator = &reader->scene->actuator;
+    const size_t thickness = offsetof(dea_scene, actuator.film_thickness);
+    if (swept(reader, thickness) || swept(reader, offsetof(dea_scene, actuator.frame_radius)) ||
+        actuator->film_thickness < actuator->frame_radius) {
+        return DEA_OK;
+    }
+    return dea_place_fail(dea_reader_place(reader, thickness, "actuator"), reader->error, "actuator.film_thickness",
+                          "out of range (%g m); accepted: less than frame_radius, %g m, e.g. 100 um", actuator->film_thickness,
+                          actuator->frame_radius);
+}
+
 static dea_status permittivity_check(dea_reader *reader)
 {
     const dea_scene *scene = reader->scene;
@@ -75,7 +109,7 @@ static dea_status permittivity_check(dea_reader *reader)
                           scene->actuator.prestretch);
 }
 
-static dea_status prony_check(dea_reader *reader)
+dea_status dea_material_finish(dea_reader *reader)
 {
     const dea_material *material = &reader->scene->material;
     double sum = 0.0;
@@ -106,8 +140,9 @@ dea_status dea_reader_finish(dea_reader *reader)
 {
     dea_status status = needs_check(reader);
     status = status ? status : radius_check(reader);
+    status = status ? status : thickness_check(reader);
     status = status ? status : permittivity_check(reader);
-    status = status ? status : prony_check(reader);
+    status = status ? status : dea_material_finish(reader);
     status = status ? status : optics_check(reader);
     status = status ? status : dea_models_finish(reader);
     status = status ? status : dea_waveform_finish(reader);

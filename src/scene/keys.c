@@ -63,11 +63,11 @@ static const dea_key keys[] = {
     OTHER("material.source", dea_read_source, "one line of text, at most 255 bytes"),
     OTHER("material.stretches", dea_read_stretches, "the stretches that the data cover, e.g. [1, 2]"),
     OTHER("material.yeoh", dea_read_mapping, "a mapping with C1, C2, C3, e.g. {C1: 178426 Pa}"),
-    SCALAR("material.yeoh.C1", material.yeoh[0], "Pa", "_Pa", 0, INFINITY, true, DEA_KEY_BOTH, 1,
+    SCALAR("material.yeoh.C1", material.constants[0], "Pa", "_Pa", 0, INFINITY, true, DEA_KEY_BOTH, 1,
            "a modulus > 0, e.g. 178426 Pa"),
-    SCALAR("material.yeoh.C2", material.yeoh[1], "Pa", "_Pa", -INFINITY, INFINITY, true, DEA_KEY_BOTH, 1,
+    SCALAR("material.yeoh.C2", material.constants[1], "Pa", "_Pa", -INFINITY, INFINITY, true, DEA_KEY_BOTH, 1,
            "a modulus, e.g. -6023 Pa"),
-    SCALAR("material.yeoh.C3", material.yeoh[2], "Pa", "_Pa", -INFINITY, INFINITY, true, DEA_KEY_BOTH, 1,
+    SCALAR("material.yeoh.C3", material.constants[2], "Pa", "_Pa", -INFINITY, INFINITY, true, DEA_KEY_BOTH, 1,
            "a modulus, e.g. 4234 Pa"),
     {.path = "material.permittivity",
      .read = dea_read_permittivity,
@@ -132,6 +132,8 @@ static const dea_key keys[] = {
     PART("drive.waveform.period", drive.waveform.period, "s", "_s", 0, INFINITY, true, 1, "drive.waveform",
          "a time, at least the last one of the waveform, e.g. 20 s"),
     OTHER("model", dea_read_model, "a model name or a list of them"),
+    SCALAR("model_error", model_error, "1", "", 0, 1, true, DEA_KEY_BOTH, 0, "a relative error > 0 and < 1, e.g. 1 %"),
+    OTHER("engine", dea_read_engine, "auto, an engine, or a list of engines in the order in which they are asked"),
     OTHER("study", dea_read_mapping, "a mapping with sweep, transient or ac, e.g. {sweep: {}} for the scene as one point"),
     OTHER("study.sweep", dea_read_later, "a mapping of axes, e.g. {coverage: [0.25, 0.5]}"),
     OTHER(TRANSIENT, dea_read_mapping, "a mapping with until, every, average, start and over, e.g. {until: 25 s, every: 10 ms}"),
@@ -289,15 +291,25 @@ static bool child_of(const char *path, const char *parent)
     return strncmp(path, parent, length) == 0 && path[length] == '.' && !strchr(path + length + 1, '.');
 }
 
-/* The key that @p name is most likely a slip of, among the children of @p parent or, where that is NULL, among all. */
-static const dea_key *nearest(const char *parent, const char *name)
+static bool is_child(const dea_key *key, const char *parent)
+{
+    return child_of(key->path, parent);
+}
+
+static bool is_anywhere(const dea_key *key, const char *parent)
+{
+    (void)parent;
+    return strchr(key->path, '#') == NULL;
+}
+
+/* The key that @p name is most likely a slip of, among those that @p among holds for. */
+static const dea_key *nearest(bool (*among)(const dea_key *key, const char *parent), const char *parent, const char *name)
 {
     const dea_key *best = NULL;
     size_t least = SIZE_MAX;
     for (size_t i = 0; i < KEY_COUNT; i++) {
         const char *word = last_component(keys[i].path);
-        const bool elsewhere = parent ? !child_of(keys[i].path, parent) : strchr(keys[i].path, '#') != NULL;
-        const bool apart = elsewhere || word[0] == '#';
+        const bool apart = !among(&keys[i], parent) || word[0] == '#';
         const size_t distance = apart ? SIZE_MAX : dea_text_distance(word, name);
         if (distance < least && dea_text_likely(word, distance)) {
             best = &keys[i];
@@ -305,6 +317,32 @@ static const dea_key *nearest(const char *parent, const char *name)
         }
     }
     return best;
+}
+
+static size_t depth_of(const char *path)
+{
+    size_t depth = 1;
+    for (; *path; path++) {
+        depth += *path == '.';
+    }
+    return depth;
+}
+
+/* The key whose last component is @p name, the least deep of several; NULL where there is none, or that is not one alone. */
+static const dea_key *namesake(const char *name)
+{
+    const dea_key *found = NULL;
+    size_t least = SIZE_MAX;
+    size_t count = 0;
+    for (size_t i = 0; i < KEY_COUNT; i++) {
+        const size_t depth = depth_of(keys[i].path);
+        if (is_anywhere(&keys[i], NULL) && depth <= least && strcmp(last_component(keys[i].path), name) == 0) {
+            count = depth < least ? 1 : count + 1;
+            least = depth;
+            found = &keys[i];
+        }
+    }
+    return count == 1 ? found : NULL;
 }
 
 static size_t append(char out[DEA_KEY_ROOM], size_t used, const char *between, const char *word)
@@ -332,6 +370,23 @@ bool dea_key_ambiguous(const char *name, char out[DEA_KEY_ROOM])
     return found > 1;
 }
 
+/* Tells where a key that is right, but in the wrong mapping, belongs. */
+static size_t place_tell(const char *parent, const dea_key *key, char out[DEA_KEY_ROOM])
+{
+    const char *name = last_component(key->path);
+    const size_t home = (size_t)(name - key->path);
+    size_t used = append(out, 0, "; ", name);
+    if (key->words > 0 && strncmp(parent, "study", 5) == 0) {
+        return append(out, used, " as an axis stands in ", strcmp(parent, "study") == 0 ? "study.sweep" : "over");
+    }
+    if (home == 0) {
+        return append(out, used, " stands at the top, without indentation", "");
+    }
+    char mapping[DEA_NAME_LENGTH];
+    snprintf(mapping, sizeof mapping, "%.*s", (int)home - 1, key->path);
+    return append(out, used, " stands in ", mapping);
+}
+
 void dea_key_suggest(const char *parent, const char *name, char out[DEA_KEY_ROOM])
 {
     char place[DEA_NAME_LENGTH];
@@ -341,19 +396,41 @@ void dea_key_suggest(const char *parent, const char *name, char out[DEA_KEY_ROOM
     if (!name_normalise(parent, place, &index)) {
         return;
     }
-    const dea_key *sibling = nearest(place, name);
-    const dea_key *meant = sibling ? sibling : nearest(NULL, last_component(name));
-    if (meant) {
-        used = append(out, used, "; did you mean ", sibling ? last_component(meant->path) : meant->path);
+    const dea_key *sibling = nearest(is_child, place, name);
+    const dea_key *elsewhere = sibling ? NULL : namesake(name);
+    if (sibling) {
+        used = append(out, used, "; did you mean ", last_component(sibling->path));
         used = append(out, used, "?", "");
+    } else if (elsewhere) {
+        used = place_tell(place, elsewhere, out);
     }
-    const char *between = meant ? " accepted: " : "; accepted: ";
+    const char *between = sibling ? " accepted: " : elsewhere ? "; accepted here: " : "; accepted: ";
     for (size_t i = 0; i < KEY_COUNT; i++) {
         if (child_of(keys[i].path, place)) {
             used = append(out, used, between, last_component(keys[i].path));
             between = ", ";
         }
     }
+}
+
+void dea_key_suggest_short(const char *name, const dea_node *root, const char *accepted, char out[DEA_KEY_ROOM])
+{
+    char dotted[DEA_NAME_LENGTH];
+    dea_ref ref;
+    size_t at = 0;
+    for (const char *from = name; *from && at + 1 < sizeof dotted; from++) {
+        if (*from != ']') {
+            dotted[at++] = *from == '[' ? '.' : *from;
+        }
+    }
+    dotted[at] = '\0';
+    if (strchr(name, '[') && dea_key_resolve(dotted, root, &ref)) {
+        at = append(out, 0, "; an index, counted from 0, stands between points: ", dotted);
+        return;
+    }
+    const dea_key *meant = nearest(is_anywhere, NULL, last_component(name));
+    at = meant ? append(out, 0, "; did you mean ", meant->path) : 0;
+    append(out, at, meant ? "? accepted: " : "; accepted: ", accepted);
 }
 
 void dea_ref_column(const dea_ref *ref, size_t components, char column[DEA_NAME_LENGTH])

@@ -53,8 +53,13 @@ bool dea_key_has_place(const dea_key *key, const dea_node *root);
 bool dea_key_ambiguous(const char *name, char out[DEA_KEY_ROOM]);
 /* Place of the scalar in dea_scene. */
 size_t dea_ref_offset(const dea_ref *ref);
-/* Says what an unknown key below @p parent ("", "actuator", ...) could mean: "; did you mean ...?; accepted: ...". */
+/* Says what an unknown key in the mapping @p parent ("", "actuator", ...) could mean: "; did you mean one of that mapping?
+ * accepted:
+ * ...", or where it stands. */
 void dea_key_suggest(const char *parent, const char *name, char out[DEA_KEY_ROOM]);
+/* Says what an unknown short name, which may be the end of any key, could mean: "; did you mean actuator.coverage? accepted:
+ * ...". */
+void dea_key_suggest_short(const char *name, const dea_node *root, const char *accepted, char out[DEA_KEY_ROOM]);
 /* Result column of the last @p components components of a key's path and its unit. */
 void dea_ref_column(const dea_ref *ref, size_t components, char column[DEA_NAME_LENGTH]);
 

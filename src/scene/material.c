@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/file.h"
+#include "support/file.h"
 #include "scene/reader.h"
 
 static dea_status base_read(dea_reader *reader, const dea_ref *ref, const dea_node *node);
@@ -31,6 +31,30 @@ static dea_status mapping_read(dea_reader *reader, const dea_node *node)
     return dea_reader_children(reader, "material", node);
 }
 
+/* Does a line begin as a key of a material does, and hardly one of another file? */
+static bool is_material_line(const char *line)
+{
+    char path[DEA_NAME_LENGTH];
+    dea_ref ref;
+    const size_t word = strcspn(line, ":\n.#");
+    return line[word] == ':' && snprintf(path, sizeof path, "material.%.*s", (int)word, line) < (int)sizeof path &&
+           dea_key_find(path, &ref) && ref.key->read != dea_read_source && ref.key->read != dea_read_later;
+}
+
+/* Keeps a material's text to be shown with messages; of a file that has no line of a material, nothing is. */
+static bool text_keep(dea_reader *reader, dea_origin *origin, const char *text, size_t length)
+{
+    const char *copy = dea_arena_copy(&reader->arena, text, length);
+    const char *line = copy;
+    while (line && !is_material_line(line)) {
+        line = strchr(line, '\n');
+        line = line ? line + 1 : NULL;
+    }
+    origin->text = line ? copy : NULL;
+    origin->length = length;
+    return copy != NULL;
+}
+
 /* Does it hold any key of a material? The words of another file are not for a message. */
 static bool is_material(const dea_node *root)
 {
@@ -49,7 +73,7 @@ static dea_status file_parse(dea_reader *reader, const char *path, const char *t
 {
     dea_node *root = NULL;
     dea_origin *origin = dea_reader_origin(reader, path);
-    if (!origin) {
+    if (!origin || !text_keep(reader, origin, text, length)) {
         return dea_reader_memory(reader);
     }
     dea_status status = dea_tree_parse(text, length, origin, &reader->arena, &root, reader->error);

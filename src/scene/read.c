@@ -129,7 +129,8 @@ dea_status dea_reader_number(dea_reader *reader, const dea_ref *ref, const dea_n
         return status;
     }
     if (node->kind != DEA_NODE_SCALAR) {
-        return dea_reader_refuse(reader, ref, node, "not a number");
+        const bool axis = ref->key->words > 0 && (node->kind == DEA_NODE_SEQUENCE || dea_tree_child(node, "from"));
+        return dea_reader_refuse(reader, ref, node, axis ? "several values are an axis of study.sweep" : "not a number");
     }
     if (!dea_quantity_read(reader->units, node->text, ref->key->unit, value, reason)) {
         return dea_reader_refuse(reader, ref, node, reason);
@@ -268,6 +269,25 @@ static void model_list(ability wanted, char *out, size_t room)
     snprintf(out + used, used < room ? room - used : 0, "%s", automatic);
 }
 
+/* Several models in one text, as the list that they should be: "[lumped, field]", of an option "lumped,field"; "" for one. */
+static void model_split(const dea_node *node, char out[DEA_KEY_ROOM])
+{
+    static const char between[] = " ,;+/&\t";
+    const bool option = node->place.origin->setting;
+    const char *text = node->text + strspn(node->text, between);
+    size_t used = 0;
+    size_t count = 0;
+    for (; *text && used + DEA_NAME_LENGTH < DEA_KEY_ROOM; count++) {
+        const size_t length = strcspn(text, between);
+        const char *joint = count == 0 ? "" : option ? "," : ", ";
+        used += (size_t)snprintf(out + used, DEA_KEY_ROOM - used, "%s%.*s", joint,
+                                 (int)(length < DEA_NAME_LENGTH / 2 ? length : DEA_NAME_LENGTH / 2), text);
+        text += length;
+        text += strspn(text, between);
+    }
+    out[count > 1 ? used : 0] = '\0';
+}
+
 static dea_status model_fail(dea_reader *reader, const dea_node *node, const char *what, ability wanted)
 {
     char shown[DEA_TEXT_ROOM];
@@ -275,6 +295,14 @@ static dea_status model_fail(dea_reader *reader, const dea_node *node, const cha
     char meant[DEA_KEY_ROOM] = "";
     model_list(wanted, names, sizeof names);
     const bool any = !wanted.lens && !wanted.dynamic;
+    if (node->kind == DEA_NODE_SCALAR && any) {
+        char several[DEA_KEY_ROOM];
+        model_split(node, several);
+        if (several[0]) {
+            const bool option = node->place.origin->setting;
+            snprintf(meant, sizeof meant, "several are written %s%.400s%s; ", option ? "" : "[", several, option ? "" : "]");
+        }
+    }
     for (size_t i = 0; node->kind == DEA_NODE_SCALAR && any && i < dea_model_count(); i++) {
         const char *name = dea_model_at(i)->name;
         const size_t distance = dea_text_distance(name, node->text);
@@ -360,4 +388,60 @@ dea_status dea_read_model(dea_reader *reader, const dea_ref *ref, const dea_node
         }
     }
     return DEA_OK;
+}
+
+static dea_status engine_fail(dea_reader *reader, const dea_node *node, const char *what)
+{
+    char shown[DEA_TEXT_ROOM];
+    char names[DEA_KEY_ROOM] = "";
+    char meant[DEA_KEY_ROOM] = "";
+    size_t used = 0;
+    for (size_t i = 0; i < dea_engine_count() && used < sizeof names; i++) {
+        const char *name = dea_engine_at(i)->name;
+        const size_t distance = node->kind == DEA_NODE_SCALAR ? dea_text_distance(name, node->text) : 0;
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s, ", name);
+        if (distance > 0 && dea_text_likely(name, distance)) {
+            snprintf(meant, sizeof meant, "did you mean %s? ", name);
+        }
+    }
+    return dea_place_fail(&node->place, reader->error, "engine", "%s (%s); %saccepted: %s%s", what, dea_reader_show(node, shown),
+                          meant, names, automatic);
+}
+
+static dea_status engine_add(dea_reader *reader, const dea_node *node)
+{
+    dea_scene *scene = reader->scene;
+    const dea_engine *engine = node->kind == DEA_NODE_SCALAR ? dea_engine_find(node->text) : NULL;
+    if (!engine) {
+        const bool all = node->kind == DEA_NODE_SCALAR && strcmp(node->text, automatic) == 0;
+        return engine_fail(reader, node, all ? "auto stands alone" : "unknown engine");
+    }
+    for (size_t i = 0; i < scene->engine_count; i++) {
+        if (scene->engines[i] == engine) {
+            return engine_fail(reader, node, "named twice");
+        }
+    }
+    scene->engines[scene->engine_count++] = engine;
+    return DEA_OK;
+}
+
+dea_status dea_read_engine(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    (void)ref;
+    if (reader->engine && node->place.origin != &reader->engine_origin) {
+        return DEA_OK;
+    }
+    const dea_node *alone = node->kind == DEA_NODE_SCALAR ? node : node->count == 1 ? node->first : NULL;
+    reader->scene->engine_count = 0;
+    if (alone && alone->kind == DEA_NODE_SCALAR && strcmp(alone->text, automatic) == 0) {
+        return DEA_OK;
+    }
+    if (node->kind == DEA_NODE_MAPPING || (node->kind == DEA_NODE_SEQUENCE && node->count == 0)) {
+        return engine_fail(reader, node, "not an engine");
+    }
+    dea_status status = node->kind == DEA_NODE_SCALAR ? engine_add(reader, node) : DEA_OK;
+    for (const dea_node *name = node->kind == DEA_NODE_SEQUENCE ? node->first : NULL; name && !status; name = name->next) {
+        status = engine_add(reader, name);
+    }
+    return status;
 }

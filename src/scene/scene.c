@@ -1,10 +1,12 @@
 /* The reading of a scene, step by step. */
+#define _GNU_SOURCE
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "deaspice/scene.h"
-#include "scene/file.h"
+#include "support/file.h"
 #include "scene/reader.h"
 
 static dea_status scene_clear(dea_scene *scene)
@@ -28,6 +30,7 @@ static dea_status scene_clear(dea_scene *scene)
                   .leakage_resistance = NAN},
         .transient = {.until = NAN, .every = NAN},
         .ac = {.from = NAN, .to = NAN, .points_per_decade = 50, .bias = NAN},
+        .model_error = 0.01,
         .accuracy = 1e-6,
         .files = scene->files,
     };
@@ -42,19 +45,20 @@ static dea_status kind_read(dea_reader *reader)
     return kind && dea_key_find("actuator.kind", &ref) ? dea_read_kind(reader, &ref, kind) : DEA_OK;
 }
 
-/* `--model a,b` stands in the place of the scene's model. */
-static dea_status model_override(dea_reader *reader)
+/* `--model a,b` stands in the place of the scene's model, `--engine a,b` in that of its engine. */
+static dea_status list_override(dea_reader *reader, const char *path, const char *names, const char *option, dea_origin *origin)
 {
     dea_ref ref;
-    if (!reader->model || !dea_key_find("model", &ref)) {
+    if (!names || !dea_key_find(path, &ref)) {
         return DEA_OK;
     }
-    reader->model_origin = (dea_origin){.name = "--model", .setting = true};
-    const dea_place place = {.origin = &reader->model_origin, .line = 1, .column = 1};
+    *origin = (dea_origin){.name = option, .setting = true};
+    const dea_place place = {.origin = origin, .line = 1, .column = 1};
     dea_node list = {.kind = DEA_NODE_SEQUENCE, .place = place, .key_at = place};
-    for (const char *name = reader->model; name; name = strchr(name, ',') ? strchr(name, ',') + 1 : NULL) {
+    for (const char *name = names; name; name = strchr(name, ',') ? strchr(name, ',') + 1 : NULL) {
+        name += strspn(name, " ");
         const char *text = dea_arena_copy(&reader->arena, name, strcspn(name, ","));
-        dea_node *node = text ? dea_tree_scalar(&reader->arena, &reader->model_origin, text) : NULL;
+        dea_node *node = text ? dea_tree_scalar(&reader->arena, origin, text) : NULL;
         if (!node) {
             return dea_reader_memory(reader);
         }
@@ -62,7 +66,7 @@ static dea_status model_override(dea_reader *reader)
         list.last = node;
         list.count++;
     }
-    return dea_read_model(reader, &ref, &list);
+    return ref.key->read(reader, &ref, &list);
 }
 
 static dea_status reader_run(dea_reader *reader, const char *text, size_t length, const dea_origin *origin,
@@ -80,7 +84,8 @@ static dea_status reader_run(dea_reader *reader, const char *text, size_t length
     status = status ? status : kind_read(reader);
     status = status ? status : dea_reader_children(reader, "", reader->root);
     status = status ? status : dea_settings_apply(reader);
-    status = status ? status : model_override(reader);
+    status = status ? status : list_override(reader, "model", reader->model, "--model", &reader->model_origin);
+    status = status ? status : list_override(reader, "engine", reader->engine, "--engine", &reader->engine_origin);
     status = status ? status : dea_reader_study(reader);
     return status ? status : dea_reader_finish(reader);
 }
@@ -89,7 +94,8 @@ static dea_status scene_parse(const char *text, size_t length, const char *name,
                               dea_scene *scene, dea_error *error)
 {
     char shown[10 * 256 + 8];
-    const dea_origin origin = {.name = dea_text_clip(name, 256, shown, sizeof shown), .folder = folder};
+    const dea_origin origin = {
+        .name = dea_text_clip(name, 256, shown, sizeof shown), .folder = folder, .text = text, .length = length};
     dea_reader *reader = calloc(1, sizeof *reader);
     dea_units *units = dea_units_open();
     dea_status status = scene_clear(scene);
@@ -100,6 +106,7 @@ static dea_status scene_parse(const char *text, size_t length, const char *name,
         reader->error = error;
         reader->units = units;
         reader->model = how->model;
+        reader->engine = how->engine;
         reader->no_files = how->no_files;
         status = reader_run(reader, text, length, &origin, how->settings, how->setting_count);
     }
@@ -163,6 +170,51 @@ dea_status dea_scene_read(const char *path, const dea_setting *settings, size_t 
 {
     const dea_reading how = {.settings = settings, .setting_count = setting_count, .model = model};
     return dea_scene_read_as(path, &how, scene, error);
+}
+
+static dea_status material_run(dea_reader *reader, const char *path, const dea_origin *origin)
+{
+    dea_ref ref;
+    const dea_place place = {.origin = origin, .line = 1, .column = 1};
+    reader->root = dea_tree_mapping(&reader->arena, &place);
+    dea_node *name = dea_tree_scalar(&reader->arena, origin, path);
+    if (!reader->root || !name || !dea_key_find("material", &ref)) {
+        return dea_reader_memory(reader);
+    }
+    dea_tree_put(reader->root, "material", name);
+    const dea_status status = dea_read_material(reader, &ref, name);
+    return status ? status : dea_material_finish(reader);
+}
+
+dea_status dea_material_read(const char *path, dea_material *material, dea_error *error)
+{
+    char shown[10 * 256 + 8];
+    char *named = NULL;
+    dea_files files = {0};
+    dea_scene scene = {.files = &files};
+    const dea_origin origin = {.name = dea_text_clip(path, 256, shown, sizeof shown), .folder = "", .setting = true};
+    dea_reader *reader = calloc(1, sizeof *reader);
+    dea_units *units = dea_units_open();
+    dea_status status = scene_clear(&scene);
+    if (!reader || !units || status || asprintf(&named, "%s%s", strchr(path, '/') ? "" : "./", path) < 0) {
+        named = NULL;
+        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while reading the material");
+    } else {
+        reader->scene = &scene;
+        reader->error = error;
+        reader->units = units;
+        status = material_run(reader, named, &origin);
+        *material = scene.material;
+    }
+    if (reader) {
+        dea_arena_free(&reader->arena);
+    }
+    free(reader);
+    free(named);
+    free(scene.title);
+    dea_units_close(units);
+    dea_files_free(&files);
+    return status;
 }
 
 void dea_scene_free(dea_scene *scene)

@@ -57,7 +57,14 @@ static dea_status value_parse(setting_reader *self, dea_node **node)
 {
     dea_reader *reader = self->reader;
     if (self->value[0] != '\0' && strchr("[{\"'", self->value[0])) {
-        return dea_tree_parse(self->value, strlen(self->value), self->origin, &reader->arena, node, reader->error);
+        dea_origin *origin = dea_arena_take(&reader->arena, sizeof *origin);
+        if (!origin) {
+            return dea_reader_memory(reader);
+        }
+        *origin = *self->origin;
+        origin->text = self->value; /* its places are worth a caret, that of a plain text is plain */
+        origin->length = strlen(self->value);
+        return dea_tree_parse(self->value, origin->length, origin, &reader->arena, node, reader->error);
     }
     *node = dea_tree_scalar(&reader->arena, self->origin, self->value);
     return *node ? DEA_OK : dea_reader_memory(reader);
@@ -185,19 +192,24 @@ static dea_status graft_axis(setting_reader *self, const char *said, const dea_r
     return DEA_OK;
 }
 
+/* Fails because no key has the name, or several have. @p parent: the mapping that it stands in; NULL: it may be short. */
 static dea_status fail_key(setting_reader *self, const char *parent, const char *name)
 {
     char shown[DEA_TEXT_ROOM];
     char help[DEA_KEY_ROOM];
     dea_text_clip(self->name, DEA_TEXT_SHOWN, shown, sizeof shown);
-    if (dea_key_ambiguous(name, help)) {
+    if (!parent && dea_key_ambiguous(name, help)) {
         return dea_place_fail(&self->place, self->reader->error, shown, "could mean several keys; accepted: one of %s", help);
     }
-    dea_key_suggest(parent, name, help);
+    if (parent) {
+        dea_key_suggest(parent, name, help);
+    } else {
+        dea_key_suggest_short(name, self->reader->root, "keys of the scene, e.g. actuator.prestretch, or short prestretch", help);
+    }
     return dea_place_fail(&self->place, self->reader->error, shown, "unknown key%s", help);
 }
 
-/* "actuator.covrage": parent "actuator" where the scene has one, and what comes after it. */
+/* "actuator.covrage": a slip of a key of actuator, where that is one. */
 static dea_status fail_unknown(setting_reader *self)
 {
     char parent[DEA_NAME_LENGTH] = "";
@@ -206,10 +218,8 @@ static dea_status fail_unknown(setting_reader *self)
     if (dot && dot - self->name < DEA_NAME_LENGTH) {
         snprintf(parent, sizeof parent, "%.*s", (int)(dot - self->name), self->name);
     }
-    if (parent[0] && !dea_key_find(parent, &ref)) {
-        parent[0] = '\0';
-    }
-    return fail_key(self, parent, dot ? dot + 1 : self->name);
+    const bool found = parent[0] && dea_key_find(parent, &ref);
+    return fail_key(self, found ? parent : NULL, found ? dot + 1 : self->name);
 }
 
 /* Name of the axis in "study.sweep.AXIS", "sweep.AXIS", "over.AXIS" and so on, and the mapping it stands in; NULL for other keys.
@@ -262,7 +272,7 @@ static dea_status setting_graft(dea_reader *reader, const char *text, bool last,
     }
     *done = true;
     if (!found) {
-        return axis ? fail_key(&self, path, axis) : fail_unknown(&self);
+        return axis ? fail_key(&self, NULL, axis) : fail_unknown(&self);
     }
     status = value_parse(&self, &node);
     if (status) {

@@ -257,9 +257,8 @@ static dea_status fail_axis(dea_reader *reader, const dea_node *node)
     if (dea_key_ambiguous(node->key, help)) {
         return dea_place_fail(&node->key_at, reader->error, subject, "could mean several keys; accepted: one of %s", help);
     }
-    dea_key_suggest("study.sweep", node->key, help);
-    return dea_place_fail(&node->key_at, reader->error, subject,
-                          "unknown key%s; accepted: any scalar of the scene, e.g. coverage, prestretch, voltage", help);
+    dea_key_suggest_short(node->key, reader->root, "any scalar of the scene, e.g. coverage, prestretch, voltage", help);
+    return dea_place_fail(&node->key_at, reader->error, subject, "unknown key%s", help);
 }
 
 static dea_status axes_read(dea_reader *reader, const dea_node *axes)

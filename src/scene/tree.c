@@ -26,9 +26,14 @@ dea_status dea_place_fail(const dea_place *place, dea_error *error, const char *
     vsnprintf(what, sizeof what, format, arguments);
     va_end(arguments);
     if (place->origin->setting) {
-        return dea_fail(error, DEA_ERROR_SCENE, "%s: %s: %s", place->origin->name, subject, what);
+        dea_fail(error, DEA_ERROR_SCENE, "%s: %s: %s", place->origin->name, subject, what);
+    } else {
+        dea_fail(error, DEA_ERROR_SCENE, "%s:%d:%d: %s: %s", place->origin->name, place->line, place->column, subject, what);
     }
-    return dea_fail(error, DEA_ERROR_SCENE, "%s:%d:%d: %s: %s", place->origin->name, place->line, place->column, subject, what);
+    if (error) {
+        dea_place_excerpt(place, error->excerpt, sizeof error->excerpt);
+    }
+    return DEA_ERROR_SCENE;
 }
 
 static dea_status fail_memory(dea_error *error)
@@ -83,6 +88,10 @@ static dea_status fail_syntax(parse *self, const dea_place *last)
         after = self->syntax;
         place.line = line + 1;
         place.column = column + 1;
+    }
+    char usual[DEA_SYNTAX_ROOM];
+    if (dea_syntax_explain(&place, usual)) {
+        return dea_place_fail(&place, self->error, "syntax", "%s", usual);
     }
     const char *message = start > 0 ? after + start : "the text cannot be read as YAML";
     return dea_place_fail(&place, self->error, "syntax", "%s", dea_text_clip(message, DEA_TEXT_SHOWN, shown, sizeof shown));

@@ -12,6 +12,8 @@ typedef struct dea_origin {
     const char *name;   /* of a file, or "--set key=value"; fit for messages */
     const char *folder; /* where relative file names start, NULL: no file may be named */
     bool setting;       /* from the command line: has no lines and columns, and replaces what a file says */
+    const char *text;   /* what may be shown of it, not owned; NULL: nothing */
+    size_t length;      /* of the text */
 } dea_origin;
 
 typedef struct dea_place {
@@ -35,9 +37,16 @@ struct dea_node {
 
 enum { DEA_TREE_DEPTH = 24, DEA_TREE_NODES = 1 << 20, DEA_TREE_KEYS = 256 };
 
+/* Writes the line of a place with its number, and a caret under it; nothing where its text may not be shown. */
+void dea_place_excerpt(const dea_place *place, char *out, size_t room);
 /* Fails with "file:line:column: subject: ..." (or "--set key=value: subject: ..."); returns DEA_ERROR_SCENE. */
 dea_status dea_place_fail(const dea_place *place, dea_error *error, const char *subject, const char *format, ...)
     DEA_PRINTF(4, 5);
+
+enum { DEA_SYNTAX_ROOM = 1024 };
+/* Says what a text that is no YAML most likely gets wrong near @p place and what to write, and moves the place there; false where
+ * it is none of the usual slips, or the text may not be shown. */
+bool dea_syntax_explain(dea_place *place, char out[DEA_SYNTAX_ROOM]);
 
 /* Parses one YAML document. Anchors, aliases, tags, duplicate keys and more than one document are refused. */
 dea_status dea_tree_parse(const char *text, size_t length, const dea_origin *origin, dea_arena *arena, dea_node **root,

@@ -21,6 +21,7 @@ dea_status dea_fail(dea_error *error, dea_status status, const char *format, ...
         va_list arguments;
         va_start(arguments, format);
         error->status = status;
+        error->excerpt[0] = '\0';
         vsnprintf(error->message, sizeof error->message, format, arguments);
         va_end(arguments);
     }

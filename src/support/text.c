@@ -64,6 +64,32 @@ char *dea_text_clip(const char *text, size_t shown, char *out, size_t room)
     return out;
 }
 
+const char *dea_text_line(const char *text, size_t length, int number, const char **stop)
+{
+    const char *end = text + length;
+    for (int at = 1; at < number && text; at++) {
+        const char *mark = memchr(text, '\n', (size_t)(end - text));
+        text = mark ? mark + 1 : NULL;
+    }
+    if (text) {
+        const char *mark = memchr(text, '\n', (size_t)(end - text));
+        *stop = mark ? mark : end;
+        *stop -= *stop > text && (*stop)[-1] == '\r';
+    }
+    return text;
+}
+
+int dea_text_column(const char *line, const char *at)
+{
+    int column = 1;
+    for (const char *from = line; from < at; column++) {
+        unsigned code = 0;
+        const size_t size = dea_text_character(from, (size_t)(at - from), &code);
+        from += size ? size : 1;
+    }
+    return column;
+}
+
 static size_t least(size_t a, size_t b)
 {
     return a < b ? a : b;

@@ -17,6 +17,11 @@ bool dea_text_hidden(unsigned code);
 /* Copies at most @p shown characters of @p text to @p out, hidden ones and foreign bytes escaped, "..." where it was cut; returns
  * @p out. */
 char *dea_text_clip(const char *text, size_t shown, char *out, size_t room);
+/* Start of line @p number of a text, counted from 1, and its end in @p stop, without line break; NULL where it has no such line.
+ */
+const char *dea_text_line(const char *text, size_t length, int number, const char **stop);
+/* Column of @p at in the line that starts at @p line: characters before it and 1. */
+int dea_text_column(const char *line, const char *at);
 /* Closes a stream, whatever it lost; true where it lost nothing. NULL: false. */
 bool dea_text_close(FILE *stream);
 /* Edits between two words (insert, delete, replace, swap neighbours), case ignored; a large number where one is longer than 63

@@ -95,7 +95,7 @@ long double bench_strain(const char *model, const dea_point *point)
     const long double nominal = (long double)point->voltage / point->film_thickness;
     film f = {.prestretch = point->film.prestretch, .pressure = point->film.permittivity * nominal * nominal};
     for (int i = 0; i < 3; i++) {
-        f.c[i] = point->film.yeoh[i];
+        f.c[i] = point->film.constants[i];
     }
     if (strcmp(model, "lumped") == 0) {
         return lumped(&f, dot, b);

@@ -70,9 +70,9 @@ static inline hard_film hard_film_of(const dea_scene *scene, const dea_model *mo
     for (size_t i = 0; i < m->prony_count && m->instantaneous; i++) {
         f.share -= m->prony[i].g;
     }
-    f.c1 = f.share * m->yeoh[0];
-    f.c2 = f.share * m->yeoh[1];
-    f.c3 = f.share * m->yeoh[2];
+    f.c1 = f.share * m->constants[0];
+    f.c2 = f.share * m->constants[1];
+    f.c3 = f.share * m->constants[2];
     f.thickness = a->film_thickness;
     f.coverage = isnan(a->coverage) ? (long double)a->divide_radius / a->frame_radius : (long double)a->coverage;
     f.edge = f.coverage * f.frame;

@@ -45,7 +45,7 @@ static void put_actuator(paper *p, const dea_actuator *a)
 
 static void put_material(paper *p, const dea_material *m)
 {
-    put(p, "material:\n  yeoh: {C1: %.17g Pa, C2: %.17g Pa, C3: %.17g Pa}\n", m->yeoh[0], m->yeoh[1], m->yeoh[2]);
+    put(p, "material:\n  yeoh: {C1: %.17g Pa, C2: %.17g Pa, C3: %.17g Pa}\n", m->constants[0], m->constants[1], m->constants[2]);
     put(p, "  permittivity: {constant: %.17g, per_stretch: %.17g}\n", m->permittivity, m->permittivity_per_stretch);
     put_given(p, "density", m->density, "kg/m^3");
     put_given(p, "retardation", m->retardation, "s");
@@ -104,7 +104,7 @@ static void draw_material(uint64_t *seed, dea_material *m)
     } else {
         const double factor = random_decades(seed, 0.1, 30.0);
         for (int i = 0; i < DEA_YEOH_TERMS; i++) {
-            m->yeoh[i] *= factor;
+            m->constants[i] *= factor;
         }
         m->modulus *= factor;
     }
@@ -131,7 +131,7 @@ static double limit_voltage(dea_scene *scene, const char *model)
 {
     const double voltage = pull_in_voltage(scene, model);
     if (static_strain(scene, model, 1e-3 * voltage) == 1.0) {
-        scene->material.yeoh[1] = scene->material.yeoh[2] = 0.0;
+        scene->material.constants[1] = scene->material.constants[2] = 0.0;
         return pull_in_voltage(scene, model);
     }
     return voltage;

@@ -74,7 +74,7 @@ static void set_material(const dea_scene *scene, true_film *f)
     const long double given = m->instantaneous ? rest : 1.0L;
     f->branches = m->prony_count;
     for (int i = 0; i < DEA_YEOH_TERMS; i++) {
-        f->yeoh[i] = given * m->yeoh[i];
+        f->yeoh[i] = given * m->constants[i];
     }
     f->permittivity = 8.8541878128e-12 * (m->permittivity + (long double)m->permittivity_per_stretch * f->prestretch);
     f->modulus = isnan(m->modulus) ? film_cauchy(f, f->prestretch).slope : given * m->modulus;

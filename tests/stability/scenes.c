@@ -70,8 +70,8 @@ static double factor_of(const stability_units *u, const char *unit)
 
 static void scale_material(dea_material *material, const stability_units *u)
 {
-    for (int i = 0; i < DEA_YEOH_TERMS; i++) {
-        material->yeoh[i] *= u->stress;
+    for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
+        material->constants[i] *= material->law->constants[i % material->law->constant_count].modulus ? u->stress : 1.0;
     }
     material->modulus *= u->stress;
     material->permittivity *= u->permittivity;

@@ -31,15 +31,15 @@ static inline bool random_chance(uint64_t *seed, double share)
 static inline void random_material(uint64_t *seed, dea_material *material)
 {
     *material = dea_material_default();
-    material->yeoh[0] = random_decades(seed, 1e4, 1e6);
-    material->yeoh[1] = random_chance(seed, 0.2) ? 0.0 : material->yeoh[0] * random_between(seed, -0.2, 0.1);
-    material->yeoh[2] = random_chance(seed, 0.3) ? 0.0 : material->yeoh[0] * random_between(seed, 0.0, 0.05);
+    material->constants[0] = random_decades(seed, 1e4, 1e6);
+    material->constants[1] = random_chance(seed, 0.2) ? 0.0 : material->constants[0] * random_between(seed, -0.2, 0.1);
+    material->constants[2] = random_chance(seed, 0.3) ? 0.0 : material->constants[0] * random_between(seed, 0.0, 0.05);
     material->permittivity = random_between(seed, 2.0, 10.0);
     if (random_chance(seed, 0.3)) {
         material->permittivity_per_stretch = random_between(seed, -0.5, 0.5);
     }
     if (random_chance(seed, 0.2)) {
-        material->modulus = material->yeoh[0] * random_between(seed, 3.0, 10.0);
+        material->modulus = material->constants[0] * random_between(seed, 3.0, 10.0);
     }
     if (random_chance(seed, 0.3)) {
         material->prony_count = 2;
@@ -79,7 +79,7 @@ static inline double pull_in_voltage(const dea_scene *scene, const char *model)
 {
     dea_scene here = *scene;
     const double most =
-        scene->actuator.film_thickness * sqrt(3.0 * scene->material.yeoh[0] / DEA_EPSILON_0) / scene->actuator.prestretch;
+        scene->actuator.film_thickness * sqrt(3.0 * scene->material.constants[0] / DEA_EPSILON_0) / scene->actuator.prestretch;
     double high = most;
     double low = 0.0;
     here.drive.voltage = most;
@@ -109,7 +109,7 @@ static inline double *swept_field(dea_scene *scene, int kind)
         scene->drive.leakage_resistance = 1e7;
     }
     if (kind == 11 && isnan(material->modulus)) {
-        material->modulus = 6.0 * material->yeoh[0];
+        material->modulus = 6.0 * material->constants[0];
     }
     if (kind == 12 && material->prony_count == 0) {
         material->prony_count = 1;
@@ -126,9 +126,9 @@ static inline double *swept_field(dea_scene *scene, int kind)
         &actuator->frame_radius,
         &actuator->film_thickness,
         &actuator->prestretch,
-        &material->yeoh[0],
-        &material->yeoh[1],
-        &material->yeoh[2],
+        &material->constants[0],
+        &material->constants[1],
+        &material->constants[2],
         &scene->drive.series_resistance,
         &scene->drive.leakage_resistance,
         &material->modulus,

@@ -10,7 +10,7 @@ enum { RANDOM_POINTS = 5 };
 static inline double random_frequency(const dea_scene *scene)
 {
     return 0.6 * scene->actuator.prestretch / scene->actuator.frame_radius *
-           sqrt(6.0 * scene->material.yeoh[0] / scene->material.density);
+           sqrt(6.0 * scene->material.constants[0] / scene->material.density);
 }
 
 /* Inertia, Kelvin-Voigt damper and up to three branches, whose times lie within some decades of the run. */
@@ -75,7 +75,7 @@ static inline double random_voltage(uint64_t *seed, dea_scene *scene, const char
 {
     double voltage = pull_in_voltage(scene, model);
     if (static_strain(scene, model, 1e-3 * voltage) == 1.0) {
-        scene->material.yeoh[1] = 0.0;
+        scene->material.constants[1] = 0.0;
         voltage = pull_in_voltage(scene, model);
     }
     voltage *= random_between(seed, 0.05, 0.6);

@@ -20,9 +20,9 @@ static inline dea_material paper_material(void)
 {
     dea_material material = dea_material_default();
     snprintf(material.name, sizeof material.name, "paper");
-    material.yeoh[0] = 178426.0;
-    material.yeoh[1] = -6023.0;
-    material.yeoh[2] = 4234.0;
+    material.constants[0] = 178426.0;
+    material.constants[1] = -6023.0;
+    material.constants[2] = 4234.0;
     material.permittivity = 2.8;
     return material;
 }

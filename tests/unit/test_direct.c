@@ -954,7 +954,7 @@ static void a_bias_without_equilibrium_has_no_response(void **state)
     for (size_t i = 0; i < 2; i++) {
         dea_response rows[81];
         dea_scene scene = ac_scene(models[i], 20000.0);
-        scene.material.yeoh[1] = scene.material.yeoh[2] = 0.0;
+        scene.material.constants[1] = scene.material.constants[2] = 0.0;
         scene.actuator.coverage = 0.05;
         respond(&scene, rows, 81);
         assert_relative(rows[80].frequency, 1e4, 0.0);

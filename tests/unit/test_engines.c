@@ -145,7 +145,7 @@ static void tell(const table_entry *entry, size_t point, const char *engine, con
         "%s, %s %s, axis %zu: pre-stretch %.17g B %.17g r_a %.17g r %.17g H %.17g U %.17g C %.17g %.17g %.17g eps %.17g %.17g "
         "Y %.17g share %.17g\n",
         engine, scene.models[0]->name, a->kind == DEA_DOT ? "dot" : "lens", point, a->prestretch, a->coverage, a->divide_radius,
-        a->frame_radius, a->film_thickness, scene.drive.voltage, m->yeoh[0], m->yeoh[1], m->yeoh[2], m->permittivity,
+        a->frame_radius, a->film_thickness, scene.drive.voltage, m->constants[0], m->constants[1], m->constants[2], m->permittivity,
         m->permittivity_per_stretch, m->modulus, dea_material_long_term_share(m));
     print_error("  strain %.17g (%s), wanted %.17g (%s), force %.17g, %.17g, field %.17g, %.17g\n", row->strain,
                 dea_state_name(row->state), wanted->strain, dea_state_name(wanted->state), row->force, wanted->force, row->field,

@@ -170,7 +170,7 @@ static double left_over(const dea_scene *at, double strain, double *passive)
     const double active = pre * (1.0 + strain);
     const double maxwell = 8.8541878128e-12 * at->material.permittivity * nominal * nominal * pow(active, 4.0);
     *passive = pre * (1.0 - b * (1.0 + strain)) / (1.0 - b);
-    return (stress(at->material.yeoh, active) - maxwell - stress(at->material.yeoh, *passive)) / maxwell;
+    return (stress(at->material.constants, active) - maxwell - stress(at->material.constants, *passive)) / maxwell;
 }
 
 /* Every row of model number @p model with numbers balances the stresses of Eq. 18; returns how many do. */
@@ -348,7 +348,7 @@ static void vhb_follows_the_closed_form_of_a_neo_hookean(void **state)
         assert_relative(row_at("lumped", voltage, pre)->strain, 0.75 * maxwell / modulus, 1e-12);
         assert_true(row_at("field", voltage, pre)->strain > row_at("coverage", voltage, pre)->strain);
     }
-    here.scene.material.yeoh[0] = c1; /* long-term */
+    here.scene.material.constants[0] = c1; /* long-term */
     assert_true(check_balance(1) > 0);
 }
 
@@ -372,7 +372,7 @@ static void sample_data_gives_back_the_constants_it_was_made_from(void **state)
         fail_msg("%s", error.message);
     }
     for (int i = 0; i < 3; i++) {
-        assert_relative(scene.material.yeoh[i], wanted[i], 2e-2);
+        assert_relative(scene.material.constants[i], wanted[i], 2e-2);
     }
     dea_scene_free(&scene);
     snprintf(path, sizeof path, "%s/film.yaml", folder);
@@ -449,6 +449,38 @@ static int leave(void **state)
     return rmdir(folder);
 }
 
+/* README's scenes as a reader types them in: every block of YAML that has an actuator. */
+static void scenes_of_the_readme_run_as_written(void **state)
+{
+    static char text[1 << 16];
+    size_t scenes = 0;
+    (void)state;
+    FILE *file = fopen("README.md", "r");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    assert_int_equal(fclose(file), 0);
+    for (char *block = strstr(text, "```yaml\n"); block; block = strstr(block, "```yaml\n")) {
+        block += strlen("```yaml\n");
+        char *end = strstr(block, "```");
+        assert_non_null(end);
+        *end = '\0';
+        if (strncmp(block, "actuator:", 9) == 0 || strstr(block, "\nactuator:")) {
+            char path[PATH_LENGTH], words[2 * PATH_LENGTH];
+            snprintf(path, sizeof path, "%s/readme.yaml", folder);
+            file = fopen(path, "w");
+            assert_non_null(file);
+            assert_true(fputs(block, file) >= 0);
+            assert_int_equal(fclose(file), 0);
+            snprintf(words, sizeof words, "run --no-files %s", path);
+            run_program(words);
+            assert_int_equal(unlink(path), 0);
+            scenes++;
+        }
+        block = end + 1;
+    }
+    assert_true(scenes > 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -463,6 +495,7 @@ int main(void)
         cmocka_unit_test(vhb_follows_the_closed_form_of_a_neo_hookean),
         cmocka_unit_test(sample_data_gives_back_the_constants_it_was_made_from),
         cmocka_unit_test(every_example_opens_with_a_command_that_works),
+        cmocka_unit_test(scenes_of_the_readme_run_as_written),
     };
     return cmocka_run_group_tests(tests, enter, leave);
 }

@@ -292,7 +292,7 @@ static void rows_before_a_pull_in_are_kept(void **state)
     (void)state;
     dea_scene scene = protocol("coverage");
     scene.actuator.coverage = 0.1;
-    scene.material.yeoh[1] = scene.material.yeoh[2] = 0.0; /* a neo-Hookean film folds */
+    scene.material.constants[1] = scene.material.constants[2] = 0.0; /* a neo-Hookean film folds */
     const double most = pull_in_voltage(&scene, "coverage");
     double times[] = {0.0, 1.0};
     double voltages[] = {0.0, 2.0 * most};
@@ -610,9 +610,9 @@ static void a_damped_film_snaps_through(void **state)
     scene.actuator = paper_scene(DEA_DOT, 1.411, 0.326, 0.0).actuator;
     scene.actuator.frame_radius = 0.0244;
     scene.actuator.film_thickness = 7.37e-5;
-    scene.material.yeoh[0] = 196043.5;
-    scene.material.yeoh[1] = -2530.5;
-    scene.material.yeoh[2] = 4548.2;
+    scene.material.constants[0] = 196043.5;
+    scene.material.constants[1] = -2530.5;
+    scene.material.constants[2] = 4548.2;
     scene.material.permittivity = 5.7475;
     scene.material.retardation = 2.2e-5;
     scene.material.prony_count = 0;
@@ -634,9 +634,9 @@ static void a_small_part_of_the_way_keeps_its_digits(void **state)
     scene.actuator = paper_scene(DEA_DOT, 1.2513399201379898, 0.94469603318627193, 0.0).actuator;
     scene.actuator.frame_radius = 0.0013429273601450787;
     scene.actuator.film_thickness = 6.7743024175892928e-05;
-    scene.material.yeoh[0] = 374791.09446750127;
-    scene.material.yeoh[1] = 0.0;
-    scene.material.yeoh[2] = 4121.045749163899;
+    scene.material.constants[0] = 374791.09446750127;
+    scene.material.constants[1] = 0.0;
+    scene.material.constants[2] = 4121.045749163899;
     scene.material.permittivity = 8.8080213009698287;
     scene.material.permittivity_per_stretch = -0.11287801925126462;
     scene.material.density = 924.82051720053721;

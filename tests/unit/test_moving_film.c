@@ -312,7 +312,7 @@ static void a_film_that_pulls_in_keeps_the_rows_before(void **state)
     (void)state;
     dea_scene scene = moving_scene("coverage", DEA_DOT, 1.0, 1.0);
     scene.actuator.coverage = 0.1;
-    scene.material.yeoh[1] = scene.material.yeoh[2] = 0.0;
+    scene.material.constants[1] = scene.material.constants[2] = 0.0;
     const double fold = pull_in_voltage(&scene, "coverage");
     scene.drive.waveform.step.voltage = 1.5 * fold;
     fly(&scene);
@@ -521,9 +521,9 @@ static void a_small_resistance_damps_a_ring(void **state)
                                     .electrode_mass = (double)NAN,
                                     .focal_length = (double)NAN,
                                     .refractive_index = (double)NAN};
-    scene.material.yeoh[0] = 52955.9;
-    scene.material.yeoh[1] = 3822.66;
-    scene.material.yeoh[2] = 0.0;
+    scene.material.constants[0] = 52955.9;
+    scene.material.constants[1] = 3822.66;
+    scene.material.constants[2] = 0.0;
     scene.material.permittivity = 3.3864;
     scene.material.density = 1130.0;
     scene.drive.series_resistance = 97e3;

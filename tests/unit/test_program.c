@@ -176,6 +176,135 @@ static void help_and_version_succeed(void **state)
     }
 }
 
+static void help_of_a_command_is_its_own_help(void **state)
+{
+    static char wanted[TEXT_LENGTH];
+    (void)state;
+    RUN("fit", "--help");
+    memcpy(wanted, last.out, sizeof wanted);
+    RUN("help", "fit");
+    assert_int_equal(last.status, 0);
+    assert_string_equal(last.out, wanted);
+    RUN("--help");
+    memcpy(wanted, last.out, sizeof wanted);
+    RUN("help");
+    assert_int_equal(last.status, 0);
+    assert_string_equal(last.out, wanted);
+    RUN("help", "fitt");
+    check_wrong("did you mean \"fit\"");
+}
+
+/* The options of every command as its completion knows them. */
+static void every_option_stands_in_its_help(void **state)
+{
+    static char script[TEXT_LENGTH];
+    size_t commands = 0;
+    (void)state;
+    RUN("completion", "bash");
+    assert_int_equal(last.status, 0);
+    memcpy(script, last.out, sizeof script);
+    for (char *at = script; (at = strstr(at, ") options='")); commands++) {
+        char *name = at;
+        while (name > script && name[-1] != ' ')
+            name--;
+        *at = '\0';
+        RUN(name, "--help");
+        assert_int_equal(last.status, 0);
+        char *end = strchr(at + strlen(" options='") + 1, '\'');
+        assert_non_null(end);
+        *end = '\0';
+        for (const char *option = strtok(at + strlen(") options='"), " "); option; option = strtok(NULL, " ")) {
+            if (!strstr(last.out, option))
+                fail_msg("the help of %s has no %s", name, option);
+        }
+        at = end + 1;
+    }
+    assert_int_equal(commands, 9);
+}
+
+static void bash_completes(void **state)
+{
+    static const struct {
+        const char *words, *offers;
+    } cases[] = {
+        {"''", "help run merge check bench export fit materials init completion"},
+        {"mat", "materials"},
+        {"help mat", "materials"},
+        {"run --eng", "--engine"},
+        {"run --engine n", "ngspice"},
+        {"run --engine = d", "direct"},
+        {"run --model fie", "field"},
+        {"run --format ''", "csv nc raw"},
+        {"run --set drive.vol", "drive.voltage="},
+        {"run --set coverage = ''", ""},
+        {"run --jobs ''", ""},
+        {"run only", "only.yaml"},
+        {"run -o only", "only.csv only.yaml"},
+        {"fit only", "only.csv"},
+        {"export --as kic", "kicad"},
+        {"export --dialect x", "xyce"},
+        {"init ''", "dot lens transient ac sweep"},
+        {"materials vhb", "vhb-4910"},
+        {"completion ''", "bash zsh fish"},
+        {"check --resu", ""},
+    };
+    (void)state;
+    write_file("only.yaml", "");
+    write_file("only.csv", "");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char script[8192 + 512];
+        snprintf(script, sizeof script,
+                 "source <('%s' completion bash)\nCOMP_WORDS=(deaspice %s)\nCOMP_CWORD=$((${#COMP_WORDS[@]}-1))\n_deaspice\n"
+                 "IFS=' '\nprintf '%%s' \"${COMPREPLY[*]}\"\n",
+                 program, cases[i].words);
+        write_file("complete.sh", script);
+        assert_int_equal(system("bash complete.sh >offers.txt"), 0);
+        read_file("offers.txt", last.out);
+        if (strcmp(last.out, cases[i].offers) != 0)
+            fail_msg("deaspice %s offers \"%s\", not \"%s\"", cases[i].words, last.out, cases[i].offers);
+    }
+    RUN("completion", "tcsh");
+    check_wrong("unknown shell \"tcsh\"");
+}
+
+static void every_scene_to_start_from_runs(void **state)
+{
+    static const char *const kinds[] = {"dot", "lens", "transient", "ac", "sweep"};
+    (void)state;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        static char straight[TEXT_LENGTH];
+        char name[32];
+        snprintf(name, sizeof name, "start-%s.yaml", kinds[i]);
+        RUN("init", kinds[i]);
+        assert_int_equal(last.status, 0);
+        memcpy(straight, last.out, sizeof straight);
+        RUN("init", kinds[i], "-o", name);
+        assert_int_equal(last.status, 0);
+        assert_non_null(strstr(last.err, name));
+        read_file(name, last.out);
+        assert_string_equal(last.out, straight);
+        RUN("run", name, "-o", "start.csv");
+        assert_int_equal(last.status, 0);
+        assert_non_null(strstr(last.err, "ok"));
+        assert_null(strstr(last.err, "warning"));
+        write_file(name, "mine\n");
+        RUN("init", kinds[i], "-o", name);
+        check_wrong("is there already; choose another name, or give --force");
+        read_file(name, last.out);
+        assert_string_equal(last.out, "mine\n");
+        RUN("init", kinds[i], "-o", name, "--force", "--quiet");
+        assert_int_equal(last.status, 0);
+        assert_string_equal(last.err, "");
+        read_file(name, last.out);
+        assert_string_equal(last.out, straight);
+    }
+    RUN("init");
+    assert_int_equal(last.status, 0);
+    assert_int_equal(lines_of(last.out), 5);
+    RUN("init", "lense");
+    check_wrong("did you mean \"lens\"");
+}
+
 static void wrong_usage_is_told_with_a_guess(void **state)
 {
     (void)state;
@@ -184,7 +313,7 @@ static void wrong_usage_is_told_with_a_guess(void **state)
     RUN("run", "dot.yaml", "--modle", "lumped");
     check_wrong("did you mean \"--model\"");
     RUN("run", "dot.yaml", "--engine", "ngspise");
-    check_wrong("did you mean \"ngspice\"");
+    check_wrong("did you mean ngspice?");
     RUN("run", "dot.yaml", "--terms", "3");
     check_wrong("--terms");
     RUN("run", "dot.yaml", "-o");
@@ -199,6 +328,16 @@ static void wrong_usage_is_told_with_a_guess(void **state)
     check_wrong("coverage");
     RUN("materials", "elastosil-2031");
     check_wrong("did you mean \"elastosil-2030\"");
+    RUN("materials", "elastosil-2030", "--to", "1");
+    check_wrong("--to 1: out of range; accepted: a stretch above 1");
+    RUN("fit", "--density", "1080", "kg/m^3");
+    check_wrong("--density 1080: needs a unit; accepted: a density above 0, for example \"1080 kg/m^3\"");
+    RUN("dot.yaml");
+    check_wrong("\"dot.yaml\" is a file; the command comes first, for example deaspice run dot.yaml");
+    RUN("--versoin");
+    check_wrong("did you mean \"--version\"");
+    RUN("run", "dot.yaml", "--plot", "x.jpg");
+    check_wrong("x.jpg: a picture ends in .svg or .png; write for example x.svg");
 }
 
 static void raw_file_and_standard_output_hold_the_same(void **state)
@@ -395,6 +534,27 @@ static void runs_are_drawn(void **state)
     }
 }
 
+static void pictures_take_sizes_and_logarithmic_axes(void **state)
+{
+    (void)state;
+    static const char *const wrong[][2] = {{"--size", "8.5x6"},   {"--size", "8.5cm"},      {"--size", "3x6cm"}, {"--size", "8.5x300cm"},
+                                           {"--size", "8x6furlong"}, {"--size", "nanxnancm"}, {"--size", "8x6cmm"}, {"--log", "z"},
+                                           {"--log", "yx"}};
+    static const char *const right[][2] = {{"--size", "8.5x6cm"}, {"--size", "85mm x 6cm"}, {"--size", "6x4in"}, {"--size", "300x200 pt"},
+                                           {"--log", "x"},        {"--log", "y"},           {"--log", "xy"}};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        RUN("run", "step.yaml", "--engine", "direct", "--plot", "sized.gp", wrong[i][0], wrong[i][1]);
+        assert_int_equal(last.status, 2);
+        assert_non_null(strstr(last.err, wrong[i][0]));
+        assert_false(exists("sized.gp"));
+    }
+    for (size_t i = 0; i < sizeof right / sizeof *right; i++) {
+        RUN("run", "step.yaml", "--engine", "direct", "--plot", "sized.svg", right[i][0], right[i][1]);
+        assert_int_equal(last.status, 0);
+        assert_int_equal(remove("sized.svg"), 0);
+    }
+}
+
 static void engines_agree_about_a_transient(void **state)
 {
     (void)state;
@@ -485,6 +645,62 @@ static void materials_are_listed_and_shown(void **state)
     read_file("curve.csv", last.out);
     assert_int_equal(lines_of(last.out), 102);
     assert_true(strncmp(last.out, "stretch,uniaxial_Pa,equibiaxial_Pa,modulus_Pa\n1,0,0,", 51) == 0);
+}
+
+static void material_file_is_shown_like_a_builtin_one(void **state)
+{
+    (void)state;
+    write_file("soft.yaml", "base: elastosil-2030\nsource: made up\ndensity: 1000 kg/m^3\nprony: [{g: 0.2, tau: 0.5 s}]\n");
+    RUN("materials", "soft.yaml", "--to", "3");
+    assert_int_equal(last.status, 0);
+    assert_non_null(strstr(last.out, "soft.yaml\n"));
+    assert_non_null(strstr(last.out, "made up\n"));
+    assert_non_null(strstr(last.out, "1000 kg/m^3\n"));
+    assert_non_null(strstr(last.out, "\n         3 "));
+    assert_null(strstr(last.out, "\n         4 "));
+    RUN("materials", "soft.yaml", "--to", "4", "-o", "-");
+    assert_int_equal(last.status, 0);
+    assert_int_equal(lines_of(last.out), 102);
+    assert_non_null(strstr(last.out, "\n4,"));
+    write_file("relaxes.yaml", "prony: [{g: 0.2, tau: 0.5 s}]\n");
+    RUN("materials", "relaxes.yaml");
+    assert_int_equal(last.status, 0);
+    assert_non_null(strstr(last.out, "C1                     not given, and a scene needs it\n"));
+    RUN("materials", "relaxes.yaml", "-o", "-");
+    check_wrong("relaxes.yaml gives no elastic constants");
+    RUN("materials", "soft.yaml", "-o", "./soft.yaml");
+    check_wrong("would overwrite soft.yaml");
+    write_file("bad.yaml", "yeoh:\n  C1: 180 kV\n");
+    RUN("materials", "bad.yaml");
+    check_wrong("bad.yaml:2:7: material.yeoh.C1: wrong dimension");
+    assert_non_null(strstr(last.err, "\n    2 |   C1: 180 kV\n      |       ^\n"));
+    write_file("bad.yaml", "yeoh: {C1: 180 kPa}\nprony: [{g: 0.7, tau: 1 s}, {g: 0.6, tau: 2 s}]\n");
+    RUN("materials", "bad.yaml");
+    check_wrong("the shares g sum to 1.3");
+    RUN("materials", "nowhere.yaml");
+    check_wrong("nowhere.yaml");
+}
+
+static void fit_writes_a_material_that_a_scene_names_as_it_is(void **state)
+{
+    static char changed[sizeof scene + 64];
+    (void)state;
+    write_file("pull.csv", "stretch,stress_kPa\n1.1,56.9\n1.2,108.2\n1.3,157\n1.5,255\n1.8,417\n2.0,553\n");
+    RUN("fit", "--uniaxial", "pull.csv", "-o", "film.yaml", "--permittivity", "2.8", "--density", "1080 kg/m^3", "--breakdown",
+        "80 V/um");
+    assert_int_equal(last.status, 0);
+    assert_null(strstr(last.err, "permittivity"));
+    read_file("film.yaml", last.out);
+    assert_non_null(strstr(last.out, "\npermittivity: 2.8\ndensity: 1080 kg/m^3\nbreakdown: 80000000 V/m\n"));
+    const char *name = strstr(scene, "elastosil-2030");
+    snprintf(changed, sizeof changed, "%.*sfilm.yaml%s", (int)(name - scene), scene, name + strlen("elastosil-2030"));
+    write_file("fitted.yaml", changed);
+    RUN("run", "fitted.yaml");
+    assert_int_equal(last.status, 0);
+    RUN("fit", "--uniaxial", "pull.csv", "-o", "film.yaml");
+    assert_non_null(strstr(last.err, "--permittivity 2.8 writes that of your film into film.yaml"));
+    RUN("run", "fitted.yaml");
+    check_wrong("film.yaml gives none; write one there (permittivity: 2.8)");
 }
 
 static void fit_recovers_the_material_of_a_curve(void **state)
@@ -668,6 +884,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(program_alone_shows_usage),
         cmocka_unit_test(help_and_version_succeed),
+        cmocka_unit_test(help_of_a_command_is_its_own_help),
+        cmocka_unit_test(every_option_stands_in_its_help),
+        cmocka_unit_test(bash_completes),
+        cmocka_unit_test(every_scene_to_start_from_runs),
         cmocka_unit_test(wrong_usage_is_told_with_a_guess),
         cmocka_unit_test(run_prints_csv),
         cmocka_unit_test(raw_file_and_standard_output_hold_the_same),
@@ -680,6 +900,7 @@ int main(void)
         cmocka_unit_test(pull_in_of_a_transient_is_physics_and_named),
         cmocka_unit_test(response_tells_resonance_and_bandwidth),
         cmocka_unit_test(runs_are_drawn),
+        cmocka_unit_test(pictures_take_sizes_and_logarithmic_axes),
         cmocka_unit_test(engines_agree_about_a_transient),
         cmocka_unit_test(jobs_do_not_change_the_result),
         cmocka_unit_test(unwritable_target_fails_before_the_run),
@@ -688,6 +909,8 @@ int main(void)
         cmocka_unit_test(engines_agree_in_a_check),
         cmocka_unit_test(disagreement_exits_with_three),
         cmocka_unit_test(materials_are_listed_and_shown),
+        cmocka_unit_test(material_file_is_shown_like_a_builtin_one),
+        cmocka_unit_test(fit_writes_a_material_that_a_scene_names_as_it_is),
         cmocka_unit_test(fit_recovers_the_material_of_a_curve),
         cmocka_unit_test(fit_without_a_result_leaves_no_file),
         cmocka_unit_test(stretch_beyond_the_data_is_told),

@@ -100,7 +100,7 @@ static void a_branch_without_fold_is_slack_and_not_pulled_in(void **state)
     scene.actuator.frame_radius = 0.024754959020879968;
     scene.actuator.film_thickness = 7.2125087429179705e-05;
     const double yeoh[DEA_YEOH_TERMS] = {274260.40509514743, -51349.261979301722, 12893.589445386473};
-    memcpy(scene.material.yeoh, yeoh, sizeof yeoh);
+    memcpy(scene.material.constants, yeoh, sizeof yeoh);
     scene.material.permittivity = 7.9816706174601144;
     scene.material.permittivity_per_stretch = -0.45465024897083184;
     scene.drive.series_resistance = 15179.256271806953;
@@ -116,10 +116,10 @@ static void a_branch_folds_at_its_critical_voltage(void **state)
 {
     (void)state;
     dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.1, 0.0);
-    scene.material.yeoh[1] = scene.material.yeoh[2] = 0.0;
+    scene.material.constants[1] = scene.material.constants[2] = 0.0;
     dea_scene loose = scene;
     loose.actuator.prestretch = 1.0;
-    const double pressure = 2.0 * loose.material.yeoh[0] * 0.75 * cbrt(0.25); /* M at the fold, U/H = 0.6874 sqrt(mu/eps) */
+    const double pressure = 2.0 * loose.material.constants[0] * 0.75 * cbrt(0.25); /* M at the fold, U/H = 0.6874 sqrt(mu/eps) */
     const struct {
         const dea_scene *scene;
         const char *model;

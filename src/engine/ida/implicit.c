@@ -153,7 +153,7 @@ typedef void visit(const dea_flight *flight, double time, double angle, const do
 static void audit_at(const dea_flight *flight, double time, double angle, const double *w, double weight, double *sum)
 {
     (void)sum;
-    double y[DEA_MOTION_MOST], z[DEA_PRONY_MAX];
+    double y[DEA_MOTION_MOST], z[DEA_RELAXED_MAX];
     const dea_turn turn = dea_ring_turn(flight->ring, time, angle);
     dea_ring_state(flight->ring, turn, w, y);
     dea_moment moment = dea_motion_moment(&flight->motion, time, y);

@@ -44,23 +44,15 @@ struct dea_shooting {
     double radial;       /* lambda_1 behind r_a [1] */
 };
 
-/* p1(l + d1, l + d2) - p1(l, l), factored in d1 and d2. */
+/* p1(l + d1, l + d2) - p1(l, l) with l = lambda_pre. */
 static double stress_change(const dea_film *film, double d1, double d2)
 {
-    const double l = film->prestretch;
-    const double l1 = l + d1;
-    const double l2 = l + d2;
-    const double y = l * l;
-    const double p1 = d1 * (l1 + l); /* l1^2 - l^2 */
-    const double p2 = d2 * (l2 + l);
-    const double fourth = 1.0 / (l1 * l1 * l2 * l2);
-    const double fifth = fourth / l1;
-    const double drop4 = (l1 * l1 * p2 + y * p1) * fourth * film->inverse_fourth; /* l^-4 - l1^-2 l2^-2 */
-    const double drop5 =
-        (l1 * l1 * l1 * p2 + y * d1 * (l1 * l1 + l1 * l + y)) * fifth * film->inverse_fourth / l; /* l^-5 - l1^-3 l2^-2 */
-    const double dj = p1 + p2 - drop4;
-    const double dw = dj * (2.0 * film->yeoh[1] + 3.0 * film->yeoh[2] * (2.0 * film->j + dj));
-    return 2.0 * (film->w + dw) * (d1 + drop5) + dw * 2.0 * film->g / l;
+    return film->law->rise(film->constants, film->prestretch, d1, d2);
+}
+
+static dea_stress stress_at(const dea_film *film, double l1, double l2)
+{
+    return film->law->stress(film->constants, l1, l2);
 }
 
 static int residual(sunrealtype x, N_Vector y, N_Vector yp, N_Vector r, void *user)
@@ -78,9 +70,7 @@ static int residual(sunrealtype x, N_Vector y, N_Vector yp, N_Vector r, void *us
     if (!(l1 > 0.0 && l2 > 0.0)) {
         return 1; /* a trial step too far: IDA takes a shorter one */
     }
-    const double t = 1.0 / (l1 * l2);
-    const double w = dea_yeoh_stress(film->yeoh, l1, l2).w;
-    const double difference = (d1 - d2) * (2.0 * w * (1.0 + t * t * t) + s->annulus_k * l1 * l2); /* s1 - s2 */
+    const double difference = (d1 - d2) * (stress_at(film, l1, l2).shear + s->annulus_k * l1 * l2); /* s1 - s2 */
     out[SIGMA] = slope[SIGMA] + difference / s->stress;
     out[HOOP] = slope[HOOP] - (v[RADIAL] - v[HOOP]);
     out[RADIAL] = (stress_change(film, d1, d2) - s->annulus_k * l1 * l2 * l2) / s->stress - v[SIGMA];
@@ -108,7 +98,7 @@ static void note(dea_shooting *s)
     const sunrealtype *v = NV_DATA_S(s->integrator.y);
     const double l1 = s->point->film.prestretch + s->strain * v[RADIAL];
     const double l2 = s->point->film.prestretch + s->strain * v[HOOP];
-    const dea_stress stress = dea_yeoh_stress(s->point->film.yeoh, l1, l2);
+    const dea_stress stress = stress_at(&s->point->film, l1, l2);
     s->least_stress =
         fmin(s->least_stress, fmin(stress.p1 - s->annulus_k * l1 * l2 * l2, stress.p2 - s->annulus_k * l2 * l1 * l1));
     if (s->annulus_k > 0.0) {
@@ -125,7 +115,7 @@ static double jump_guess(const dea_shooting *s, double l)
     const double at_edge = stress_change(film, edge, edge);
     double jump = 0.0;
     for (int i = 0; i < 12; i++) {
-        const double slope = dea_yeoh_stress(film->yeoh, l - jump, l).w11 - s->annulus_k * l * l;
+        const double slope = stress_at(film, l - jump, l).w11 - s->annulus_k * l * l;
         const double excess = stress_change(film, edge - jump, edge) - at_edge + load + s->annulus_k * jump * l * l;
         const double most = 0.25 * (l - jump); /* lambda_1 moves by a quarter at most: the first root is meant */
         jump += slope > 0.0 ? fmax(-most, fmin(most, excess / slope)) : copysign(most, excess);
@@ -153,7 +143,7 @@ static bool start(dea_shooting *s, double edge)
     }
     const double l1 = s->point->film.prestretch + s->strain * v[RADIAL];
     const bool lens = s->point->kind == DEA_LENS;
-    s->least_stress = dea_yeoh_stress(s->point->film.yeoh, l, l).p1 - s->disc_k * l * l * l;
+    s->least_stress = stress_at(&s->point->film, l, l).p1 - s->disc_k * l * l * l;
     s->largest_area = lens ? l1 * l : l * l;
     s->radial = l1;
     s->edge_force = lens ? l1 * l * l : l * l * l;
@@ -305,7 +295,7 @@ static double least_s11(const dea_shooting *s, place a, place b)
         const double l2 = s->point->film.prestretch + a.edge + weight * (b.edge - a.edge);
         const double l1 = a.radial + weight * (b.radial - a.radial);
         const double k = lens ? s->pressure * (a.share + weight * (b.share - a.share)) : 0.0;
-        least = fmin(least, dea_yeoh_stress(s->point->film.yeoh, l1, l2).w11 - k * l2 * l2);
+        least = fmin(least, stress_at(&s->point->film, l1, l2).w11 - k * l2 * l2);
     }
     return least;
 }

@@ -202,11 +202,11 @@ static void judge(const dea_route *route, levels *l)
     }
 }
 
-static dea_mobility_state better_state(const dea_mobility_state *coarse, const dea_mobility_state *fine, size_t branches)
+static dea_mobility_state better_state(const dea_mobility_state *coarse, const dea_mobility_state *fine, size_t relaxed)
 {
     dea_mobility_state state = {
         better(coarse->u, fine->u), better(coarse->v, fine->v), better(coarse->charge, fine->charge), {0}};
-    for (size_t i = 0; i < branches; i++) {
+    for (size_t i = 0; i < relaxed; i++) {
         state.z[i] = better(coarse->z[i], fine->z[i]);
     }
     return state;
@@ -226,7 +226,7 @@ static void fill_summary(const dea_route *route, const levels *l, dea_summary *s
     }
     const dea_audit audit = {better(coarse->work, fine->work), better(coarse->dissipated, fine->dissipated),
                              better(coarse->branch, fine->branch), fine->largest};
-    const dea_mobility_state stop = better_state(&l->coarse.stop, &l->fine.stop, d->branch_count);
+    const dea_mobility_state stop = better_state(&l->coarse.stop, &l->fine.stop, dea_dynamics_states(d));
     dea_moment last = l->fine.last;
     last.u = stop.u;
     last.v = stop.v;
@@ -533,7 +533,7 @@ static double scale_of(dea_dynamics *d, const dea_transient *transient, double v
 static bool is_weightless(dea_dynamics *d, double accuracy)
 {
     const dea_edge e = dea_dynamics_edge(d, 0.0);
-    const double resistance = e.area * d->retardation * e.stress_slope;
+    const double resistance = d->retardation * dea_edge_viscous(d, &e);
     return d->mass * dea_dynamics_stiffness(d, 0.0, 0.0, false) <= 1e-3 * accuracy * resistance * resistance;
 }
 

@@ -1,0 +1,356 @@
+#include "expression/expression.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+void dea_pool_free(dea_pool *pool)
+{
+    if (pool) {
+        free(pool->terms);
+        free(pool->slots);
+        *pool = (dea_pool){0};
+    }
+}
+
+static bool same_term(const dea_term *x, const dea_term *y)
+{
+    if (x->operation != y->operation) {
+        return false;
+    }
+    return x->operation == DEA_NUMBER ? memcmp(&x->number, &y->number, sizeof x->number) == 0 : x->a == y->a && x->b == y->b;
+}
+
+/* Where the term stands in the table, or would stand: the search goes on from its hash to the first empty place. */
+static int *slot_of(const dea_pool *pool, const dea_term *term)
+{
+    const uint64_t mix = 0x9e3779b97f4a7c15u;
+    uint64_t key = ((uint64_t)(uint32_t)term->a << 32) | (uint32_t)term->b;
+    if (term->operation == DEA_NUMBER) {
+        memcpy(&key, &term->number, sizeof key);
+    }
+    uint64_t hash = (key ^ ((uint64_t)term->operation << 56)) * mix;
+    const uint64_t mask = 2 * (uint64_t)pool->capacity - 1; /* the capacity is a power of 2 */
+    for (hash ^= hash >> 32;; hash++) {
+        int *slot = &pool->slots[hash & mask];
+        if (*slot == 0 || same_term(&pool->terms[*slot - 1], term)) {
+            return slot;
+        }
+    }
+}
+
+/* Twice the room, with the table made anew. */
+static bool grow(dea_pool *pool)
+{
+    const int capacity = pool->capacity ? 2 * pool->capacity : 256;
+    dea_term *terms = realloc(pool->terms, (size_t)capacity * sizeof *terms);
+    pool->terms = terms ? terms : pool->terms;
+    int *slots = calloc(2 * (size_t)capacity, sizeof *slots);
+    if (!terms || !slots) {
+        free(slots);
+        pool->exhausted = true;
+        return false;
+    }
+    free(pool->slots);
+    pool->slots = slots;
+    pool->capacity = capacity;
+    for (int i = 0; i < pool->count; i++) {
+        *slot_of(pool, &terms[i]) = i + 1;
+    }
+    return true;
+}
+
+static dea_expr intern(dea_pool *pool, dea_term term)
+{
+    if (pool->count == pool->capacity && !grow(pool)) {
+        return 0;
+    }
+    int *slot = slot_of(pool, &term);
+    if (*slot == 0) {
+        pool->terms[pool->count++] = term;
+        *slot = pool->count;
+    }
+    return *slot - 1;
+}
+
+dea_expr dea_expr_number(dea_pool *pool, double value)
+{
+    return intern(pool, (dea_term){.operation = DEA_NUMBER, .number = value});
+}
+
+dea_expr dea_expr_symbol(dea_pool *pool, int index)
+{
+    return intern(pool, (dea_term){.operation = DEA_SYMBOL, .a = index, .varies = true});
+}
+
+dea_expr dea_expr_node(dea_pool *pool, int index)
+{
+    return intern(pool, (dea_term){.operation = DEA_NODE, .a = index, .varies = true});
+}
+
+double dea_expr_constant(const dea_pool *pool, dea_expr ref)
+{
+    return pool->exhausted || pool->terms[ref].operation != DEA_NUMBER ? (double)NAN : pool->terms[ref].number;
+}
+
+static bool is_number(const dea_pool *pool, dea_expr ref, double value)
+{
+    return pool->terms[ref].operation == DEA_NUMBER && pool->terms[ref].number == value;
+}
+
+static double apply(dea_operation operation, double a, double b)
+{
+    return dea_operation_of(operation)->value(a, b);
+}
+
+/* Neutral elements and products with 0 vanish; -1 where nothing does. */
+static dea_expr simplify(const dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
+{
+    if ((operation == DEA_ADD || operation == DEA_SUB) && is_number(pool, b, 0.0)) {
+        return a;
+    }
+    if (operation == DEA_ADD && is_number(pool, a, 0.0)) {
+        return b;
+    }
+    if ((operation == DEA_MUL || operation == DEA_DIV) && is_number(pool, b, 1.0)) {
+        return a;
+    }
+    if (operation == DEA_MUL && (is_number(pool, a, 1.0) || is_number(pool, b, 0.0))) {
+        return b;
+    }
+    if ((operation == DEA_MUL || operation == DEA_DIV) && is_number(pool, a, 0.0)) {
+        return a;
+    }
+    return -1;
+}
+
+/* (x y)/y and (x/y) y are x; -1 where nothing cancels. A 0/0 at the start of an iteration is thus kept out of netlists. */
+static dea_expr cancel(const dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
+{
+    const dea_term *term = &pool->terms[a];
+    if (operation == DEA_DIV && term->operation == DEA_MUL) {
+        return term->b == b ? term->a : term->a == b ? term->b : -1;
+    }
+    if (operation == DEA_MUL && term->operation == DEA_DIV && term->b == b) {
+        return term->a;
+    }
+    const dea_term *other = &pool->terms[b];
+    if (operation == DEA_MUL && other->operation == DEA_DIV && other->b == a) {
+        return other->a;
+    }
+    return -1;
+}
+
+static dea_expr combine(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
+{
+    if (pool->exhausted) {
+        return 0;
+    }
+    if (pool->terms[a].operation == DEA_NUMBER && pool->terms[b].operation == DEA_NUMBER) {
+        return dea_expr_number(pool, apply(operation, pool->terms[a].number, pool->terms[b].number));
+    }
+    if (operation == DEA_DIV && a == b) {
+        return dea_expr_number(pool, 1.0);
+    }
+    const dea_expr cancelled = cancel(pool, operation, a, b);
+    const dea_expr simple = cancelled >= 0 ? cancelled : simplify(pool, operation, a, b);
+    return simple >= 0 ? simple : intern(pool, (dea_term){.operation = operation, .a = a, .b = b, .varies = true});
+}
+
+/* Splits a product into its numeric factor, which always stands first, and the rest; *rest is -1 where there is none. */
+static double split(const dea_pool *pool, dea_expr ref, dea_expr *rest)
+{
+    const dea_term *term = &pool->terms[ref];
+    if (term->operation == DEA_NUMBER) {
+        *rest = -1;
+        return term->number;
+    }
+    if (term->operation == DEA_MUL && pool->terms[term->a].operation == DEA_NUMBER) {
+        *rest = term->b;
+        return pool->terms[term->a].number;
+    }
+    *rest = ref;
+    return 1.0;
+}
+
+/* Products and quotients with their numeric factors drawn together in front. */
+static dea_expr multiply(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
+{
+    if (pool->exhausted) {
+        return 0;
+    }
+    dea_expr rest_a, rest_b;
+    const double number_a = split(pool, a, &rest_a);
+    const double number_b = split(pool, b, &rest_b);
+    const dea_expr number = dea_expr_number(pool, apply(operation, number_a, number_b));
+    if (rest_b < 0) {
+        return rest_a < 0 ? number : combine(pool, DEA_MUL, number, rest_a);
+    }
+    if (rest_a < 0) {
+        return combine(pool, operation, number, rest_b);
+    }
+    return combine(pool, DEA_MUL, number, combine(pool, operation, rest_a, rest_b));
+}
+
+static dea_expr sum(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b);
+
+/* f c + g c, c the factor that both share, as (f + g) c; -1 where they share none. */
+static dea_expr draw_out(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
+{
+    dea_expr rest_a, rest_b;
+    const double number_a = split(pool, a, &rest_a);
+    const double number_b = split(pool, b, &rest_b);
+    if (rest_a < 0 || rest_b < 0 || pool->terms[rest_a].operation != DEA_MUL || pool->terms[rest_b].operation != DEA_MUL) {
+        return -1;
+    }
+    const dea_expr of_a[] = {pool->terms[rest_a].a, pool->terms[rest_a].b};
+    const dea_expr of_b[] = {pool->terms[rest_b].a, pool->terms[rest_b].b};
+    for (int i = 0; i < 4; i++) {
+        const dea_expr shared = of_a[i / 2];
+        if (shared == of_b[i % 2]) {
+            const dea_expr f = dea_expr_scale(pool, number_a, of_a[1 - i / 2]);
+            const dea_expr g = dea_expr_scale(pool, number_b, of_b[1 - i % 2]);
+            return multiply(pool, DEA_MUL, shared, sum(pool, operation, f, g));
+        }
+    }
+    return -1;
+}
+
+/* Sums; a negative factor of the second term turns the sign instead. */
+static dea_expr sum(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
+{
+    dea_expr rest = -1;
+    const double factor = pool->exhausted ? 1.0 : split(pool, b, &rest);
+    if (rest >= 0 && factor < 0.0) {
+        return sum(pool, operation == DEA_ADD ? DEA_SUB : DEA_ADD, a,
+                   multiply(pool, DEA_MUL, dea_expr_number(pool, -factor), rest));
+    }
+    if (a == b) {
+        return dea_expr_scale(pool, operation == DEA_ADD ? 2.0 : 0.0, a);
+    }
+    const dea_expr drawn = pool->exhausted ? -1 : draw_out(pool, operation, a, b);
+    return drawn >= 0 ? drawn : combine(pool, operation, a, b);
+}
+
+dea_expr dea_expr_add(dea_pool *pool, dea_expr a, dea_expr b)
+{
+    return sum(pool, DEA_ADD, a, b);
+}
+
+dea_expr dea_expr_sub(dea_pool *pool, dea_expr a, dea_expr b)
+{
+    return sum(pool, DEA_SUB, a, b);
+}
+
+dea_expr dea_expr_mul(dea_pool *pool, dea_expr a, dea_expr b)
+{
+    return multiply(pool, DEA_MUL, a, b);
+}
+
+dea_expr dea_expr_div(dea_pool *pool, dea_expr a, dea_expr b)
+{
+    return multiply(pool, DEA_DIV, a, b);
+}
+
+/* Of a product, the product of its squares, so that those of numbers and parameters fold. */
+dea_expr dea_expr_square(dea_pool *pool, dea_expr a)
+{
+    const dea_term term = pool->exhausted ? (dea_term){0} : pool->terms[a]; /* a copy: the pool grows */
+    if (term.operation == DEA_MUL && term.a != term.b) {
+        return dea_expr_mul(pool, dea_expr_square(pool, term.a), dea_expr_square(pool, term.b));
+    }
+    return dea_expr_mul(pool, a, a);
+}
+
+dea_expr dea_expr_scale(dea_pool *pool, double factor, dea_expr a)
+{
+    return dea_expr_mul(pool, dea_expr_number(pool, factor), a);
+}
+
+dea_expr dea_expr_neg(dea_pool *pool, dea_expr a)
+{
+    return dea_expr_scale(pool, -1.0, a);
+}
+
+dea_expr dea_expr_ln(dea_pool *pool, dea_expr a)
+{
+    return combine(pool, DEA_LN, a, a);
+}
+
+dea_expr dea_expr_exp(dea_pool *pool, dea_expr a)
+{
+    return combine(pool, DEA_EXP, a, a);
+}
+
+dea_expr dea_expr_sqrt(dea_pool *pool, dea_expr a)
+{
+    return combine(pool, DEA_SQRT, a, a);
+}
+
+dea_expr dea_expr_log1p(dea_pool *pool, dea_expr a)
+{
+    return combine(pool, DEA_LOG1P, a, a);
+}
+
+dea_expr dea_expr_expm1(dea_pool *pool, dea_expr a)
+{
+    return combine(pool, DEA_EXPM1, a, a);
+}
+
+dea_expr dea_expr_pow(dea_pool *pool, dea_expr a, dea_expr b)
+{
+    if (!pool->exhausted && is_number(pool, b, 1.0)) {
+        return a;
+    }
+    return combine(pool, DEA_POW, a, b);
+}
+
+dea_expr dea_expr_positive(dea_pool *pool, dea_expr a)
+{
+    return combine(pool, DEA_POSITIVE, a, a);
+}
+
+dea_expr dea_expr_apply(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
+{
+    static dea_expr (*const sums[])(dea_pool *, dea_expr, dea_expr) = {[DEA_ADD] = dea_expr_add,
+                                                                       [DEA_SUB] = dea_expr_sub,
+                                                                       [DEA_MUL] = dea_expr_mul,
+                                                                       [DEA_DIV] = dea_expr_div,
+                                                                       [DEA_POW] = dea_expr_pow};
+    const size_t known = sizeof sums / sizeof *sums;
+    return (size_t)operation < known && sums[operation] ? sums[operation](pool, a, b) : combine(pool, operation, a, b);
+}
+
+/* What a leaf is worth: one of several values, NAN past the last; a stride of 0 gives the same to all. */
+static double pick(const double *values, int count, int stride, int index)
+{
+    return index >= 0 && index < count ? values[stride * index] : (double)NAN;
+}
+
+static void evaluate(const dea_pool *pool, const dea_point_values *at, int stride, double *values)
+{
+    for (int i = 0; i < pool->count; i++) {
+        const dea_term *term = &pool->terms[i];
+        values[i] = term->operation >= DEA_ADD      ? apply(term->operation, values[term->a], values[term->b])
+                    : term->operation == DEA_NUMBER ? term->number
+                    : term->operation == DEA_SYMBOL ? pick(at->symbols, at->symbol_count, stride, term->a)
+                                                    : pick(at->nodes, at->node_count, stride, term->a);
+    }
+}
+
+void dea_pool_values_at(const dea_pool *pool, const dea_point_values *at, double *values)
+{
+    evaluate(pool, at, 1, values);
+}
+
+void dea_pool_values(const dea_pool *pool, double symbol, double node, double *values)
+{
+    evaluate(pool, &(dea_point_values){&symbol, &node, 1, 1}, 1, values);
+}
+
+void dea_pool_values_uniform(const dea_pool *pool, double symbols, double nodes, double *values)
+{
+    evaluate(pool, &(dea_point_values){&symbols, &nodes, INT_MAX, INT_MAX}, 0, values);
+}

@@ -289,9 +289,9 @@ static void a_film_that_bounces_keeps_its_accuracy(void **state)
                                     .electrode_mass = (double)NAN,
                                     .focal_length = (double)NAN,
                                     .refractive_index = (double)NAN};
-    scene.material.yeoh[0] = 166711.18693636474;
-    scene.material.yeoh[1] = 8244.6926419412848;
-    scene.material.yeoh[2] = 0.0;
+    scene.material.constants[0] = 166711.18693636474;
+    scene.material.constants[1] = 8244.6926419412848;
+    scene.material.constants[2] = 0.0;
     scene.material.permittivity = 3.142503678239164;
     scene.material.density = 1156.4860494269196;
     scene.drive.waveform.step.on = 0.00049864304210081958;

@@ -68,7 +68,16 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
                       is_taut(annulus_rest, annulus1, annulus2, rim, 0.0);
     const double area = dot ? (1.0 + strain) * (1.0 + strain) : (1.0 - edge * edge) * inverse;
     const double force = 2.0 * DEA_PI * point->film_thickness * load * dea_point_divide(point);
-    dea_row_fill(row, point, strain, force, film->square * area, taut);
+    /* C_0 + C_1 u + C_2 u^2/2 with C_1 = 2 F_DEA/U^2, C_2 = -2/(n_el U^2) */
+    const double share = dot ? 3.0 : q - 2.0, rest = dot ? b2 : 1.0 - b2;
+    const double bend = 2.0 * b2 * strain * (2.0 * dea_point_sign(point) + share * strain);
+    const double capacitance = dea_point_full_capacitance(point) * (rest + bend);
+    dea_row_fill(row, point,
+                 (dea_found){.strain = strain,
+                             .force = force,
+                             .stretch = film->square * area,
+                             .capacitance = capacitance,
+                             .taut = taut});
 }
 
 /* Moduli of one region: W11, W12 and what the voltage takes off where it carries the electrode. */
@@ -103,20 +112,15 @@ static void build(const dea_symbols *symbols, dea_network *network)
     dea_pool *pool = symbols->pool;
     const bool dot = symbols->kind == DEA_DOT;
     const dea_expr one = NUM(1.0);
-    const dea_yeoh_terms t = dea_symbols_yeoh(symbols);
+    const dea_tangent tangent = dea_symbols_tangent(symbols);
+    const dea_expr w11 = tangent.w11, w12 = tangent.w12;
     const dea_expr l = symbols->prestretch;
-    const dea_expr y3 = MUL(SQUARE(t.square), t.square);
-    const dea_expr slope = ADD(SCALE(2.0, symbols->yeoh[1]), MUL(SCALE(6.0, symbols->yeoh[2]), t.j));
-    const dea_expr a1 = SCALE(2.0, DIV(t.g, l)); /* a1 = a2 = 2 g/lambda at equal stretches */
-    const dea_expr bend = MUL(slope, SQUARE(a1));
-    const dea_expr w11 = ADD(MUL(t.w, ADD(NUM(2.0), DIV(NUM(6.0), y3))), bend);
-    const dea_expr w12 = ADD(DIV(SCALE(4.0, t.w), y3), bend);
     const dea_expr thickness = SCALE(2.0 * DEA_PI, symbols->film_thickness);
     const dea_expr b2 = SQUARE(symbols->coverage);
     const dea_expr q = DIV(ADD(one, b2), SUB(one, b2));
-    const dea_expr soft = MUL(dea_symbols_pressure(symbols), t.square); /* M lambda_pre^2 */
+    const dea_expr soft = MUL(dea_symbols_pressure(symbols), SQUARE(l)); /* M lambda_pre^2 */
     const dea_expr maxwell = MUL(soft, l);
-    const dea_expr rest = MUL(t.w, a1);
+    const dea_expr rest = DIV(dea_symbols_rest_stress(symbols), l); /* nominal */
 
     dea_network_add(network, DEA_ROLE_SPRING, "n_disc", "compliance of the disc, 1/n = 2 pi H (W11 + W12) [m/N]",
                     MUL(thickness, ADD(w11, w12)));
@@ -130,7 +134,7 @@ static void build(const dea_symbols *symbols, dea_network *network)
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force 2 pi H M lambda_pre^3 R_a, Eq. 21 [N]",
                     SCALE(network->sign, MUL(thickness, MUL(maxwell, radius))));
     /* C = C_0 + C_1 u + C_2 u^2/2 with C_1 = 2 F_DEA/U^2 and C_2 = -2/(n_el U^2) */
-    const dea_expr unit = MUL(thickness, MUL(DIV(symbols->permittivity, SQUARE(symbols->film_thickness)), t.square));
+    const dea_expr unit = MUL(thickness, MUL(DIV(symbols->permittivity, SQUARE(symbols->film_thickness)), SQUARE(l)));
     const dea_expr first = SCALE(2.0 * network->sign, MUL(unit, MUL(l, radius)));
     const dea_expr second = SCALE(2.0, MUL(unit, share));
     network->capacitance =

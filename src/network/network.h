@@ -19,11 +19,14 @@ typedef struct dea_symbols {
     dea_expr coverage;             /* B [1] */
     dea_expr film_thickness;       /* H [m] */
     dea_expr prestretch;           /* lambda_pre [1] */
-    dea_expr yeoh[3];              /* long-term constants of a Yeoh film [Pa] */
+    const dea_law *law;                    /* of the film */
+    dea_expr constants[DEA_LAW_CONSTANTS]; /* of it, long-term; those out of use 0 */
     dea_expr modulus;              /* Y [Pa]: the scene's, or dsigma/dlambda at the pre-stretch */
     dea_expr permittivity;         /* absolute [F/m] */
     dea_expr breakdown;            /* breakdown strength [V/m], +inf: none */
     dea_expr voltage;              /* across the film [V] */
+    dea_expr focal_length;         /* of a lens at rest [m], NAN: no optics */
+    dea_expr refractive_index;     /* of its liquid [1] */
 } dea_symbols;
 
 typedef enum dea_role { DEA_ROLE_SPRING, DEA_ROLE_SOFTENING, DEA_ROLE_HYPERELASTIC, DEA_ROLE_TENSION, DEA_ROLE_SOURCE } dea_role;
@@ -48,7 +51,10 @@ typedef struct dea_network {
     dea_pool pool;
     dea_element *elements; /* owned */
     int element_count;
-    dea_expr capacitance; /* of the film [F], where the model is dynamic */
+    dea_expr capacitance; /* of the film [F] */
+    dea_expr voltage;     /* across it [V] */
+    dea_expr coverage, radius;               /* B [1], r_a [m] */
+    dea_expr focal_length, refractive_index; /* of a lens at rest [m], [1]; NAN: no optics */
     dea_expr edge;        /* u [m] */
     dea_expr strain;      /* s [1] */
     dea_expr field;       /* true field, signed as U [V/m] */
@@ -59,6 +65,7 @@ typedef struct dea_network {
     dea_expr breakdown; /* breakdown strength [V/m], > 0 */
     dea_expr *range;    /* owned; each must be > 0 for the point to make sense: B, 1 - B, permittivity, those of the law */
     int range_count;
+    dea_kind kind;
     double sign; /* of u: +1 dot, -1 lens */
 } dea_network;
 
@@ -93,10 +100,13 @@ dea_expr dea_network_elastic(dea_network *network);
 dea_expr dea_network_load(dea_network *network);
 
 /* Shared pieces of the models' networks. */
-typedef struct dea_yeoh_terms {
-    dea_expr square, g, j, w; /* y = lambda^2, y - y^-2, I - 3, dW/dI */
-} dea_yeoh_terms;
-dea_yeoh_terms dea_symbols_yeoh(const dea_symbols *symbols);
+/* Cauchy stress of the film at the pre-stretch, the same in all directions of its plane [Pa]. */
+dea_expr dea_symbols_rest_stress(const dea_symbols *symbols);
+/* Tangent moduli W11 and W12 at the pre-stretch [Pa]. */
+typedef struct dea_tangent {
+    dea_expr w11, w12;
+} dea_tangent;
+dea_tangent dea_symbols_tangent(const dea_symbols *symbols);
 /* Y = dsigma/dlambda at the pre-stretch [Pa]. */
 dea_expr dea_symbols_modulus(const dea_symbols *symbols);
 /* M = eps (U/H)^2 [Pa]. */

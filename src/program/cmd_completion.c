@@ -13,8 +13,9 @@ typedef struct shell {
 /* Words with blanks between, each with @p ending. */
 static void write_words(FILE *out, dea_word *words, const char *ending)
 {
-    for (size_t i = 0; words && words(i); i++) {
-        fprintf(out, "%s%s%s", i > 0 ? " " : "", words(i), ending);
+    char room[DEA_NAME_LENGTH];
+    for (size_t i = 0; words && words(i, room); i++) {
+        fprintf(out, "%s%s%s", i > 0 ? " " : "", words(i, room), ending);
     }
 }
 
@@ -266,8 +267,9 @@ static const shell shells[] = {{"bash", bash_write}, {"zsh", zsh_write}, {"fish"
 
 enum { SHELLS = sizeof shells / sizeof *shells };
 
-static const char *shell_word(size_t index)
+static const char *shell_word(size_t index, char room[DEA_NAME_LENGTH])
 {
+    (void)room;
     return index < SHELLS ? shells[index].name : NULL;
 }
 

@@ -73,8 +73,9 @@ static const kind kinds[] = {
 
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
-const char *dea_export_word(size_t index)
+const char *dea_export_word(size_t index, char room[DEA_NAME_LENGTH])
 {
+    (void)room;
     return index < KINDS ? kinds[index].name : NULL;
 }
 

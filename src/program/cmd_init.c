@@ -101,8 +101,9 @@ static const start starts[] = {
 
 enum { STARTS = sizeof starts / sizeof *starts };
 
-static const char *start_word(size_t index)
+static const char *start_word(size_t index, char room[DEA_NAME_LENGTH])
 {
+    (void)room;
     return index < STARTS ? starts[index].name : NULL;
 }
 

@@ -12,8 +12,9 @@ enum { CURVE_POINTS = 101, MOST_MATERIALS = 64, CURVE_COLUMNS = 4 };
 
 static const double usual_end = 2; /* stretch of curves and tables */
 
-static const char *material_word(size_t index)
+static const char *material_word(size_t index, char room[DEA_NAME_LENGTH])
 {
+    (void)room;
     const dea_material *material = dea_material_builtin(index);
     return material ? material->name : NULL;
 }
@@ -52,22 +53,16 @@ static void print_relaxation(const dea_material *material)
         printf("prony %zu                g = %.9g, tau = %.9g s\n", i + 1, material->prony[i].g, material->prony[i].tau);
 }
 
-/* Constants of the law; those of a list by their paths. */
+/* The law and its constants, those of a list entry after entry. */
 static void print_law(const dea_material *material)
 {
     const dea_law *law = material->law;
-    printf("%-22s %s, %s\n", "law", law->title, law->energy_text);
-    for (size_t i = 0; i < law->constant_count * law->entries; i++) {
+    printf("%-22s %s: %s\n", "law", law->name, law->energy_text);
+    for (size_t i = 0; i < material->entry_count * law->constant_count; i++) {
         const dea_constant *constant = &law->constants[i % law->constant_count];
-        const size_t entry = i / law->constant_count;
-        char label[DEA_NAME_LENGTH];
-        if (entry > 0 && fabs(material->constants[entry * law->constant_count]) <= 0)
-            break; /* of the entries in use */
-        if (law->entries > 1)
-            snprintf(label, sizeof label, "%s.%zu.%s", law->name, entry, constant->name);
-        else
-            snprintf(label, sizeof label, "%s", constant->name);
-        print_number(label, material->constants[i], strcmp(constant->unit, "1") == 0 ? "" : " Pa");
+        char name[DEA_NAME_LENGTH];
+        snprintf(name, sizeof name, law->entries > 1 ? "%s %zu" : "%s", constant->name, i / law->constant_count + 1);
+        printf("%-22s %.9g%s%s\n", name, material->constants[i], constant->modulus ? " " : "", constant->modulus ? constant->unit : "");
     }
 }
 
@@ -163,7 +158,7 @@ static bool material_choose(const char *name, dea_material *material, dea_exit *
 
 static dea_status show(const dea_material *material, const dea_arguments *arguments, double to, dea_error *error)
 {
-    const bool elastic = !isnan(material->constants[0]);
+    const bool elastic = dea_law_valid(material->law, material->constants);
     dea_status status = DEA_OK;
     if (!arguments->output && !arguments->plot) {
         print_constants(material);

@@ -185,44 +185,56 @@ static bool take_equibiaxial(const dea_option *entry, const char *value, dea_arg
     return add_operand(arguments, value, DEA_GIVEN_EQUIBIAXIAL);
 }
 
-static const char *engine_word(size_t index)
+static const char *engine_word(size_t index, char room[DEA_NAME_LENGTH])
 {
+    (void)room;
     const dea_engine *engine = dea_engine_at(index);
     return engine ? engine->name : index == dea_engine_count() ? "auto" : NULL;
 }
 
-static const char *model_word(size_t index)
+static const char *model_word(size_t index, char room[DEA_NAME_LENGTH])
 {
+    (void)room;
     const dea_model *model = dea_model_at(index);
     return model ? model->name : index == dea_model_count() ? "auto" : NULL;
 }
 
 /* Scalars of a scene by their paths. */
-static const char *key_word(size_t index)
+static const char *key_word(size_t index, char room[DEA_NAME_LENGTH])
 {
-    for (size_t i = 0; dea_key_at(i); i++) {
-        const dea_key *key = dea_key_at(i);
-        if (key->offset != DEA_KEY_NOWHERE && !strchr(key->path, '#') && index-- == 0) {
-            return key->path;
+    dea_key key;
+    for (size_t i = 0; dea_key_at(i, &key); i++) {
+        if (key.offset != DEA_KEY_NOWHERE && !strchr(key.path, '#') && index-- == 0) {
+            return memcpy(room, key.path, DEA_NAME_LENGTH);
         }
     }
     return NULL;
 }
 
-static const char *format_word(size_t index)
+static const char *format_word(size_t index, char room[DEA_NAME_LENGTH])
 {
+    (void)room;
     static const char *const words[] = {"csv", "nc", "raw"};
     return index < sizeof words / sizeof *words ? words[index] : NULL;
 }
 
-static const char *dialect_word(size_t index)
+static const char *axes_word(size_t index, char room[DEA_NAME_LENGTH])
 {
+    (void)room;
+    static const char *const words[] = {"x", "y", "xy"};
+    return index < sizeof words / sizeof *words ? words[index] : NULL;
+}
+
+static const char *dialect_word(size_t index, char room[DEA_NAME_LENGTH])
+{
+    (void)room;
     const dea_dialect *dialect = dea_dialect_at(index);
     return dialect ? dialect->name : NULL;
 }
 
-static const char *analogy_word(size_t index)
+static const char *analogy_word(size_t index, char room[DEA_NAME_LENGTH])
 {
+    (void)room;
     const dea_analogy *analogy = dea_analogy_at(index);
     return analogy ? analogy->name : NULL;
 }
@@ -258,7 +270,14 @@ static const dea_option entries[] = {
     TEXT("plot", 0, "FILE", NULL, DEA_TAKES_PLOT, take_text, plot, "draw the result"),
     COUNT("size", 0, "WxH", DEA_TAKES_PLOT, take_size, picture, 0,
           "width x height in mm, cm, in or pt, each from 4 cm to 2 m, for example 8.5x6cm", "size of the picture"),
-    COUNT("log", 0, "AXES", DEA_TAKES_LOG, take_log, picture, 0, "x, y or xy", "axes drawn logarithmic"),
+    {.name = "log",
+     .value = "AXES",
+     .words = axes_word,
+     .group = DEA_TAKES_LOG,
+     .take = take_log,
+     .offset = offsetof(dea_arguments, picture),
+     .needs = "x, y or xy",
+     .about = "logarithmic axes"},
     FLAG("force", 0, DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_PLOT, force, "overwrite also what is kept otherwise"),
     COUNT("jobs", 'j', "N", DEA_TAKES_JOBS, take_jobs, jobs, 1024, "a whole number up to 1024, or auto", "worker processes"),
     FLAG("quiet", 'q', DEA_TAKES_QUIET, quiet, "no summary and no progress"),

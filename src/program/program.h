@@ -85,7 +85,7 @@ typedef struct dea_arguments {
 } dea_arguments;
 
 /** Word number @p index of a list, NULL past its end. */
-typedef const char *dea_word(size_t index);
+typedef const char *dea_word(size_t index, char room[DEA_NAME_LENGTH]);
 
 /** A command. */
 typedef struct dea_command {

@@ -72,6 +72,7 @@ dea_status dea_read_model(dea_reader *reader, const dea_ref *ref, const dea_node
 dea_status dea_read_engine(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_later(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_material(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_law(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_source(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_stretches(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_permittivity(dea_reader *reader, const dea_ref *ref, const dea_node *node);

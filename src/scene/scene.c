@@ -66,7 +66,7 @@ static dea_status list_override(dea_reader *reader, const char *path, const char
         list.last = node;
         list.count++;
     }
-    return ref.key->read(reader, &ref, &list);
+    return ref.key.read(reader, &ref, &list);
 }
 
 static dea_status reader_run(dea_reader *reader, const char *text, size_t length, const dea_origin *origin,

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "scene/reader.h"
+#include "support/number.h"
 
 /* Most points of one axis, values of all axes together, and points of a study. */
 #ifndef DEA_AXIS_VALUES_MAX
@@ -64,13 +65,32 @@ static dea_status list_read(const axis_reader *self)
     return status;
 }
 
-/* values[i] = from + (to - from) i/(count - 1), or from (to/from)^(i/(count - 1)); the ends are exact. */
+/* Both ends as whole numbers over one power of ten; false where that is not to be had, or the values between them would not be
+ * exact before their one division: (from (n - i) + to i)/(n power), all below 2^53. */
+static bool ends_decimal(double steps, double *from, double *to, double *power)
+{
+    double first, last;
+    *power = fmax(dea_number_power(*from, &first), dea_number_power(*to, &last));
+    if (!(*power > 0.0 && dea_number_over(*from, *power, &first) && dea_number_over(*to, *power, &last))) {
+        return false;
+    }
+    *from = first;
+    *to = last;
+    return fmax(fabs(first), fabs(last)) * steps <= 0x1p53 && *power * steps <= 0x1p53;
+}
+
+/* values[i] = from + (to - from) i/(count - 1), the double nearest to it where the ends are decimals of some length, or
+ * from (to/from)^(i/(count - 1)); the ends are exact. */
 static void values_space(dea_axis *axis, double from, double to, bool logarithmic)
 {
     const double steps = axis->count > 1 ? (double)(axis->count - 1) : 1.0;
+    double first = from, last = to, power;
+    const bool decimal = ends_decimal(steps, &first, &last, &power);
     for (size_t i = 0; i < axis->count; i++) {
-        const double part = (double)i / steps;
-        axis->values[i] = logarithmic ? from * pow(to / from, part) : from + (to - from) * (double)i / steps;
+        const double at = (double)i;
+        axis->values[i] = logarithmic ? from * pow(to / from, at / steps)
+                          : decimal   ? (first * (steps - at) + last * at) / (steps * power)
+                                      : from + (to - from) * at / steps;
     }
     axis->values[axis->count - 1] = axis->count > 1 ? to : from;
     axis->uniform = !logarithmic && axis->count > 1;
@@ -183,13 +203,13 @@ static dea_status axis_claim(const axis_reader *self)
 /* A key is swept where the scene has a place for it. */
 static dea_status place_check(const axis_reader *self)
 {
-    const dea_key *key = self->ref.key;
+    const dea_key *key = &self->ref.key;
     dea_reader *reader = self->reader;
     if (reader->scene->study == DEA_STUDY_AC && dea_ref_offset(&self->ref) == offsetof(dea_scene, drive.voltage)) {
         return dea_place_fail(&self->node->key_at, reader->error, self->ref.path,
                               "is not what an AC study varies; accepted: study.ac.bias, by its short name bias");
     }
-    if (dea_key_has_place(key, reader->root)) {
+    if (key->law || dea_key_has_place(key, reader->root)) {
         return DEA_OK;
     }
     if (key->within && !dea_tree_find(reader->root, key->within)) {
@@ -205,7 +225,7 @@ static dea_status place_check(const axis_reader *self)
 static dea_status key_check(const axis_reader *self)
 {
     const dea_material *material = &self->reader->scene->material;
-    if (self->ref.key->words == 0) {
+    if (self->ref.key.words == 0) {
         return dea_place_fail(&self->node->key_at, self->reader->error, self->ref.path,
                               "cannot be swept; accepted: any scalar, e.g. voltage");
     }
@@ -225,8 +245,8 @@ static void axis_describe(const axis_reader *self)
 {
     dea_axis *axis = self->axis;
     snprintf(axis->key, sizeof axis->key, "%s", self->ref.path);
-    snprintf(axis->unit, sizeof axis->unit, "%s", self->ref.key->unit);
-    dea_ref_column(&self->ref, self->ref.key->words, axis->column);
+    snprintf(axis->unit, sizeof axis->unit, "%s", self->ref.key.unit);
+    dea_ref_column(&self->ref, self->ref.key.words, axis->column);
     axis->offset = dea_ref_offset(&self->ref);
     axis->changes_film = strncmp(axis->key, "material.", 9) == 0 || axis->offset == offsetof(dea_scene, actuator.prestretch);
 }
@@ -287,10 +307,10 @@ static dea_status axes_read(dea_reader *reader, const dea_node *axes)
     return DEA_OK;
 }
 
-/* The focal length is a column of its own in a transient: an axis of it takes more of its path too. */
+/* The focal length is a column of its own: an axis of it takes more of its path too. */
 static bool column_taken(const dea_scene *scene, size_t index)
 {
-    if (scene->study == DEA_STUDY_TRANSIENT && strcmp(scene->axes[index].column, "focal_length_m") == 0) {
+    if (scene->study != DEA_STUDY_AC && strcmp(scene->axes[index].column, "focal_length_m") == 0) {
         return true;
     }
     for (size_t i = 0; i < scene->axis_count; i++) {
@@ -307,7 +327,7 @@ static void columns_part(dea_scene *scene)
     for (size_t i = 0; i < scene->axis_count; i++) {
         dea_ref ref;
         for (size_t words = 1; words < 6 && column_taken(scene, i) && dea_key_find(scene->axes[i].key, &ref); words++) {
-            dea_ref_column(&ref, ref.key->words + words, scene->axes[i].column);
+            dea_ref_column(&ref, ref.key.words + words, scene->axes[i].column);
         }
     }
 }

@@ -82,7 +82,7 @@ static dea_status times_read(dea_reader *reader, const dea_node *node)
                                  .high = INFINITY,
                                  .kinds = DEA_KEY_BOTH,
                                  .accepted = "times >= 0 that do not decrease, two of one time for a jump, e.g. [[0 s, 0 V], [5 s, 4500 V]]"};
-    const dea_ref ref = {.key = &time, .path = "drive.waveform.points"};
+    const dea_ref ref = {.key = time, .path = "drive.waveform.points"};
     const dea_waveform *waveform = &reader->scene->drive.waveform;
     size_t i = 0;
     for (const dea_node *pair = node->first; pair; pair = pair->next, i++) {
@@ -103,7 +103,7 @@ static dea_status voltages_read(dea_reader *reader, const dea_node *node)
                                     .high = INFINITY,
                                     .kinds = DEA_KEY_BOTH,
                                     .accepted = "a voltage, e.g. [[0 s, 0 V], [5 s, 4500 V]]"};
-    const dea_ref ref = {.key = &voltage, .path = "drive.waveform.points"};
+    const dea_ref ref = {.key = voltage, .path = "drive.waveform.points"};
     double *next = reader->scene->drive.waveform.voltages;
     dea_status status = DEA_OK;
     for (const dea_node *pair = node->first; pair && !status; pair = pair->next) {

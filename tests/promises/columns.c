@@ -11,9 +11,9 @@ static const struct {
     size_t offset;
     const char *name;
 } columns[] = {
-    {offsetof(dea_sample, velocity), "velocity"},         {offsetof(dea_sample, force), "force"},
-    {offsetof(dea_sample, current), "current"},           {offsetof(dea_sample, charge), "charge"},
-    {offsetof(dea_sample, focal_length), "focal_length"},
+    {offsetof(dea_sample, velocity), "velocity"}, {offsetof(dea_sample, force), "force"},
+    {offsetof(dea_sample, current), "current"},   {offsetof(dea_sample, charge), "charge"},
+    {offsetof(dea_sample, focal_length), "focal_length"}, {offsetof(dea_sample, film_voltage), "film_voltage"},
 };
 
 /* How far off the truth of a column may be [its unit]; the others follow from displacement and voltage. */

@@ -9,7 +9,7 @@
 #include "engine/line.h"
 #include "promises.h"
 
-enum { COLUMNS = 5 };
+enum { COLUMNS = 8 };
 
 static const double negligible = 1e-9;  /* share of a column's largest value below which numbers count as that */
 static const double least_swing = 0.01; /* share of what the largest voltage does at rest that a peak counts as */
@@ -28,6 +28,10 @@ static const column columns[] = {
     {DEA_STUDY_SWEEP, offsetof(dea_row, displacement), OVER_ITSELF, "displacement"},
     {DEA_STUDY_SWEEP, offsetof(dea_row, force), OVER_ITSELF, "force"},
     {DEA_STUDY_SWEEP, offsetof(dea_row, field), OVER_ITSELF, "field"},
+    {DEA_STUDY_SWEEP, offsetof(dea_row, capacitance), OVER_ITSELF, "capacitance"},
+    {DEA_STUDY_SWEEP, offsetof(dea_row, charge), OVER_ITSELF, "charge"},
+    {DEA_STUDY_SWEEP, offsetof(dea_row, area_strain), OVER_ITSELF, "area_strain"},
+    {DEA_STUDY_SWEEP, offsetof(dea_row, focal_length), OVER_ITSELF, "focal_length"},
     {DEA_STUDY_TRANSIENT, offsetof(dea_sample, displacement), OVER_PEAK, "displacement"},
     {DEA_STUDY_TRANSIENT, offsetof(dea_sample, strain), OVER_PEAK, "strain"},
     {DEA_STUDY_AC, offsetof(dea_response, displacement), OVER_ITSELF, "displacement"},

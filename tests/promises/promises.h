@@ -43,6 +43,12 @@ jet film_cauchy(const true_film *film, long double stretch);
 long double film_cauchy_change(const true_film *film, long double strain);
 true_film film_of(const dea_scene *scene, const dea_model *model);
 true_edge film_edge(const true_film *film, long double u);
+/* A row of the film: strain, F_DEA [N], largest true field [V/m], capacitance [F] and film voltage [V], and what follows from them. */
+typedef struct true_numbers {
+    long double strain, force, field, capacitance, voltage;
+    bool taut;
+} true_numbers;
+dea_row film_state(const true_film *film, true_numbers numbers);
 /* F_DEA as rows have it, and what else a row holds, under the film voltage. */
 dea_row film_row(const true_film *film, long double u, long double voltage);
 long double film_focal_length(const true_film *film, long double strain);

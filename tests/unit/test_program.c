@@ -17,6 +17,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <math.h>
+
 enum { MOST_WORDS = 24, TEXT_LENGTH = 1 << 16 };
 
 typedef struct result {
@@ -337,7 +339,7 @@ static void wrong_usage_is_told_with_a_guess(void **state)
     RUN("--versoin");
     check_wrong("did you mean \"--version\"");
     RUN("run", "dot.yaml", "--plot", "x.jpg");
-    check_wrong("x.jpg: a picture ends in .svg or .png; write for example x.svg");
+    check_wrong("x.jpg: a picture ends in .svg, .png, .pdf, .eps or .gp; write for example x.svg");
 }
 
 static void raw_file_and_standard_output_hold_the_same(void **state)
@@ -363,7 +365,8 @@ static void run_prints_csv(void **state)
     RUN("run", "dot.yaml", "--engine", "direct");
     assert_int_equal(last.status, 0);
     assert_int_equal(lines_of(last.out), 10);
-    assert_true(strncmp(last.out, "coverage,strain,displacement_m,force_N,field_V_per_m,state\n", 59) == 0);
+    assert_true(strncmp(last.out, "coverage,strain,displacement_m,force_N,field_V_per_m,capacitance_F,charge_C,area_strain,state\n",
+                        94) == 0);
     assert_non_null(strstr(last.out, ",ok\n"));
     assert_string_equal(last.err, "");
 }
@@ -380,6 +383,32 @@ static void run_writes_a_file_and_sums_up(void **state)
     assert_int_equal(lines_of(last.out), 19);
     RUN("run", "dot.yaml", "--engine", "direct", "-q", "-o", "dot.csv");
     assert_string_equal(last.err, "");
+}
+
+/* Against numbers that the summary does not come from: eps eps0 lambda^4 A/H of the film, Eq. 22 for its strain. */
+static void summary_speaks_of_the_actuator_first(void **state)
+{
+    double strain, micrometres, picofarads, microseconds;
+    (void)state;
+    RUN("run", "dot.yaml", "-o", "dot.csv", "--set", "study.sweep={}", "--set", "coverage=0.5", "--set", "prestretch=1.2", "--set",
+        "series_resistance=1 MOhm");
+    assert_int_equal(last.status, 0);
+    assert_int_equal(sscanf(last.err, "largest strain %lf %% and displacement %lf", &strain, &micrometres), 2);
+    assert_true(fabs(strain / 100.0 * 15e3 - micrometres) < 1e-3 * micrometres);
+    const char *rest = strstr(last.err, "at rest and 0 V: capacitance ");
+    assert_non_null(rest);
+    assert_int_equal(sscanf(rest, "at rest and 0 V: capacitance %lf pF, R_s C %lf", &picofarads, &microseconds), 2);
+    const double area = 3.14159265358979 * 15e-3 * 15e-3, expected = 2.8 * 8.8541878128e-12 * 1.44 * area / 100e-6;
+    assert_true(fabs(picofarads * 1e-12 - expected) < 1e-3 * expected);
+    assert_true(fabs(microseconds - picofarads) < 1e-3 * picofarads); /* 1 MOhm times 1 pF is 1 us */
+    assert_non_null(strstr(last.err, "; strength unknown\n"));
+    assert_non_null(strstr(last.err, "1 point in "));
+    assert_non_null(strstr(last.err, " (direct): 1 ok\n"));
+    RUN("run", "dot.yaml", "-o", "dot.csv", "--set", "breakdown=60 V/um", "--set", "study.sweep={voltage: [1 kV, 3 kV, 6 kV]}", "--set",
+        "coverage=0.5");
+    assert_non_null(strstr(last.err, " % of the strength 60 MV/m\n"));
+    assert_non_null(strstr(last.err, "  breakdown in 1 row, first at voltage = 6 kV\n"));
+    assert_non_null(strstr(last.err, " at voltage = 3 kV\n")); /* a film that broke down moves no more */
 }
 
 static void transient_writes_its_samples_and_prints_its_averages(void **state)
@@ -892,6 +921,7 @@ int main(void)
         cmocka_unit_test(run_prints_csv),
         cmocka_unit_test(raw_file_and_standard_output_hold_the_same),
         cmocka_unit_test(run_writes_a_file_and_sums_up),
+        cmocka_unit_test(summary_speaks_of_the_actuator_first),
         cmocka_unit_test(transient_writes_its_samples_and_prints_its_averages),
         cmocka_unit_test(averages_stand_beside_a_result_on_standard_output),
         cmocka_unit_test(runs_over_an_axis_carry_it_in_front),

@@ -215,7 +215,7 @@ static void prepare_part(void)
         dea_row rows[1024];
         for (size_t k = 0; k < range.count; k++) {
             const double number = (double)(range.first + k);
-            rows[k] = (dea_row){number, -number, 2.0 * number, 0.5 * number, (dea_state)(k % DEA_STATE_COUNT)};
+            rows[k] = (dea_row){number, -number, 2.0 * number, 0.5 * number, 3.0 * number, 4.0 * number, 5.0 * number, (double)NAN, (dea_state)(k % DEA_STATE_COUNT)};
         }
         assert_int_equal(dea_journal_append(journal, range.place, rows, range.count, false, &error), DEA_OK);
         assert_int_equal(dea_journal_append(journal, range.place, rows, range.count, false, &error), DEA_ERROR_USAGE);
@@ -382,9 +382,11 @@ static void every_scalar_of_a_scene_counts(void **state)
     scene = paper_scene(DEA_LENS, 1.2, 0.5, 3000.0);
     scene.models[0] = dea_model_find("lumped");
     assert_int_equal(dea_identity_write(&scene, engine, &before, NULL), DEA_OK);
-    for (size_t i = 0; dea_key_at(i); i++) {
-        const dea_key *key = dea_key_at(i);
-        if (key->offset == DEA_KEY_NOWHERE || key->stride > 0 || (key->kinds & DEA_KEY_LENS) == 0) {
+    dea_key at;
+    for (size_t i = 0; dea_key_at(i, &at); i++) {
+        const dea_key *key = &at;
+        const bool foreign = key->law && key->law != scene.material.law;
+        if (key->offset == DEA_KEY_NOWHERE || key->stride > 0 || foreign || (key->kinds & DEA_KEY_LENS) == 0) {
             continue;
         }
         double *place = (double *)(void *)((char *)&scene + key->offset), value = *place;

@@ -21,6 +21,8 @@ extern "C" {
 enum { DEA_LAW_CONSTANTS = 8, DEA_PRONY_MAX = 64, DEA_NAME_LENGTH = 64, DEA_SOURCE_LENGTH = 256 };
 
 struct dea_film;
+struct dea_form;
+struct dea_pool;
 
 /** Principal in-plane nominal stresses and tangent moduli of the passive film at stretches l1, l2 [Pa]. */
 typedef struct dea_stress {
@@ -77,12 +79,12 @@ typedef struct dea_law {
     double (*rise)(const double *constants, double l, double d1, double d2);
     /** Notes in film->rest what change() wants to know of the film's pre-stretch. */
     void (*prepare)(struct dea_film *film);
-    /** Change of the equi-biaxial Cauchy stress at the strain @p e; keeps its digits however small e is. */
-    dea_change (*change)(const struct dea_film *film, double e);
+    /** Changes of the equi-biaxial Cauchy stress at @p count strains; keep their digits however small the strains are. */
+    void (*change)(const struct dea_film *film, size_t count, const double *strains, dea_change *changes);
     /** Both nominal stresses and the moduli at once, as exact as rise(). NULL: they are made of rise() and stress(). */
     dea_biaxial (*biaxial)(const struct dea_film *film, double e1, double e2);
-    /** Whether the law stands in networks (true), or only in the engines' own equations. */
-    bool networked;
+    /** The same law as expressions, for networks: constants and stretches l1, l2 are terms of a pool (src/material/form.h). */
+    void (*form)(struct dea_pool *pool, const int *constants, int l1, int l2, struct dea_form *form);
 } dea_law;
 
 /** One branch of a Prony series. */
@@ -127,7 +129,7 @@ typedef struct dea_film {
     double square;                       /**< lambda_pre^2 [1] */
     double inverse_fourth;               /**< lambda_pre^-4 [1] */
     double j, g;                         /**< J, g at the pre-stretch [1] */
-    double least, most;                  /**< equi-biaxial stretches at which the energy ends [1], 0 and +inf: it does not */
+    double shrinks, grows;               /**< strains from the pre-stretch at which the film or its energy ends, both > 0 [1] */
     double rest[DEA_LAW_CONSTANTS];      /**< what the law noted by prepare() */
 } dea_film;
 

@@ -95,6 +95,12 @@ double dea_expr_constant(const dea_pool *pool, dea_expr ref)
     return pool->exhausted || pool->terms[ref].operation != DEA_NUMBER ? (double)NAN : pool->terms[ref].number;
 }
 
+bool dea_expr_is_scaled(const dea_pool *pool, dea_expr ref)
+{
+    const dea_term *term = &pool->terms[ref];
+    return term->operation == DEA_MUL && pool->terms[term->a].operation == DEA_NUMBER;
+}
+
 static bool is_number(const dea_pool *pool, dea_expr ref, double value)
 {
     return pool->terms[ref].operation == DEA_NUMBER && pool->terms[ref].number == value;
@@ -218,6 +224,59 @@ static dea_expr draw_out(dea_pool *pool, dea_operation operation, dea_expr a, de
     return -1;
 }
 
+static bool is_sum(const dea_term *term)
+{
+    return term->operation == DEA_ADD || term->operation == DEA_SUB;
+}
+
+/* m + (n + x), m - (n + x), m + (n - x), m - (n - x) with numbers m, n, as one number and x; -1 where nothing is to be gathered.
+ */
+static dea_expr gather(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
+{
+    const dea_term inner = pool->terms[b]; /* a copy: the pool grows */
+    if (!is_sum(&inner) || pool->terms[a].operation != DEA_NUMBER || pool->terms[inner.a].operation != DEA_NUMBER) {
+        return -1;
+    }
+    const dea_expr number = dea_expr_number(pool, apply(operation, pool->terms[a].number, pool->terms[inner.a].number));
+    return sum(pool, operation == inner.operation ? DEA_ADD : DEA_SUB, number, inner.b);
+}
+
+/* factor shared + sign other, factor -2, 0 or 2. */
+static dea_expr weighted(dea_pool *pool, int factor, dea_expr shared, int sign, dea_expr other)
+{
+    if (factor == 0) {
+        return sign > 0 ? other : dea_expr_neg(pool, other);
+    }
+    const dea_expr twice = dea_expr_scale(pool, 2.0, shared);
+    return factor < 0 ? sum(pool, DEA_SUB, other, twice) : sum(pool, sign > 0 ? DEA_ADD : DEA_SUB, twice, other);
+}
+
+/* A sum of one term and a sum that holds it: a + (a + x) = 2 a + x, (a - x) + x = a; -1 where it does not. */
+static dea_expr repeated(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
+{
+    const int sign = operation == DEA_ADD ? 1 : -1;
+    const dea_term left = pool->terms[a], right = pool->terms[b]; /* copies: the pool grows */
+    if (is_sum(&right)) {
+        const int inner = right.operation == DEA_ADD ? sign : -sign;
+        if (right.a == a) {
+            return weighted(pool, 1 + sign, a, inner, right.b);
+        }
+        if (right.b == a) {
+            return weighted(pool, 1 + inner, a, sign, right.a);
+        }
+    }
+    if (is_sum(&left)) {
+        const int inner = left.operation == DEA_ADD ? 1 : -1;
+        if (left.a == b) {
+            return weighted(pool, 1 + sign, b, inner, left.b);
+        }
+        if (left.b == b) {
+            return weighted(pool, inner + sign, b, 1, left.a);
+        }
+    }
+    return -1;
+}
+
 /* Sums; a negative factor of the second term turns the sign instead. */
 static dea_expr sum(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
 {
@@ -229,6 +288,14 @@ static dea_expr sum(dea_pool *pool, dea_operation operation, dea_expr a, dea_exp
     }
     if (a == b) {
         return dea_expr_scale(pool, operation == DEA_ADD ? 2.0 : 0.0, a);
+    }
+    if (!pool->exhausted && operation == DEA_SUB && is_number(pool, a, 0.0)) {
+        return dea_expr_neg(pool, b);
+    }
+    const dea_expr gathered = pool->exhausted ? -1 : gather(pool, operation, a, b);
+    const dea_expr twice = pool->exhausted || gathered >= 0 ? gathered : repeated(pool, operation, a, b);
+    if (twice >= 0) {
+        return twice;
     }
     const dea_expr drawn = pool->exhausted ? -1 : draw_out(pool, operation, a, b);
     return drawn >= 0 ? drawn : combine(pool, operation, a, b);

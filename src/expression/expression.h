@@ -56,6 +56,9 @@ dea_expr dea_expr_apply(dea_pool *pool, dea_operation operation, dea_expr a, dea
 /* A number, or NAN where the expression varies. */
 double dea_expr_constant(const dea_pool *pool, dea_expr ref);
 
+/* A number times another term. */
+bool dea_expr_is_scaled(const dea_pool *pool, dea_expr ref);
+
 /* Values of symbols and nodes, 0 the first of each. */
 typedef struct dea_point_values {
     const double *symbols, *nodes;

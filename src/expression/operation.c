@@ -42,7 +42,7 @@ static const dea_operation_row rows[DEA_OPERATIONS] = {
     [DEA_LOG1P] = {"log1p", 1, 3, false, "(2*atanh((@)/(2+(@))))", "max(@,-0.999999)", FUNCTIONS(LOG1P)},
     [DEA_EXPM1] = {"expm1", 1, 3, false, "(2*sinh(0.5*(@))*exp(0.5*(@)))", "min(@,80)", FUNCTIONS(EXPM1)},
     [DEA_POW] = {"pow", 2, 3, false, "pow(@,#)", "max(@,1e-6)", FUNCTIONS(POW)},
-    [DEA_POSITIVE] = {"positive", 1, 3, false, "(@)", "max(@,1e-6)", true, FUNCTIONS(POSITIVE)},
+    [DEA_POSITIVE] = {"positive", 1, 3, false, "max(@,1e-6)", NULL, true, FUNCTIONS(POSITIVE)},
 };
 
 const dea_operation_row *dea_operation_of(dea_operation operation)

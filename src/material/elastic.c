@@ -24,9 +24,11 @@ double dea_law_energy(const dea_law *law, const double constants[DEA_LAW_CONSTAN
     return law->energy(constants, l1, l2);
 }
 
-/* The equi-biaxial stretches beyond which I1 - 3 = 2 y + y^-2 - 3 is more than @p most, by bisection in y = lambda^2 on either
- * side of 1. */
-static void ends_find(double most, double *least, double *largest)
+/* A strain that no film reaches. */
+static const double far = 1e4;
+
+/* Strains at which I1 - 3 = 2 y + y^-2 - 3 reaches @p most, by bisection in y = lambda^2 on either side of 1. */
+static void ends_find(dea_film *film, double most)
 {
     double inner[2] = {1.0, 1.0};
     double outer[2] = {0.0, 0.5 * (most + 3.0)};
@@ -36,15 +38,15 @@ static void ends_find(double most, double *least, double *largest)
             *(2.0 * y + 1.0 / (y * y) - 3.0 < most ? &inner[side] : &outer[side]) = y;
         }
     }
-    *least = sqrt(inner[0]);
-    *largest = sqrt(inner[1]);
+    film->shrinks = 1.0 - sqrt(inner[0]) / film->prestretch;
+    film->grows = sqrt(inner[1]) / film->prestretch - 1.0;
 }
 
 dea_film dea_law_film(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double prestretch)
 {
     const double y = prestretch * prestretch;
     const double p = (prestretch - 1.0) * (prestretch + 1.0);
-    dea_film film = {.law = law, .prestretch = prestretch, .breakdown = INFINITY, .square = y, .most = INFINITY};
+    dea_film film = {.law = law, .prestretch = prestretch, .breakdown = INFINITY, .square = y, .shrinks = 1.0, .grows = far};
     for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
         film.constants[i] = constants[i];
     }
@@ -54,10 +56,12 @@ dea_film dea_law_film(const dea_law *law, const double constants[DEA_LAW_CONSTAN
     const double locking = law->locking ? law->locking(constants) : INFINITY;
     film.valid = dea_law_valid(law, constants) && film.j < locking;
     if (law->ends && film.valid) {
-        ends_find(locking, &film.least, &film.most);
+        ends_find(&film, locking);
     }
     law->prepare(&film);
-    const dea_change rest = law->change(&film, 0.0); /* dsigma/de = lambda dsigma/dlambda */
+    const double unstrained = 0.0;
+    dea_change rest;
+    law->change(&film, 1, &unstrained, &rest); /* dsigma/de = lambda dsigma/dlambda */
     const dea_stress stress = law->stress(constants, prestretch, prestretch);
     film.slope = film.modulus = rest.slope / prestretch;
     film.curvature = rest.curve / y;
@@ -86,7 +90,10 @@ dea_biaxial dea_film_biaxial(const dea_film *film, double e1, double e2)
 double dea_law_equibiaxial(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double stretch)
 {
     const dea_film film = dea_law_film(law, constants, 1.0);
-    return law->change(&film, stretch - 1.0).value;
+    const double strain = stretch - 1.0;
+    dea_change change;
+    law->change(&film, 1, &strain, &change);
+    return change.value;
 }
 
 double dea_law_modulus(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double stretch)

@@ -40,12 +40,13 @@ DEA_INLINE dea_stress dea_invariant_stress(dea_slopes_at *slopes, const double *
     const dea_slopes at = slopes(constants, j);
     const double a1 = 2.0 * (l1 - t3s * over1);
     const double a2 = 2.0 * (l2 - t3s * over2);
+    const double cube = at.w * t3s * t3;
     return (dea_stress){
-        .shear = 2.0 * at.w * (1.0 + t3s * t3),
+        .shear = 2.0 * (at.w + cube),
         .p1 = at.w * a1,
         .p2 = at.w * a2,
         .w11 = at.w * (2.0 + 6.0 * t3s * over1 * over1) + at.w1 * a1 * a1,
-        .w12 = 4.0 * at.w * t3s * t3 + at.w1 * a1 * a2,
+        .w12 = 4.0 * cube + at.w1 * a1 * a2,
         .w22 = at.w * (2.0 + 6.0 * t3s * over2 * over2) + at.w1 * a2 * a2,
     };
 }

@@ -6,5 +6,9 @@
 
 extern const dea_law dea_law_yeoh;
 extern const dea_law dea_law_neo_hookean;
+extern const dea_law dea_law_mooney_rivlin;
+extern const dea_law dea_law_gent;
+extern const dea_law dea_law_ogden;
+extern const dea_law dea_law_arruda_boyce;
 
 #endif

@@ -3,7 +3,8 @@
 
 #include "material/law.h"
 
-static const dea_law *const laws[] = {&dea_law_yeoh, &dea_law_neo_hookean};
+static const dea_law *const laws[] = {&dea_law_yeoh, &dea_law_neo_hookean, &dea_law_mooney_rivlin,
+                                     &dea_law_gent, &dea_law_ogden,       &dea_law_arruda_boyce};
 
 enum { LAW_COUNT = sizeof laws / sizeof *laws };
 

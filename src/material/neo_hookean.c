@@ -1,6 +1,7 @@
 /* Neo-Hookean: W = mu/2 (I1 - 3), of chains without end. */
 #include <math.h>
 
+#include "material/form.h"
 #include "material/invariant.h"
 
 enum { MU };
@@ -45,9 +46,17 @@ static void prepare(dea_film *film)
     film->rest[0] = 0.5 * film->constants[MU];
 }
 
-static dea_change change(const dea_film *film, double e)
+static void change(const dea_film *film, size_t count, const double *strains, dea_change *changes)
 {
-    return dea_invariant_change(slopes, gain, film, e);
+    for (size_t i = 0; i < count; i++) {
+        changes[i] = dea_invariant_change(slopes, gain, film, strains[i]);
+    }
+}
+
+static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_form *form)
+{
+    const dea_form_invariants at = dea_form_invariants_of(pool, l1, l2);
+    dea_form_stresses(pool, &at, SCALE(0.5, c[MU]), NUM(0.0), form);
 }
 
 static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
@@ -71,4 +80,5 @@ const dea_law dea_law_neo_hookean = {
     .prepare = prepare,
     .change = change,
     .biaxial = biaxial,
+    .form = form,
 };

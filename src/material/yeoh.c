@@ -1,6 +1,7 @@
 /* Yeoh: W = C1 J + C2 J^2 + C3 J^3, J = I1 - 3 (Eq. 11). */
 #include <math.h>
 
+#include "material/form.h"
 #include "material/invariant.h"
 
 enum { C1, C2, C3 };
@@ -46,9 +47,18 @@ static void prepare(dea_film *film)
     film->rest[0] = slopes(film->constants, film->j).w;
 }
 
-static dea_change change(const dea_film *film, double e)
+static void change(const dea_film *film, size_t count, const double *strains, dea_change *changes)
 {
-    return dea_invariant_change(slopes, gain, film, e);
+    for (size_t i = 0; i < count; i++) {
+        changes[i] = dea_invariant_change(slopes, gain, film, strains[i]);
+    }
+}
+
+static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_form *form)
+{
+    const dea_form_invariants at = dea_form_invariants_of(pool, l1, l2);
+    const dea_expr w = ADD(c[C1], MUL(at.j, ADD(SCALE(2.0, c[C2]), MUL(SCALE(3.0, c[C3]), at.j))));
+    dea_form_stresses(pool, &at, w, NUM(0.0), form);
 }
 
 static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
@@ -76,5 +86,5 @@ const dea_law dea_law_yeoh = {
     .prepare = prepare,
     .change = change,
     .biaxial = biaxial,
-    .networked = true,
+    .form = form,
 };

@@ -18,10 +18,13 @@ typedef struct film_pair {
 
 static inline balance balance_at(const dea_film *film, double ratio, double e)
 {
-    const dea_change active = film->law->change(film, e);
+    const double strains[] = {e, -ratio * e};
+    dea_change changes[2];
+    film->law->change(film, ratio > 0.0 ? 2 : 1, strains, changes);
+    const dea_change active = changes[0];
     balance b = {active.value, active.slope, active.curve, 0.0};
     if (ratio > 0.0) {
-        const dea_change passive = film->law->change(film, -ratio * e);
+        const dea_change passive = changes[1];
         b.load -= passive.value;
         b.slope += ratio * passive.slope;
         b.curve -= ratio * ratio * passive.curve;
@@ -41,8 +44,8 @@ static dea_path_place place_at(const void *user, double e)
 /* Strain of the active film at which a region vanishes, or the energy of the material ends. */
 static double end_of(const dea_film *film, double ratio)
 {
-    const double active = fmin(1e4, film->most / film->prestretch - 1.0);
-    return ratio > 0.0 ? fmin(active, (1.0 - film->least / film->prestretch) / ratio) : active;
+    const double passive = ratio > 0.0 ? film->shrinks / ratio : film->grows;
+    return passive < film->grows ? passive : film->grows;
 }
 
 /* Halley's iteration from the second-order answer; false where it does not settle. Convergence is cubic, so the step after the
@@ -83,8 +86,11 @@ static bool cannot_fold(const dea_film *film, double ratio, double stiffness, do
 {
     const double slope_at_rest = film->square * film->curvature * (1.0 - ratio * ratio) - 3.0 * stiffness;
     const double slope_at_end = (1.0 + e) * at->curve - 3.0 * at->slope;
-    const double tangents = fmin(stiffness + slope_at_rest * e, at->fold - slope_at_end * e);
-    return e <= 0.15 / (1.0 + ratio) && fmin(tangents, fmin(stiffness, at->fold)) > 0.5 * fmax(stiffness, at->fold);
+    const double tangent_at_rest = stiffness + slope_at_rest * e;
+    const double tangent_at_end = at->fold - slope_at_end * e;
+    const double half = 0.5 * (stiffness > at->fold ? stiffness : at->fold);
+    return e <= 0.15 / (1.0 + ratio) && tangent_at_rest > half && tangent_at_end > half && stiffness > half &&
+           at->fold > half;
 }
 
 bool dea_film_balance(const dea_film *film, double ratio, double m, double *strain)

@@ -103,20 +103,15 @@ static void build(const dea_symbols *symbols, dea_network *network)
     dea_pool *pool = symbols->pool;
     const bool dot = symbols->kind == DEA_DOT;
     const dea_expr one = NUM(1.0);
-    const dea_yeoh_terms t = dea_symbols_yeoh(symbols);
+    const dea_tangent tangent = dea_symbols_tangent(symbols);
+    const dea_expr w11 = tangent.w11, w12 = tangent.w12;
     const dea_expr l = symbols->prestretch;
-    const dea_expr y3 = MUL(SQUARE(t.square), t.square);
-    const dea_expr slope = ADD(SCALE(2.0, symbols->yeoh[1]), MUL(SCALE(6.0, symbols->yeoh[2]), t.j));
-    const dea_expr a1 = SCALE(2.0, DIV(t.g, l)); /* a1 = a2 = 2 g/lambda at equal stretches */
-    const dea_expr bend = MUL(slope, SQUARE(a1));
-    const dea_expr w11 = ADD(MUL(t.w, ADD(NUM(2.0), DIV(NUM(6.0), y3))), bend);
-    const dea_expr w12 = ADD(DIV(SCALE(4.0, t.w), y3), bend);
     const dea_expr thickness = SCALE(2.0 * DEA_PI, symbols->film_thickness);
     const dea_expr b2 = SQUARE(symbols->coverage);
     const dea_expr q = DIV(ADD(one, b2), SUB(one, b2));
-    const dea_expr soft = MUL(dea_symbols_pressure(symbols), t.square); /* M lambda_pre^2 */
+    const dea_expr soft = MUL(dea_symbols_pressure(symbols), SQUARE(l)); /* M lambda_pre^2 */
     const dea_expr maxwell = MUL(soft, l);
-    const dea_expr rest = MUL(t.w, a1);
+    const dea_expr rest = DIV(dea_symbols_rest_stress(symbols), l); /* nominal */
 
     dea_network_add(network, DEA_ROLE_SPRING, "n_disc", "compliance of the disc, 1/n = 2 pi H (W11 + W12) [m/N]",
                     MUL(thickness, ADD(w11, w12)));
@@ -130,7 +125,7 @@ static void build(const dea_symbols *symbols, dea_network *network)
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force 2 pi H M lambda_pre^3 R_a, Eq. 21 [N]",
                     SCALE(network->sign, MUL(thickness, MUL(maxwell, radius))));
     /* C = C_0 + C_1 u + C_2 u^2/2 with C_1 = 2 F_DEA/U^2 and C_2 = -2/(n_el U^2) */
-    const dea_expr unit = MUL(thickness, MUL(DIV(symbols->permittivity, SQUARE(symbols->film_thickness)), t.square));
+    const dea_expr unit = MUL(thickness, MUL(DIV(symbols->permittivity, SQUARE(symbols->film_thickness)), SQUARE(l)));
     const dea_expr first = SCALE(2.0 * network->sign, MUL(unit, MUL(l, radius)));
     const dea_expr second = SCALE(2.0, MUL(unit, share));
     network->capacitance =

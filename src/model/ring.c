@@ -182,10 +182,10 @@ static ring_strains strains_of(const dea_symbols *symbols, dea_expr disc)
 static dea_expr tension_of(const dea_symbols *symbols, const ring_strains *e)
 {
     dea_pool *pool = symbols->pool;
-    const dea_yeoh_terms t = dea_symbols_yeoh(symbols);
     const dea_expr one = NUM(1.0);
     const dea_expr c = DIV(ADD(one, symbols->coverage), SUB(one, symbols->coverage));
-    const dea_expr front = SCALE(2.0 * DEA_PI, MUL(symbols->film_thickness, DIV(MUL(t.g, t.w), t.square)));
+    const dea_expr rest = DIV(dea_symbols_rest_stress(symbols), SQUARE(symbols->prestretch)); /* sigma_pre/lambda_pre^2 */
+    const dea_expr front = SCALE(DEA_PI, MUL(symbols->film_thickness, rest));
     const dea_expr sum =
         ADD(DIV(NUM(2.0), ADD(one, e->disc)), ADD(DIV(c, ADD(one, e->radial)), DIV(one, MUL(c, ADD(one, e->hoop)))));
     return NEG(MUL(MUL(front, sum), dea_expr_node(pool, 0)));
@@ -194,9 +194,8 @@ static dea_expr tension_of(const dea_symbols *symbols, const ring_strains *e)
 static void limit_tension(const dea_symbols *symbols, dea_network *network, const ring_strains *e)
 {
     dea_pool *pool = symbols->pool;
-    const dea_yeoh_terms t = dea_symbols_yeoh(symbols);
-    const dea_expr rest = SCALE(2.0, MUL(t.g, t.w)); /* sigma_pre */
-    const dea_expr pull = MUL(dea_symbols_pressure(symbols), SQUARE(MUL(t.square, e->area)));
+    const dea_expr rest = dea_symbols_rest_stress(symbols);
+    const dea_expr pull = MUL(dea_symbols_pressure(symbols), SQUARE(MUL(SQUARE(symbols->prestretch), e->area)));
     const bool dot = symbols->kind == DEA_DOT;
     const dea_expr disc = ADD(rest, dea_hyperelastic_change(symbols, e->disc));
     const dea_expr radial = ADD(rest, dea_hyperelastic_principal(symbols, e->radial, e->hoop));

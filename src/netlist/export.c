@@ -30,8 +30,7 @@ void dea_export_share(dea_part_text *text)
 {
     for (int i = 0; i < text->pool->count; i++) {
         const dea_term *term = &text->pool->terms[i];
-        const bool scaled = term->operation == DEA_MUL && text->pool->terms[term->a].operation == DEA_NUMBER;
-        text->nodal[i] = text->moves[i] && term->operation >= DEA_ADD && !scaled;
+        text->nodal[i] = text->moves[i] && term->operation >= DEA_ADD && !dea_expr_is_scaled(text->pool, i);
     }
 }
 

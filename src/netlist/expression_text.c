@@ -103,7 +103,8 @@ void dea_expression_text_factor(const dea_expression_text *text, dea_expr ref)
 void dea_expression_text_use(dea_expression_text *text, dea_expr ref)
 {
     const dea_term *term = &text->pool->terms[ref];
-    if (text->uses[ref]++ == 0 && term->operation >= DEA_ADD) {
+    const bool again = text->uses[ref]++ > 0 && !dea_expr_is_scaled(text->pool, ref); /* that is written out each time */
+    if (!again && term->operation >= DEA_ADD) {
         dea_expression_text_use(text, term->a);
         if (dea_operation_of(term->operation)->operands == 2) {
             dea_expression_text_use(text, term->b);
@@ -116,10 +117,8 @@ void dea_expression_text_use(dea_expression_text *text, dea_expr ref)
 void dea_expression_text_share(dea_expression_text *text)
 {
     for (int i = 0; i < text->pool->count; i++) {
-        const dea_term *term = &text->pool->terms[i];
-        if (term->operation >= DEA_ADD) {
-            const bool scaled = term->operation == DEA_MUL && text->pool->terms[term->a].operation == DEA_NUMBER;
-            text->named[i] = text->uses[i] > 1 && !scaled;
+        if (text->pool->terms[i].operation >= DEA_ADD) {
+            text->named[i] = text->uses[i] > 1 && !dea_expr_is_scaled(text->pool, i);
         }
     }
 }

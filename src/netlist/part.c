@@ -1,5 +1,6 @@
 #include "netlist/part.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -17,25 +18,28 @@ enum {
     COVER,
     THICK,
     STRETCH,
-    YEOH1,
-    YEOH2,
-    YEOH3,
     EPS_R,
     Y_GIVEN,
     Y_FREE,
     RHO,
     AREAL,
-    VOLTAGE, /* always replaced by a number */
-    SYMBOLS
+    VOLTAGE,  /* always replaced by a number */
+    CONSTANT, /* the first of those of the law */
+    SYMBOLS = CONSTANT + DEA_LAW_CONSTANTS
 };
 
-static const char *const symbol_names[SYMBOLS] = {"radius", "cover",   "thick",  "stretch", "yeoh1", "yeoh2", "yeoh3",
-                                                  "eps_r",  "y_given", "y_free", "rho",     "areal", ""};
+static const char *const symbol_names[SYMBOLS] = {"radius",  "cover",  "thick", "stretch", "eps_r",
+                                                  "y_given", "y_free", "rho",   "areal",   "",
+                                                  "film1",   "film2",  "film3", "film4",   "film5",
+                                                  "film6",   "film7",  "film8"};
+_Static_assert(DEA_LAW_CONSTANTS == 8, "one name a constant");
 
 typedef struct part {
     const dea_dialect *dialect;
     FILE *out;
     dea_kind kind;
+    const dea_law *law;
+    size_t constants; /* of the law, in use */
     bool linear;
     size_t branches;
     dea_network network; /* owned */
@@ -92,22 +96,25 @@ static dea_expr at_volts(dea_pool *pool, dea_expr ref, double volts)
     return dea_expr_put(pool, ref, DEA_SYMBOL, VOLTAGE, NUM(volts));
 }
 
-static dea_symbols symbols_of(dea_pool *pool, dea_kind kind)
+static dea_symbols symbols_of(dea_pool *pool, const part *p)
 {
     dea_expr s[SYMBOLS];
     for (int i = 0; i < SYMBOLS; i++) {
         s[i] = dea_expr_symbol(pool, i);
     }
     dea_symbols symbols = {.pool = pool,
-                           .kind = kind,
+                           .kind = p->kind,
+                           .law = p->law,
                            .frame_radius = s[RADIUS],
                            .coverage = s[COVER],
                            .film_thickness = s[THICK],
                            .prestretch = s[STRETCH],
-                           .yeoh = {s[YEOH1], s[YEOH2], s[YEOH3]},
                            .permittivity = SCALE(DEA_EPSILON_0, s[EPS_R]),
                            .breakdown = NUM(INFINITY),
                            .voltage = s[VOLTAGE]};
+    for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
+        symbols.constants[i] = i < p->constants ? s[(size_t)CONSTANT + i] : NUM(0.0);
+    }
     symbols.modulus = ADD(s[Y_GIVEN], MUL(s[Y_FREE], dea_symbols_modulus(&symbols)));
     return symbols;
 }
@@ -138,7 +145,7 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
     if (pool->exhausted) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is made");
     }
-    const dea_symbols symbols = symbols_of(pool, p->kind);
+    const dea_symbols symbols = symbols_of(pool, p);
     const dea_status status = dea_network_build_symbols(&symbols, model, network, error);
     if (status != DEA_OK) {
         return status;
@@ -256,15 +263,65 @@ static void check_optics(const part *p, int *count)
     line(p, ".param flat={height*height/(a_lens*a_lens)}");
 }
 
-/* Every number that the network uses is in its range; ok tells whether all were. */
-static void write_checks(const part *p, const form *of)
+/* Name of a constant as a parameter: in lower case, of a list with the number of its entry. */
+static void constant_name(const dea_law *law, size_t i, char name[DEA_PART_NAME])
+{
+    char number[24] = "";
+    if (law->entries > 1) {
+        snprintf(number, sizeof number, "%zu", i / law->constant_count + 1);
+    }
+    snprintf(name, DEA_PART_NAME, "%s%s", law->constants[i % law->constant_count].name, number);
+    for (char *c = name; *c; c++) {
+        *c = (char)tolower((unsigned char)*c);
+    }
+}
+
+/* Constants of the law, moduli in the part's unit of stress: those with a bound of their own are put behind it. */
+static void check_law(const part *p, const form *of, int *count)
+{
+    char name[DEA_PART_NAME], raw[2 * DEA_PART_NAME];
+    line(p, "* constants of the law, moduli in units of %.0f Pa", of->stress);
+    for (size_t i = 0; i < p->constants; i++) {
+        const dea_constant *constant = &p->law->constants[i % p->law->constant_count];
+        constant_name(p->law, i, name);
+        snprintf(raw, sizeof raw, constant->modulus ? "%s/%.0f" : "%s", name, of->stress);
+        if (constant->low == 0.0) {
+            const bool small = constant->modulus && of->stress > 1.0;
+            check(p, &(range){raw, symbol_names[(size_t)CONSTANT + i], small ? "1e-6" : "1e-3", small ? "1e6" : "1e12"}, count);
+        } else {
+            line(p, ".param %s={%s}", symbol_names[(size_t)CONSTANT + i], raw);
+        }
+    }
+}
+
+/* True of what is neither a number nor a parameter, which its own card checks. */
+static bool is_made(const part *p, dea_expr ref)
+{
+    return p->network.pool.terms[ref].operation >= DEA_ADD;
+}
+
+/* What else must be positive, from the network: the constants fit together, and the pre-stretch lies where the law holds. */
+static void check_ranges(const part *p, int count)
+{
+    char name[DEA_PART_NAME];
+    for (int i = 0; i < p->network.range_count; i++) {
+        if (is_made(p, p->network.range[i])) {
+            line(p, ".param ok%d={ok%d*min(max(%s*1e30,0),1)}", count, count - 1,
+                 dea_part_text_parameter(&p->text, p->network.range[i], name));
+            count++;
+        }
+    }
+    line(p, ".param ok={ok%d}", count - 1);
+}
+
+/* Every number that the network uses is in its range; how many checks that makes. */
+static int write_checks(const part *p, const form *of)
 {
     static const range ranges[] = {
         {"frame_radius", "radius", "1e-6", "1e3"},
         {"coverage", "cover", "1e-6", "0.999999"},
         {"film_thickness", "thick", "1e-9", "1"},
         {"prestretch", "stretch", "1", "100"},
-        {"c1", "film1", "1", "1e12"},
         {"permittivity+permittivity_per_stretch*prestretch", "eps_r", "1e-3", "1e9"},
         {"density", "rho", "0", "1e6"},
         {"electrode_mass", "areal", "0", "1e6"},
@@ -278,8 +335,7 @@ static void write_checks(const part *p, const form *of)
     for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++) {
         check(p, &ranges[i], &count);
     }
-    line(p, "* Yeoh constants in units of %.0f Pa", of->stress);
-    line(p, ".param yeoh1={film1/%.0f}\n.param yeoh2={c2/%.0f}\n.param yeoh3={c3/%.0f}", of->stress, of->stress, of->stress);
+    check_law(p, of, &count);
     if (of->modulus) {
         check(p, &(range){"modulus", "y_given", "0", "1e15"}, &count);
         line(p, ".param y_free={1-min(y_given*1e30,1)}");
@@ -288,7 +344,7 @@ static void write_checks(const part *p, const form *of)
     if (p->kind == DEA_LENS) {
         check_optics(p, &count);
     }
-    line(p, ".param ok={ok%d}", count - 1);
+    return count;
 }
 
 static void declare(part *p)
@@ -299,6 +355,11 @@ static void declare(part *p)
                             p->field, p->mass, p->divide,      p->width,  p->linear ? p->push_slope : p->stress};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         dea_part_text_use(text, all[i]);
+    }
+    for (int i = 0; i < network->range_count; i++) {
+        if (is_made(p, network->range[i])) {
+            dea_part_text_use(text, network->range[i]);
+        }
     }
     for (int i = 0; i < network->tension_count; i++) {
         dea_part_text_use(text, p->taut[i]);
@@ -467,8 +528,9 @@ static void write_body(part *p, const form *of)
 {
     declare(p);
     give_names(p);
-    write_checks(p, of);
+    const int checks = write_checks(p, of);
     dea_part_text_parameters(&p->text);
+    check_ranges(p, checks);
     write_numbers(p);
     write_displacement(p);
     if (!p->linear) {
@@ -500,18 +562,35 @@ static double or_zero(double value)
 static void add(dea_part_parameter *list, size_t *count, const char *name, const char *unit, const char *meaning, double value)
 {
     dea_part_parameter *entry = &list[(*count)++];
-    *entry = (dea_part_parameter){.unit = unit, .meaning = meaning, .value = value};
+    *entry = (dea_part_parameter){.unit = unit, .value = value};
     snprintf(entry->name, sizeof entry->name, "%s", name);
+    snprintf(entry->meaning, sizeof entry->meaning, "%s", meaning);
+}
+
+static size_t constants_in_use(const dea_material *material)
+{
+    return material->law->constant_count * (material->law->entries > 1 ? material->entry_count : 1);
+}
+
+static void add_constants(const dea_material *material, dea_part_parameter *list, size_t *count)
+{
+    double constants[DEA_LAW_CONSTANTS];
+    dea_material_long_term(material, constants);
+    for (size_t i = 0; i < constants_in_use(material); i++) {
+        const dea_constant *constant = &material->law->constants[i % material->law->constant_count];
+        char name[DEA_PART_NAME];
+        constant_name(material->law, i, name);
+        add(list, count, name, constant->unit, "", constants[i]);
+        dea_part_parameter *entry = &list[*count - 1];
+        snprintf(entry->meaning, sizeof entry->meaning, "%s constant %s%s", material->law->title, constant->name,
+                 constant->modulus ? ", long-term" : "");
+    }
 }
 
 static void add_film(const dea_scene *scene, dea_part_parameter *list, size_t *count)
 {
     const dea_material *material = &scene->material;
-    double yeoh[DEA_LAW_CONSTANTS];
-    dea_material_long_term(material, yeoh);
-    add(list, count, "c1", "Pa", "first Yeoh constant, long-term", yeoh[0]);
-    add(list, count, "c2", "Pa", "second Yeoh constant, long-term", yeoh[1]);
-    add(list, count, "c3", "Pa", "third Yeoh constant, long-term", yeoh[2]);
+    add_constants(material, list, count);
     add(list, count, "permittivity", "1", "relative permittivity at stretch 0", material->permittivity);
     add(list, count, "permittivity_per_stretch", "1", "its slope over the stretch", material->permittivity_per_stretch);
     add(list, count, "density", "kg/m^3", "density of the film, 0: no inertia", or_zero(material->density));
@@ -542,7 +621,7 @@ size_t dea_part_parameters(const dea_scene *scene, const dea_model *model, dea_p
     add_film(scene, list, &count);
     if (form_of(model)->modulus) {
         const double share = dea_material_long_term_share(&scene->material);
-        add(list, &count, "modulus", "Pa", "operating modulus Y, 0: from the Yeoh constants",
+        add(list, &count, "modulus", "Pa", "operating modulus Y, 0: from the constants of the law",
             share * or_zero(scene->material.modulus));
     }
     add(list, &count, "leakage_resistance", "ohm", "of the film, 0: none", or_zero(scene->drive.leakage_resistance));
@@ -599,6 +678,8 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
     part p = {.dialect = dialect,
               .out = open_memstream(&text, &length),
               .kind = defaults->actuator.kind,
+              .law = defaults->material.law,
+              .constants = constants_in_use(&defaults->material),
               .linear = model->linear != NULL,
               .branches = branches > PART_BRANCHES ? branches : PART_BRANCHES};
     if (!p.out) {

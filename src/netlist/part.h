@@ -3,7 +3,7 @@
  *   .subckt dea_dot p n edge params: frame_radius=... coverage=... film_thickness=... prestretch=... c1=... permittivity=... ...
  *
  * Mobility analogy: v(edge) is the outward velocity of the disc edge [m/s], the current into the pin the force on it [N]; the
- * frame is node 0. All parameters are SI numbers, the Yeoh constants long-term ones. Derived numbers come from the model's own
+ * frame is node 0. All parameters are SI numbers, moduli of the law long-term ones. Derived numbers come from the model's own
  * network, with the parameters as its symbols. */
 #ifndef DEA_PART_H
 #define DEA_PART_H
@@ -48,7 +48,7 @@ dea_status dea_part_library(const dea_dialect *dialect, FILE *out, dea_error *er
 typedef struct dea_part_parameter {
     char name[32];
     const char *unit; /* SI, "1" without dimension */
-    const char *meaning;
+    char meaning[64];
     double value; /* its default */
 } dea_part_parameter;
 

@@ -112,7 +112,8 @@ static void use(dea_part_text *text, dea_expr ref, bool in_source)
     const dea_term *term = &text->pool->terms[ref];
     const bool moves = text->moves[ref];
     text->carded[ref] = text->carded[ref] || (in_source && !moves);
-    if (text->uses[ref]++ == 0 && term->operation >= DEA_ADD) {
+    const bool again = text->uses[ref]++ > 0 && (!moves || text->nodal[ref]); /* else it is written out each time */
+    if (!again && term->operation >= DEA_ADD) {
         use(text, term->a, moves);
         if (dea_operation_of(term->operation)->operands == 2) {
             use(text, term->b, moves);

@@ -1,46 +1,23 @@
 #include "network/hyperelastic.h"
 
-#include "expression/formula.h"
+#include "expression/derivative.h"
+#include "material/form.h"
 
-dea_expr dea_hyperelastic_change(const dea_symbols *symbols, dea_expr e)
-{
-    dea_pool *pool = symbols->pool;
-    const dea_yeoh_terms t = dea_symbols_yeoh(symbols);
-    const dea_expr two = NUM(2.0);
-    const dea_expr c2 = SCALE(2.0, symbols->yeoh[1]);
-    const dea_expr c3 = SCALE(3.0, symbols->yeoh[2]);
-    const dea_expr d = MUL(t.square, MUL(e, ADD(two, e))); /* y - y0, y = lambda^2 */
-    const dea_expr y = ADD(t.square, d);
-    const dea_expr q = DIV(ADD(y, t.square), MUL(SQUARE(t.square), SQUARE(y)));
-    const dea_expr dj = MUL(d, SUB(two, q));    /* of J = 2 y + y^-2 - 3 */
-    const dea_expr dg = SUB(SCALE(3.0, d), dj); /* of g = y - y^-2 = 3 (y - 1) - J */
-    const dea_expr sum = ADD(SCALE(2.0, t.j), dj);
-    const dea_expr dw = MUL(dj, ADD(c2, MUL(c3, sum))); /* of w */
-    const dea_expr w = ADD(t.w, dw);
-    return SCALE(2.0, ADD(MUL(dg, w), MUL(t.g, dw)));
-}
-
-/* y - y0 of a stretch lambda_pre (1 + e), y = lambda^2. */
-static dea_expr square_change(const dea_symbols *symbols, dea_expr e)
-{
-    dea_pool *pool = symbols->pool;
-    return MUL(SQUARE(symbols->prestretch), MUL(e, ADD(NUM(2.0), e)));
-}
-
-/* sigma_1 = 2 w (y1 - v), J = y1 + y2 + v - 3, v = 1/(y1 y2). */
 dea_expr dea_hyperelastic_principal(const dea_symbols *symbols, dea_expr e1, dea_expr e2)
 {
     dea_pool *pool = symbols->pool;
-    const dea_yeoh_terms t = dea_symbols_yeoh(symbols);
-    const dea_expr d1 = square_change(symbols, e1), d2 = square_change(symbols, e2);
-    const dea_expr a = d1 < d2 ? d1 : d2, b = d1 < d2 ? d2 : d1; /* one order, so that both stresses of a ring share terms */
-    const dea_expr product = MUL(SQUARE(t.square), MUL(ADD(t.square, a), ADD(t.square, b)));
-    const dea_expr sum = ADD(a, b);
-    const dea_expr dv = NEG(DIV(ADD(MUL(t.square, sum), MUL(a, b)), product));
-    const dea_expr dj = ADD(sum, dv);
-    const dea_expr c2 = SCALE(2.0, symbols->yeoh[1]), c3 = SCALE(3.0, symbols->yeoh[2]);
-    const dea_expr dw = MUL(dj, ADD(c2, MUL(c3, ADD(SCALE(2.0, t.j), dj))));
-    return SCALE(2.0, ADD(MUL(SUB(d1, dv), ADD(t.w, dw)), MUL(t.g, dw)));
+    const dea_expr one = NUM(1.0);
+    dea_form form = {0};
+    if (!pool->exhausted) {
+        const dea_expr l1 = MUL(symbols->prestretch, ADD(one, e1)), l2 = MUL(symbols->prestretch, ADD(one, e2));
+        symbols->law->form(pool, symbols->constants, l1, l2, &form);
+    }
+    return dea_expr_change(pool, form.stress[0]);
+}
+
+dea_expr dea_hyperelastic_change(const dea_symbols *symbols, dea_expr e)
+{
+    return dea_hyperelastic_principal(symbols, e, e);
 }
 
 dea_expr dea_hyperelastic_area(const dea_symbols *symbols, dea_expr strain)

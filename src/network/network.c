@@ -3,7 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "expression/formula.h"
+#include "expression/derivative.h"
+#include "material/form.h"
 
 void dea_network_free(dea_network *network)
 {
@@ -111,32 +112,47 @@ static dea_expr film_voltage(dea_pool *pool, const dea_scene *scene, const dea_a
     return MUL(source, DIV(leakage, ADD(series, leakage)));
 }
 
-dea_yeoh_terms dea_symbols_yeoh(const dea_symbols *symbols)
+/* The law at two stretches. */
+static dea_form form_at(const dea_symbols *symbols, dea_expr l1, dea_expr l2)
 {
-    dea_pool *pool = symbols->pool;
-    const dea_expr one = NUM(1.0);
-    const dea_expr l = symbols->prestretch;
-    const dea_expr y = SQUARE(l);
-    const dea_expr y2 = SQUARE(y);
-    const dea_expr p = MUL(SUB(l, one), ADD(l, one)); /* y - 1 */
-    dea_yeoh_terms t;
-    t.square = y;
-    t.g = DIV(MUL(p, ADD(y2, ADD(y, one))), y2);
-    t.j = DIV(MUL(SQUARE(p), ADD(SCALE(2.0, y), one)), y2);
-    t.w = ADD(symbols->yeoh[0], MUL(t.j, ADD(SCALE(2.0, symbols->yeoh[1]), MUL(SCALE(3.0, symbols->yeoh[2]), t.j))));
-    return t;
+    dea_form form = {0};
+    if (!symbols->pool->exhausted) {
+        symbols->law->form(symbols->pool, symbols->constants, l1, l2, &form);
+    }
+    return form;
 }
 
-/* Y = dsigma/dlambda = 4 (lambda + 2 lambda^-5) w + 8 g^2 (2 C2 + 6 C3 J)/lambda. */
-dea_expr dea_symbols_modulus(const dea_symbols *symbols)
+dea_expr dea_symbols_rest_stress(const dea_symbols *symbols)
+{
+    return form_at(symbols, symbols->prestretch, symbols->prestretch).stress[0];
+}
+
+/* dsigma/dlambda at an equi-biaxial stretch. */
+static dea_expr modulus_at(const dea_symbols *symbols, dea_expr stretch)
 {
     dea_pool *pool = symbols->pool;
-    const dea_yeoh_terms t = dea_symbols_yeoh(symbols);
+    const dea_expr l = dea_expr_node(pool, 0);
+    return dea_expr_put(pool, dea_expr_slope(pool, form_at(symbols, l, l).stress[0]), DEA_NODE, 0, stretch);
+}
+
+dea_expr dea_symbols_modulus(const dea_symbols *symbols)
+{
+    return modulus_at(symbols, symbols->prestretch);
+}
+
+/* P1 = sigma_1/l1, so that W11 = (dsigma_1/dl1 - sigma_1/l)/l and W12 = dsigma_1/dl2/l at l1 = l2 = l. */
+dea_tangent dea_symbols_tangent(const dea_symbols *symbols)
+{
+    dea_pool *pool = symbols->pool;
     const dea_expr l = symbols->prestretch;
-    const dea_expr fifth = MUL(SQUARE(t.square), l);
-    const dea_expr dg = ADD(l, DIV(NUM(2.0), fifth));
-    const dea_expr wj = ADD(SCALE(2.0, symbols->yeoh[1]), MUL(SCALE(6.0, symbols->yeoh[2]), t.j));
-    return ADD(SCALE(4.0, MUL(dg, t.w)), SCALE(8.0, DIV(MUL(SQUARE(t.g), wj), l)));
+    const dea_expr stress = form_at(symbols, dea_expr_node(pool, 0), dea_expr_node(pool, 1)).stress[0];
+    dea_expr slope[2];
+    for (int i = 0; i < 2; i++) {
+        const dea_expr over = dea_expr_derivative(pool, stress, DEA_NODE, i);
+        slope[i] = dea_expr_put(pool, over, DEA_NODE, -1, l);
+    }
+    const dea_expr along = SUB(slope[0], DIV(dea_symbols_rest_stress(symbols), l));
+    return (dea_tangent){DIV(along, l), DIV(slope[1], l)};
 }
 
 static dea_symbols symbols_of(const dea_scene *scene, const dea_axis *axis, dea_pool *pool)
@@ -150,8 +166,10 @@ static dea_symbols symbols_of(const dea_scene *scene, const dea_axis *axis, dea_
     s.coverage = given(pool, divide) ? DIV(divide, s.frame_radius) : scalar(pool, scene, axis, &actuator->coverage);
     s.film_thickness = scalar(pool, scene, axis, &actuator->film_thickness);
     s.prestretch = scalar(pool, scene, axis, &actuator->prestretch);
-    for (int i = 0; i < 3; i++) {
-        s.yeoh[i] = MUL(share, scalar(pool, scene, axis, &material->constants[i]));
+    s.law = material->law;
+    for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
+        const dea_expr constant = scalar(pool, scene, axis, &material->constants[i]);
+        s.constants[i] = s.law->constants[i % s.law->constant_count].modulus ? MUL(share, constant) : constant;
     }
     const dea_expr modulus = scalar(pool, scene, axis, &material->modulus);
     s.modulus = given(pool, modulus) ? MUL(share, modulus) : dea_symbols_modulus(&s);
@@ -227,7 +245,8 @@ static void place_edge(const dea_symbols *symbols, dea_network *network)
     dea_network_demand(network, symbols->coverage);
     dea_network_demand(network, SUB(one, symbols->coverage));
     dea_network_demand(network, symbols->permittivity);
-    dea_network_demand(network, symbols->yeoh[0]);
+    dea_network_demand(network, modulus_at(symbols, one)); /* three times the shear modulus, twice over */
+    dea_network_demand(network, form_at(symbols, symbols->prestretch, symbols->prestretch).room);
     network->breakdown = symbols->breakdown;
 }
 
@@ -247,11 +266,6 @@ dea_status dea_network_build(const dea_scene *scene, const dea_model *model, con
     *network = (dea_network){0};
     if (!model->network) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is not a network", model->name);
-    }
-    if (!scene->material.law->networked) {
-        return dea_fail(error, DEA_ERROR_UNSUPPORTED,
-                        "a film of the law %s has no network yet: run its static models with the engine direct, or field with ida",
-                        scene->material.law->name);
     }
     (void)dea_expr_number(&network->pool, 0.0);
     if (network->pool.exhausted) {

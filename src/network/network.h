@@ -19,7 +19,8 @@ typedef struct dea_symbols {
     dea_expr coverage;             /* B [1] */
     dea_expr film_thickness;       /* H [m] */
     dea_expr prestretch;           /* lambda_pre [1] */
-    dea_expr yeoh[3];              /* long-term constants of a Yeoh film [Pa] */
+    const dea_law *law;                    /* of the film */
+    dea_expr constants[DEA_LAW_CONSTANTS]; /* of it, long-term; those out of use 0 */
     dea_expr modulus;              /* Y [Pa]: the scene's, or dsigma/dlambda at the pre-stretch */
     dea_expr permittivity;         /* absolute [F/m] */
     dea_expr breakdown;            /* breakdown strength [V/m], +inf: none */
@@ -93,10 +94,13 @@ dea_expr dea_network_elastic(dea_network *network);
 dea_expr dea_network_load(dea_network *network);
 
 /* Shared pieces of the models' networks. */
-typedef struct dea_yeoh_terms {
-    dea_expr square, g, j, w; /* y = lambda^2, y - y^-2, I - 3, dW/dI */
-} dea_yeoh_terms;
-dea_yeoh_terms dea_symbols_yeoh(const dea_symbols *symbols);
+/* Cauchy stress of the film at the pre-stretch, the same in all directions of its plane [Pa]. */
+dea_expr dea_symbols_rest_stress(const dea_symbols *symbols);
+/* Tangent moduli W11 and W12 at the pre-stretch [Pa]. */
+typedef struct dea_tangent {
+    dea_expr w11, w12;
+} dea_tangent;
+dea_tangent dea_symbols_tangent(const dea_symbols *symbols);
 /* Y = dsigma/dlambda at the pre-stretch [Pa]. */
 dea_expr dea_symbols_modulus(const dea_symbols *symbols);
 /* M = eps (U/H)^2 [Pa]. */

@@ -46,13 +46,25 @@ static void print_relaxation(const dea_material *material)
         printf("prony %zu                g = %.9g, tau = %.9g s\n", i + 1, material->prony[i].g, material->prony[i].tau);
 }
 
+/* The law and its constants, those of a list entry after entry. */
+static void print_law(const dea_material *material)
+{
+    const dea_law *law = material->law;
+    printf("%-22s %s: %s\n", "law", law->name, law->energy_text);
+    for (size_t i = 0; i < material->entry_count * law->constant_count; i++) {
+        const dea_constant *constant = &law->constants[i % law->constant_count];
+        char name[DEA_NAME_LENGTH];
+        snprintf(name, sizeof name, law->entries > 1 ? "%s %zu" : "%s", constant->name, i / law->constant_count + 1);
+        printf("%-22s %.9g%s%s\n", name, material->constants[i], constant->modulus ? " " : "", constant->modulus ? constant->unit : "");
+    }
+}
+
 static void print_constants(const dea_material *material)
 {
     printf("%-22s %s\n", "name", material->name);
     if (material->source[0] != '\0')
         printf("%-22s %s\n", "source", material->source);
-    for (size_t i = 0; i < material->law->constant_count; i++)
-        printf("%-22s %.9g Pa\n", material->law->constants[i].name, material->constants[i]);
+    print_law(material);
     if (material->stretches[1] > 0)
         printf("%-22s %.9g to %.9g\n", "data of stretches", material->stretches[0], material->stretches[1]);
     if (fabs(material->permittivity_per_stretch) > 0)
@@ -139,7 +151,7 @@ static bool material_choose(const char *name, dea_material *material, dea_exit *
 
 static dea_status show(const dea_material *material, const dea_arguments *arguments, double to, dea_error *error)
 {
-    const bool elastic = !isnan(material->constants[0]);
+    const bool elastic = dea_law_valid(material->law, material->constants);
     dea_status status = DEA_OK;
     if (!arguments->output && !arguments->plot) {
         print_constants(material);

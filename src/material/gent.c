@@ -1,0 +1,86 @@
+/* Gent: W = -mu Jm/2 ln(1 - J/Jm), J = I1 - 3: chains that are straight at J = Jm, where the energy ends.
+ *
+ *     f' = mu/2 r,  f'' = mu/(2 Jm) r^2,  f''' = mu/Jm^2 r^3,  r = Jm/(Jm - J) */
+#include <math.h>
+
+#include "material/invariant.h"
+
+enum { MU, JM };
+
+/* r, NAN at the end and past it. */
+DEA_INLINE double growth(const double *c, double j)
+{
+    return j < c[JM] ? c[JM] / (c[JM] - j) : (double)NAN;
+}
+
+DEA_INLINE dea_slopes slopes(const double *c, double j)
+{
+    const double r = growth(c, j);
+    const double w = 0.5 * c[MU] * r;
+    const double w1 = w * r / c[JM];
+    return (dea_slopes){.w = w, .w1 = w1, .w2 = 2.0 * w1 * r / c[JM]};
+}
+
+DEA_INLINE double gain(const double *c, double j, double dj)
+{
+    return 0.5 * c[MU] * growth(c, j) * growth(c, j + dj) * dj / c[JM];
+}
+
+static double energy(const double *c, double l1, double l2)
+{
+    return -0.5 * c[MU] * c[JM] * log1p(-dea_invariant(l1, l2) / c[JM]);
+}
+
+static dea_stress stress(const double *c, double l1, double l2)
+{
+    return dea_invariant_stress(slopes, c, l1, l2);
+}
+
+static double rise(const double *c, double l, double d1, double d2)
+{
+    return dea_invariant_rise(slopes, gain, c, l, d1, d2);
+}
+
+static void prepare(dea_film *film)
+{
+    film->rest[0] = slopes(film->constants, film->j).w;
+}
+
+static void change(const dea_film *film, size_t count, const double *strains, dea_change *changes)
+{
+    for (size_t i = 0; i < count; i++) {
+        changes[i] = dea_invariant_change(slopes, gain, film, strains[i]);
+    }
+}
+
+static double locking(const double *c)
+{
+    return c[JM];
+}
+
+static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
+{
+    return dea_invariant_biaxial(slopes, gain, film, e1, e2);
+}
+
+static const dea_constant constants[] = {
+    {"mu", "Pa", true, 0.0, NAN, "a shear modulus > 0, e.g. 45 kPa"},
+    {"Jm", "1", false, 0.0, NAN, "a number > 0, I1 - 3 at the longest stretch, e.g. 120"},
+};
+
+const dea_law dea_law_gent = {
+    .name = "gent",
+    .title = "Gent",
+    .energy_text = "W = -mu Jm/2 ln(1 - (I1 - 3)/Jm)",
+    .constants = constants,
+    .constant_count = sizeof constants / sizeof *constants,
+    .entries = 1,
+    .locking = locking,
+    .ends = true,
+    .energy = energy,
+    .stress = stress,
+    .rise = rise,
+    .prepare = prepare,
+    .change = change,
+    .biaxial = biaxial,
+};

@@ -9,14 +9,15 @@
 #include "netlist/symbol.h"
 #include "network/dynamics.h"
 
-enum { KINDS = 6 };
+enum { KINDS = 8 };
 
 static const struct kind {
     dea_kind kind;
     const char *model, *name;
 } kinds[KINDS] = {{DEA_DOT, "lumped", "dea_dot"},         {DEA_LENS, "lumped", "dea_lens"},
                   {DEA_DOT, "lame", "dea_dot_lame"},      {DEA_LENS, "lame", "dea_lens_lame"},
-                  {DEA_DOT, "coverage", "dea_dot_hyper"}, {DEA_LENS, "coverage", "dea_lens_hyper"}};
+                  {DEA_DOT, "coverage", "dea_dot_hyper"}, {DEA_LENS, "coverage", "dea_lens_hyper"},
+                  {DEA_DOT, "ring", "dea_dot_ring"},      {DEA_LENS, "ring", "dea_lens_ring"}};
 
 static void write_library(const char *name, const char *dialect)
 {

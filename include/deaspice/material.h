@@ -21,7 +21,7 @@ extern "C" {
 enum { DEA_LAW_CONSTANTS = 8, DEA_PRONY_MAX = 64, DEA_NAME_LENGTH = 64, DEA_SOURCE_LENGTH = 256 };
 
 struct dea_film;
-struct dea_form;
+struct dea_law_form;
 struct dea_pool;
 
 /** Principal in-plane nominal stresses and tangent moduli of the passive film at stretches l1, l2 [Pa]. */
@@ -60,6 +60,7 @@ typedef struct dea_law {
     const char *name;              /**< key in a scene, e.g. "yeoh" */
     const char *title;             /**< e.g. "Yeoh" */
     const char *energy_text;       /**< W in words of its constants */
+    const char *accepted;          /**< how a scene gives the constants, with an example, for messages */
     const dea_constant *constants; /**< constant_count of them; where it is a list, those of one entry */
     size_t constant_count;         /**< >= 1 */
     size_t entries;                /**< 1: a mapping of constants; more: a list of at most so many such mappings */
@@ -84,7 +85,7 @@ typedef struct dea_law {
     /** Both nominal stresses and the moduli at once, as exact as rise(). NULL: they are made of rise() and stress(). */
     dea_biaxial (*biaxial)(const struct dea_film *film, double e1, double e2);
     /** The same law as expressions, for networks: constants and stretches l1, l2 are terms of a pool (src/material/form.h). */
-    void (*form)(struct dea_pool *pool, const int *constants, int l1, int l2, struct dea_form *form);
+    void (*form)(struct dea_pool *pool, const int *constants, int l1, int l2, struct dea_law_form *form);
 } dea_law;
 
 /** One branch of a Prony series. */

@@ -59,16 +59,16 @@ typedef struct dea_model {
 } dea_model;
 
 /** What solving a model takes, from the cheapest up. */
-typedef enum dea_model_effort {
+typedef enum dea_form {
     DEA_FORM_CLOSED,       /**< a closed form that is no network */
     DEA_FORM_LINEAR,       /**< a network of linear springs */
     DEA_FORM_HYPERELASTIC, /**< a network with others */
     DEA_FORM_MEMBRANE,     /**< a boundary value problem */
     DEA_FORMS
-} dea_model_effort;
+} dea_form;
 
 /** Form of a model. */
-DEA_API dea_model_effort dea_model_form(const dea_model *model);
+DEA_API dea_form dea_model_form(const dea_model *model);
 
 /** Number of models. */
 DEA_API size_t dea_model_count(void);

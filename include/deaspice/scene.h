@@ -67,10 +67,11 @@ typedef struct dea_waveform {
     dea_wave_kind kind;
     dea_step step;
     dea_sine sine;
-    double *times;    /**< points, strictly increasing, point_count of them [s]; owned by the scene */
+    double *times;    /**< points, not decreasing, point_count of them [s]; two of one time are a jump; owned by the scene */
     double *voltages; /**< their voltages, linear in between and held before the first and after the last [V]; owned too */
     size_t point_count;
     double period; /**< what step or points say before this time repeats [s], NAN: once */
+    char columns[DEA_SOURCE_LENGTH]; /**< of points from a file: what each of its columns was taken for, in words; else "" */
 } dea_waveform;
 
 /** Electrical side. */

@@ -107,7 +107,7 @@ static dea_operand_change change(dea_pool *pool, dea_expr ref, dea_operand_chang
         if (a.now != a.rest || b.now != b.rest) {
             result.rest = dea_expr_apply(pool, term.operation, a.rest, b.rest);
             result.change = row->change(pool, result.rest, &a, &b);
-            result.now = row->itself ? dea_expr_apply(pool, term.operation, a.now, b.now) : ADD(result.rest, result.change);
+            result.now = row->afresh ? dea_expr_apply(pool, term.operation, a.now, b.now) : ADD(result.rest, result.change);
         }
     }
     made[ref] = result;

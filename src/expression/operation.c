@@ -34,14 +34,14 @@ static const dea_operation_row rows[DEA_OPERATIONS] = {
     [DEA_NODE] = {.name = "node", .precedence = 3},
     [DEA_ADD] = {"add", 2, 1, false, "@+#", FUNCTIONS(ADD)},
     [DEA_SUB] = {"sub", 2, 1, true, "@-#", FUNCTIONS(SUB)},
-    [DEA_MUL] = {"mul", 2, 2, false, "@*#", FUNCTIONS(MUL)},
-    [DEA_DIV] = {"div", 2, 2, true, "@/#", FUNCTIONS(DIV)},
+    [DEA_MUL] = {"mul", 2, 2, false, "@*#", NULL, true, FUNCTIONS(MUL)},
+    [DEA_DIV] = {"div", 2, 2, true, "@/#", NULL, true, FUNCTIONS(DIV)},
     [DEA_LN] = {"ln", 1, 3, false, "ln(@)", "max(@,1e-6)", FUNCTIONS(LN)},
-    [DEA_EXP] = {"exp", 1, 3, false, "exp(@)", "min(@,80)", FUNCTIONS(EXP)},
+    [DEA_EXP] = {"exp", 1, 3, false, "exp(@)", "min(@,80)", true, FUNCTIONS(EXP)},
     [DEA_SQRT] = {"sqrt", 1, 3, false, "sqrt(@)", "max(@,1e-12)", FUNCTIONS(SQRT)},
     [DEA_LOG1P] = {"log1p", 1, 3, false, "(2*atanh((@)/(2+(@))))", "max(@,-0.999999)", FUNCTIONS(LOG1P)},
     [DEA_EXPM1] = {"expm1", 1, 3, false, "(2*sinh(0.5*(@))*exp(0.5*(@)))", "min(@,80)", FUNCTIONS(EXPM1)},
-    [DEA_POW] = {"pow", 2, 3, false, "pow(@,#)", "max(@,1e-6)", FUNCTIONS(POW)},
+    [DEA_POW] = {"pow", 2, 3, false, "pow(@,#)", "max(@,1e-6)", true, FUNCTIONS(POW)},
     [DEA_POSITIVE] = {"positive", 1, 3, false, "max(@,1e-6)", NULL, true, FUNCTIONS(POSITIVE)},
 };
 

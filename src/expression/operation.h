@@ -59,7 +59,8 @@ typedef struct dea_operation_row {
     const char *text; /* in netlists, `@` and `#` stand for the operands; a dialect may have its own */
     const char
         *held; /* what stands for the operand `@` where it moves, NULL: itself. An iterate can leave the range of the solution */
-    bool itself; /* its value is that of its operand, wherever it has one */
+    bool afresh; /* the value at u is that of the operands there: the sum of rest and change has lost the digits of what falls to
+                    a hundredth of it, or the range */
     double (*value)(double x, double y);
     dea_expr (*derivative)(dea_pool *pool, dea_expr own, dea_expr a, dea_expr b, dea_expr da, dea_expr db);
     dea_expr (*change)(dea_pool *pool, dea_expr rest, const dea_operand_change *a, const dea_operand_change *b);

@@ -3,6 +3,7 @@
  *     f' = mu p(x),  f'' = mu p'(x)/lambda_m^2,  f''' = mu p''(x)/lambda_m^4,  p(x) = sum i C_i x^(i - 1) */
 #include <math.h>
 
+#include "material/form.h"
 #include "material/invariant.h"
 
 enum { MU, LAMBDA_M, TERMS = 5 };
@@ -90,6 +91,19 @@ static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
     return dea_invariant_biaxial(slopes, gain, film, e1, e2);
 }
 
+static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_law_form *form)
+{
+    const dea_form_invariants at = dea_form_invariants_of(pool, l1, l2);
+    const dea_expr most = SQUARE(c[LAMBDA_M]);
+    const dea_expr x = DIV(ADD(at.j, NUM(3.0)), most);
+    dea_expr p = NUM(0.0);
+    for (int i = TERMS - 1; i >= 0; i--) {
+        p = ADD(NUM(slope_shares[i]), MUL(p, x));
+    }
+    dea_form_stresses(pool, &at, MUL(c[MU], p), NUM(0.0), form);
+    form->room = SUB(SCALE(3.0, SUB(most, NUM(1.0))), at.j); /* I1 = 3 lambda_m^2 where the chains are straight */
+}
+
 static const dea_constant constants[] = {
     {"mu", "Pa", true, 0.0, NAN, "a modulus > 0, e.g. 40 kPa"},
     {"lambda_m", "1", false, 1.0, NAN, "the stretch > 1 at which the chains are straight, e.g. 5.99"},
@@ -99,6 +113,7 @@ const dea_law dea_law_arruda_boyce = {
     .name = "arruda_boyce",
     .title = "Arruda-Boyce",
     .energy_text = "W = mu sum C_i lambda_m^(2 - 2 i) (I1^i - 3^i), C = 1/2, 1/20, 11/1050, 19/7000, 519/673750",
+    .accepted = "a mapping with mu and lambda_m, e.g. {mu: 40 kPa, lambda_m: 5.99}",
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,
@@ -109,4 +124,5 @@ const dea_law dea_law_arruda_boyce = {
     .prepare = prepare,
     .change = change,
     .biaxial = biaxial,
+    .form = form,
 };

@@ -3,6 +3,7 @@
  *     f' = mu/2 r,  f'' = mu/(2 Jm) r^2,  f''' = mu/Jm^2 r^3,  r = Jm/(Jm - J) */
 #include <math.h>
 
+#include "material/form.h"
 #include "material/invariant.h"
 
 enum { MU, JM };
@@ -63,6 +64,14 @@ static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
     return dea_invariant_biaxial(slopes, gain, film, e1, e2);
 }
 
+static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_law_form *form)
+{
+    const dea_form_invariants at = dea_form_invariants_of(pool, l1, l2);
+    const dea_expr room = SUB(c[JM], at.j);
+    dea_form_stresses(pool, &at, DIV(SCALE(0.5, MUL(c[MU], c[JM])), POSITIVE(room)), NUM(0.0), form);
+    form->room = room;
+}
+
 static const dea_constant constants[] = {
     {"mu", "Pa", true, 0.0, NAN, "a shear modulus > 0, e.g. 45 kPa"},
     {"Jm", "1", false, 0.0, NAN, "a number > 0, I1 - 3 at the longest stretch, e.g. 120"},
@@ -72,6 +81,7 @@ const dea_law dea_law_gent = {
     .name = "gent",
     .title = "Gent",
     .energy_text = "W = -mu Jm/2 ln(1 - (I1 - 3)/Jm)",
+    .accepted = "a mapping with mu and Jm, e.g. {mu: 45 kPa, Jm: 120}",
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,
@@ -83,4 +93,5 @@ const dea_law dea_law_gent = {
     .prepare = prepare,
     .change = change,
     .biaxial = biaxial,
+    .form = form,
 };

@@ -3,6 +3,7 @@
  *     P1 = 2 C01 (l1 l2^2 - l1^-3),  W11 = 2 C01 (l2^2 + 3 l1^-4),  W12 = 4 C01 l1 l2,  sigma = 2 C01 (y^2 - 1/y), y = lambda^2 */
 #include <math.h>
 
+#include "material/form.h"
 #include "material/invariant.h"
 
 enum { C10, C01 };
@@ -83,6 +84,12 @@ static const char *fault(const double *c)
     return c[C10] + c[C01] > 0.0 ? NULL : "C10 and C01 sum to no more than 0; accepted: a sum > 0, half the shear modulus";
 }
 
+static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_law_form *form)
+{
+    const dea_form_invariants at = dea_form_invariants_of(pool, l1, l2);
+    dea_form_stresses(pool, &at, c[C10], c[C01], form);
+}
+
 static const dea_constant constants[] = {
     {"C10", "Pa", true, -INFINITY, NAN, "a modulus, e.g. 16 kPa"},
     {"C01", "Pa", true, -INFINITY, NAN, "a modulus, e.g. 7.3 kPa"},
@@ -92,6 +99,7 @@ const dea_law dea_law_mooney_rivlin = {
     .name = "mooney_rivlin",
     .title = "Mooney-Rivlin",
     .energy_text = "W = C10 (I1 - 3) + C01 (I2 - 3)",
+    .accepted = "a mapping with C10 and C01, e.g. {C10: 16 kPa, C01: 7.3 kPa}",
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,
@@ -101,4 +109,5 @@ const dea_law dea_law_mooney_rivlin = {
     .rise = rise,
     .prepare = prepare,
     .change = change,
+    .form = form,
 };

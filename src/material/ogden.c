@@ -5,6 +5,7 @@
  *     /(l1 l2),  sigma = sum mu (lambda^alpha - lambda^(-2 alpha)) */
 #include <math.h>
 
+#include "material/form.h"
 #include "material/law.h"
 
 enum { TERMS = 4 };
@@ -144,6 +145,26 @@ static const char *fault(const double *c)
     return sum > 0.0 ? NULL : "mu alpha of the terms sums to no more than 0; accepted: a sum > 0, twice the shear modulus";
 }
 
+/* sigma_a = sum mu (l_a^alpha - (l1 l2)^-alpha), of the powers of the two stretches alone: their changes share what is not
+ * rational in them. */
+static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_law_form *form)
+{
+    *form = (dea_law_form){{NUM(0.0), NUM(0.0)}, NUM(1.0)};
+    for (size_t k = 0; k < TERMS; k++) {
+        const dea_expr mu = c[2 * k], alpha = c[2 * k + 1];
+        if (dea_expr_constant(pool, mu) == 0.0) {
+            continue;
+        }
+        const dea_expr power[] = {POW(l1, alpha), POW(l2, alpha)};
+        const bool swapped = power[1] < power[0]; /* one order, so that both stresses share terms */
+        const dea_expr thin = DIV(NUM(1.0), MUL(power[swapped], power[!swapped]));
+        for (int a = 0; a < 2; a++) {
+            form->stress[a] = ADD(form->stress[a], MUL(mu, SUB(power[a], thin)));
+        }
+        form->room = MUL(form->room, SQUARE(alpha));
+    }
+}
+
 static const dea_constant constants[] = {
     {"mu", "Pa", true, -INFINITY, NAN, "a modulus, e.g. 43.4 kPa"},
     {"alpha", "1", false, -INFINITY, NAN, "an exponent, not 0, e.g. 1.445"},
@@ -153,6 +174,7 @@ const dea_law dea_law_ogden = {
     .name = "ogden",
     .title = "Ogden",
     .energy_text = "W = sum mu/alpha (l1^alpha + l2^alpha + l3^alpha - 3)",
+    .accepted = "a list of at most 4 terms, e.g. [{mu: 43.4 kPa, alpha: 1.445}]",
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = TERMS,
@@ -162,4 +184,5 @@ const dea_law dea_law_ogden = {
     .rise = rise,
     .prepare = prepare,
     .change = change,
+    .form = form,
 };

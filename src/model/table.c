@@ -17,7 +17,7 @@ const dea_model *dea_model_at(size_t index)
     return index < dea_model_count() ? models[index] : NULL;
 }
 
-dea_model_effort dea_model_form(const dea_model *model)
+dea_form dea_model_form(const dea_model *model)
 {
     return model->membrane  ? DEA_FORM_MEMBRANE
            : model->linear  ? DEA_FORM_LINEAR

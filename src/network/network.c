@@ -113,9 +113,9 @@ static dea_expr film_voltage(dea_pool *pool, const dea_scene *scene, const dea_a
 }
 
 /* The law at two stretches. */
-static dea_form form_at(const dea_symbols *symbols, dea_expr l1, dea_expr l2)
+static dea_law_form form_at(const dea_symbols *symbols, dea_expr l1, dea_expr l2)
 {
-    dea_form form = {0};
+    dea_law_form form = {0};
     if (!symbols->pool->exhausted) {
         symbols->law->form(symbols->pool, symbols->constants, l1, l2, &form);
     }

@@ -61,7 +61,7 @@ static dea_status open_outputs(const dea_arguments *arguments, const dea_scene *
         status = dea_writer_open(scene, names, output, arguments->format, &audience->writer, error);
     }
     if (status == DEA_OK && arguments->plot) {
-        status = dea_plot_begin(scene, arguments->plot, &audience->plot, error);
+        status = dea_plot_begin(scene, arguments->plot, &arguments->picture, &audience->plot, error);
     }
     return status;
 }

@@ -266,7 +266,8 @@ const dea_command dea_command_check = {
             "      --set KEY=VALUE   change a value of the scene; may be repeated\n"
             "  -j, --jobs N          worker processes, auto: one per core; default 1, so that\n"
             "                        the times of the engines compare\n"
-            "      --no-files            refuse a scene that names other files (material, waveform)\n"
+            "      --force           a target may overwrite a file that was read\n"
+            "      --no-files        refuse a scene that names other files (material, waveform)\n"
             "  -q, --quiet           no table\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"
@@ -279,5 +280,6 @@ const dea_command dea_command_check = {
     .takes = DEA_TAKES_ENGINE | DEA_TAKES_SCENE | DEA_TAKES_JOBS | DEA_TAKES_QUIET | DEA_TAKES_TOLERANCE | DEA_TAKES_FULL,
     .least = 1,
     .most = SIZE_MAX,
+    .files = ".yaml",
     .run = run,
 };

@@ -73,6 +73,12 @@ static const kind kinds[] = {
 
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
+const char *dea_export_word(size_t index, char room[DEA_NAME_LENGTH])
+{
+    (void)room;
+    return index < KINDS ? kinds[index].name : NULL;
+}
+
 /* A file in memory on its way to its target. */
 typedef struct sheet {
     dea_atomic file;
@@ -305,8 +311,8 @@ const dea_command dea_command_export = {
             "      --model M         model instead of the scene's\n"
             "      --set KEY=VALUE   change a value of the scene, e.g. actuator.prestretch=1.3;\n"
             "                        may be repeated\n"
-            "      --force               a target may overwrite a file that was read\n"
-            "      --no-files            refuse a scene that names other files (material, waveform)\n"
+            "      --force           a target may overwrite a file that was read\n"
+            "      --no-files        refuse a scene that names other files (material, waveform)\n"
             "  -q, --quiet           no notes\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"
@@ -323,5 +329,6 @@ const dea_command dea_command_export = {
     .takes = DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_QUIET | DEA_TAKES_EXPORT,
     .least = 1,
     .most = 1,
+    .files = ".yaml",
     .run = run,
 };

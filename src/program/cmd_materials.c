@@ -12,6 +12,13 @@ enum { CURVE_POINTS = 101, MOST_MATERIALS = 64, CURVE_COLUMNS = 4 };
 
 static const double usual_end = 2; /* stretch of curves and tables */
 
+static const char *material_word(size_t index, char room[DEA_NAME_LENGTH])
+{
+    (void)room;
+    const dea_material *material = dea_material_builtin(index);
+    return material ? material->name : NULL;
+}
+
 static void print_list(void)
 {
     int width = 0;
@@ -164,7 +171,7 @@ static dea_status show(const dea_material *material, const dea_arguments *argume
     if (arguments->output)
         status = write_curves(material, to, arguments->output, error);
     if (arguments->plot && status == DEA_OK)
-        status = dea_plot_material(material, to, arguments->plot, error);
+        status = dea_plot_material(material, to, arguments->plot, &arguments->picture, error);
     return status;
 }
 
@@ -206,7 +213,8 @@ const dea_command dea_command_materials = {
             "\n"
             "  -o, --output FILE     write stress and modulus over stretch as CSV, - is standard\n"
             "                        output\n"
-            "      --plot FILE       draw them, FILE ends in .svg or .png\n"
+            "      --plot FILE       draw them, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)\n"
+            "      --size WxH        of the picture, for example 17x8cm (mm, cm, in, pt)\n"
             "      --to STRETCH      largest stretch of table and curves, default 2\n"
             "      --force           a target may overwrite a file that was read\n"
             "  -h, --help            this text\n"
@@ -219,5 +227,7 @@ const dea_command dea_command_materials = {
     .takes = DEA_TAKES_OUTPUT | DEA_TAKES_PLOT | DEA_TAKES_CURVES,
     .least = 0,
     .most = 1,
+    .words = material_word,
+    .files = ".yaml",
     .run = run,
 };

@@ -99,13 +99,15 @@ const dea_command dea_command_merge = {
             "\n"
             "  -o, --output FILE     write the result to FILE, - is standard output\n"
             "      --format F        csv, nc or raw; default: from the ending of FILE\n"
-            "      --plot FILE       draw the result, FILE ends in .svg or .png\n"
+            "      --plot FILE       draw the result, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)\n"
+            "      --size WxH        of the picture, for example 8.5x6cm (mm, cm, in, pt)\n"
+            "      --log x|y|xy      draw these axes logarithmic\n"
             "      --engine E        as in the runs\n"
             "      --model M         as in the runs\n"
             "      --set KEY=VALUE   as in the runs\n"
             "      --full            as in the runs\n"
-            "      --force               a target may overwrite a file that was read\n"
-            "      --no-files            refuse a scene that names other files (material, waveform)\n"
+            "      --force           a target may overwrite a file that was read\n"
+            "      --no-files        refuse a scene that names other files (material, waveform)\n"
             "  -q, --quiet           no summary and no progress\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"
@@ -118,9 +120,10 @@ const dea_command dea_command_merge = {
             "Examples:\n"
             "  for i in 1 2 3 4; do deaspice run dot.yaml --shard $i/4 -o part-$i.dea; done\n"
             "  deaspice merge dot.yaml part-*.dea -o dot.nc\n",
-    .takes = DEA_TAKES_ENGINE | DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_FORMAT | DEA_TAKES_PLOT | DEA_TAKES_QUIET |
+    .takes = DEA_TAKES_ENGINE | DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_FORMAT | DEA_TAKES_PLOT | DEA_TAKES_LOG | DEA_TAKES_QUIET |
              DEA_TAKES_FULL,
     .least = 2,
     .most = SIZE_MAX,
+    .files = "",
     .run = merge,
 };

@@ -66,7 +66,9 @@ const dea_command dea_command_run = {
             "\n"
             "  -o, --output FILE     write the result to FILE, - is standard output\n"
             "      --format F        csv, nc or raw; default: from the ending of FILE\n"
-            "      --plot FILE       draw the result, FILE ends in .svg or .png\n"
+            "      --plot FILE       draw the result, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)\n"
+            "      --size WxH        of the picture, for example 8.5x6cm (mm, cm, in, pt)\n"
+            "      --log x|y|xy      draw these axes logarithmic\n"
             "      --engine E        auto (default): for each model the cheapest that can do it;\n"
             "                        direct, ngspice, ida, or several with commas between, in the\n"
             "                        order in which they are asked\n"
@@ -81,8 +83,8 @@ const dea_command dea_command_run = {
             "                        merge joins with the others\n"
             "      --resume          go on where a run with --resume stopped, however it ended;\n"
             "                        what is solved is kept in FILE.journal until FILE is there\n"
-            "      --force               a target may overwrite a file that was read\n"
-            "      --no-files            refuse a scene that names other files (material, waveform)\n"
+            "      --force           a target may overwrite a file that was read\n"
+            "      --no-files        refuse a scene that names other files (material, waveform)\n"
             "  -q, --quiet           no summary and no progress\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"
@@ -98,9 +100,10 @@ const dea_command dea_command_run = {
             "  deaspice run dot.yaml --engine direct --model lumped,field --set drive.voltage='3 kV'\n"
             "  deaspice run dot.yaml -o dot.nc --resume\n"
             "  deaspice run dot.yaml --shard 3/10 -o part-3.dea\n",
-    .takes = DEA_TAKES_ENGINE | DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_FORMAT | DEA_TAKES_PLOT | DEA_TAKES_JOBS |
+    .takes = DEA_TAKES_ENGINE | DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_FORMAT | DEA_TAKES_PLOT | DEA_TAKES_LOG | DEA_TAKES_JOBS |
              DEA_TAKES_QUIET | DEA_TAKES_FULL | DEA_TAKES_JOURNAL,
     .least = 1,
     .most = 1,
+    .files = ".yaml",
     .run = run,
 };

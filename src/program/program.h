@@ -5,6 +5,8 @@
 #define DEA_PROGRAM_PROGRAM_H
 
 #include "deaspice/engine.h"
+#include "deaspice/fit.h"
+#include "deaspice/plot.h"
 #include "deaspice/scene.h"
 #include "support/files.h"
 
@@ -31,7 +33,8 @@ typedef enum dea_takes {
     DEA_TAKES_JOURNAL = 1 << 10, /**< --shard, --resume */
     DEA_TAKES_FULL = 1 << 11,    /**< --full */
     DEA_TAKES_BENCH = 1 << 12,   /**< --runs, --budget */
-    DEA_TAKES_CURVES = 1 << 13   /**< --to */
+    DEA_TAKES_CURVES = 1 << 13,  /**< --to */
+    DEA_TAKES_LOG = 1 << 14      /**< --log */
 } dea_takes;
 
 /** Mode of a data file as the command line gives it. */
@@ -52,6 +55,7 @@ typedef struct dea_arguments {
     const char *output;
     const char *format;
     const char *plot;
+    dea_plot_options picture; /**< --size, --log; zeroed: not given */
     size_t jobs; /**< 0: not given; "auto" is already the number of cores */
     bool quiet;
     bool full;
@@ -62,6 +66,7 @@ typedef struct dea_arguments {
     bool relative;
     const char *relaxation; /**< NULL: not given */
     double ramp;            /**< [s], NAN: not given */
+    dea_specimen specimen;  /* of the fit's tables, 0: not given */
     size_t branches;        /**< 0: not given */
     const char *as;         /**< NULL: not given */
     const char *dialect;    /**< NULL: not given */
@@ -79,6 +84,9 @@ typedef struct dea_arguments {
     size_t operand_count;
 } dea_arguments;
 
+/** Word number @p index of a list, NULL past its end. */
+typedef const char *dea_word(size_t index, char room[DEA_NAME_LENGTH]);
+
 /** A command. */
 typedef struct dea_command {
     const char *name;
@@ -86,8 +94,15 @@ typedef struct dea_command {
     const char *help;    /**< text of --help */
     unsigned takes;      /**< dea_takes */
     size_t least, most;  /**< operands */
+    dea_word *words;     /**< that an operand may be, NULL: none */
+    const char *files;   /**< what a file that an operand may be ends in, "": anything, NULL: no file */
     dea_exit (*run)(const dea_arguments *arguments);
 } dea_command;
+
+/** Command number @p index, NULL past the end. */
+const dea_command *dea_command_at(size_t index);
+/** Kinds of export. */
+dea_word dea_export_word;
 
 extern const dea_command dea_command_run;
 extern const dea_command dea_command_merge;
@@ -96,6 +111,8 @@ extern const dea_command dea_command_bench;
 extern const dea_command dea_command_export;
 extern const dea_command dea_command_fit;
 extern const dea_command dea_command_materials;
+extern const dea_command dea_command_init;
+extern const dea_command dea_command_completion;
 
 /** How parsing ended. */
 typedef enum dea_parsed { DEA_PARSED_FINE, DEA_PARSED_HELP, DEA_PARSED_VERSION, DEA_PARSED_WRONG } dea_parsed;

@@ -55,6 +55,9 @@ bool dea_scene_open(const dea_arguments *arguments, const char *path, dea_scene 
         scene->full = arguments->full;
         *outcome = DEA_EXIT_USAGE;
         if (dea_inputs_note(arguments, scene->files) && dea_targets_free(arguments, scene->files)) {
+            if (scene->drive.waveform.columns[0] && !arguments->quiet) {
+                dea_complain("note: waveform file: %s", scene->drive.waveform.columns);
+            }
             return true;
         }
         dea_scene_free(scene);

@@ -3,7 +3,7 @@
 #define DEA_SCENE_READER_H
 
 #include "scene/keys.h"
-#include "scene/quantity.h"
+#include "support/quantity.h"
 #include "support/text.h"
 
 enum { DEA_READER_SLOTS = sizeof(dea_scene) / sizeof(double) + 1, DEA_MATERIAL_DEPTH = 8, DEA_WORD_ROOM = 256 };
@@ -72,6 +72,7 @@ dea_status dea_read_model(dea_reader *reader, const dea_ref *ref, const dea_node
 dea_status dea_read_engine(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_later(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_material(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_law(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_source(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_stretches(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_permittivity(dea_reader *reader, const dea_ref *ref, const dea_node *node);

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "deaspice/scene.h"
-#include "scene/file.h"
+#include "support/file.h"
 #include "scene/reader.h"
 
 static dea_status scene_clear(dea_scene *scene)
@@ -66,7 +66,7 @@ static dea_status list_override(dea_reader *reader, const char *path, const char
         list.last = node;
         list.count++;
     }
-    return ref.key->read(reader, &ref, &list);
+    return ref.key.read(reader, &ref, &list);
 }
 
 static dea_status reader_run(dea_reader *reader, const char *text, size_t length, const dea_origin *origin,

@@ -44,7 +44,7 @@ const char *dea_direct_refuses_transient(const dea_scene *scene, const dea_model
     bool ramps = wave->kind == DEA_WAVE_SINE && wave->sine.amplitude != 0.0;
     ramps = ramps || (wave->kind == DEA_WAVE_STEP && wave->step.rise > 0.0 && wave->step.voltage != 0.0);
     for (size_t i = 1; wave->kind == DEA_WAVE_POINTS && i < wave->point_count; i++) {
-        ramps = ramps || wave->voltages[i] != wave->voltages[i - 1];
+        ramps = ramps || (wave->voltages[i] != wave->voltages[i - 1] && wave->times[i] > wave->times[i - 1]);
     }
     return ramps && linear.softening != 0.0 && !scene->reduction.softening ? varies : NULL;
 }

@@ -189,8 +189,8 @@ static dea_expr tension_of(const dea_symbols *symbols, const ring_strains *e)
     dea_pool *pool = symbols->pool;
     const dea_expr one = NUM(1.0);
     const dea_expr c = DIV(ADD(one, symbols->coverage), SUB(one, symbols->coverage));
-    const dea_expr front =
-        SCALE(DEA_PI, MUL(symbols->film_thickness, DIV(dea_symbols_rest_stress(symbols), SQUARE(symbols->prestretch))));
+    const dea_expr rest = DIV(dea_symbols_rest_stress(symbols), SQUARE(symbols->prestretch)); /* sigma_pre/lambda_pre^2 */
+    const dea_expr front = SCALE(DEA_PI, MUL(symbols->film_thickness, rest));
     const dea_expr sum =
         ADD(DIV(NUM(2.0), ADD(one, e->disc)), ADD(DIV(c, ADD(one, e->radial)), DIV(one, MUL(c, ADD(one, e->hoop)))));
     return NEG(MUL(MUL(front, sum), dea_expr_node(pool, 0)));

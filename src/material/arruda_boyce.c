@@ -80,6 +80,11 @@ static void change(const dea_film *film, size_t count, const double *strains, de
     }
 }
 
+static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
+{
+    return dea_invariant_biaxial(slopes, gain, film, e1, e2);
+}
+
 /* The chain stretch sqrt(I1/3) has come to lambda_m; the five terms go on. */
 static double locking(const double *c)
 {

@@ -100,7 +100,7 @@ static void draw_material(uint64_t *seed, dea_material *m)
 {
     random_material(seed, m);
     if (random_chance(seed, 0.2)) {
-        *m = *dea_material_find(random_chance(seed, 0.5) ? "vhb-4910" : "elastosil-2030");
+        *m = *dea_material_find(random_chance(seed, 0.5) ? "vhb-4910-neo-hookean" : "elastosil-2030");
     } else {
         const double factor = random_decades(seed, 0.1, 30.0);
         for (int i = 0; i < DEA_YEOH_TERMS; i++) {

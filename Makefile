@@ -9,11 +9,12 @@ VERSION  := 0.1.0
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion
 PKG_CONFIG ?= pkg-config
 ALL_CFLAGS  = -std=c11 -D_POSIX_C_SOURCE=200809L -D_DEFAULT_SOURCE $(WARNINGS) -ffp-contract=off -fvisibility=hidden -fPIC -Iinclude -Isrc \
-              -DDEA_VERSION='"$(VERSION)"' -MMD -MP $(shell $(PKG_CONFIG) --cflags-only-I libfyaml ngspice lapacke $(MPI) 2>/dev/null) \
+              -DDEA_VERSION='"$(VERSION)"' -MMD -MP $(HEADERS) \
               $(LOADED) $(CPPFLAGS) $(CFLAGS)
 
 # $(call once,NAME,COMMAND): the output of a shell command that runs when it is first needed, and not again.
 once = $(eval $(1) := $$(shell $(2)))$($(1))
+HEADERS = $(call once,HEADERS,$(PKG_CONFIG) --cflags-only-I libfyaml ngspice lapacke $(MPI) 2>/dev/null)
 # Version of SUNDIALS, and whether its headers need those of the MPI that it was built with, by those that are compiled against.
 SUNDIALS_VERSION = $(call once,SUNDIALS_VERSION,printf '\043include <sundials/sundials_config.h>\nSUNDIALS_VERSION_MAJOR SUNDIALS_MPI_ENABLED\n' | \
                    $(CC) $(CPPFLAGS) $(CFLAGS) -E -P - 2>/dev/null | tail -n 1)
@@ -62,11 +63,15 @@ packages-check:
 
 # The main job on real input: the coverage sweep of the paper's Figure 10, as a table and as a picture.
 demo: packages
-	@$(MAKE) --no-print-directory -j$(JOBS) all
+	@echo "building the program"
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/deaspice >/dev/null
 	@mkdir -p demo
-	$(BUILD)/deaspice run examples/figure10.yaml --engine direct -o demo/figure10.csv --plot demo/figure10.svg
-	$(BUILD)/deaspice check --quiet examples/figure10.yaml
-	@echo "demo/figure10.csv and demo/figure10.svg are made"
+	@$(BUILD)/deaspice run examples/figure10.yaml --engine ngspice,direct -o demo/figure10.csv --plot demo/figure10.svg 2>demo/log || { cat demo/log; exit 1; }
+	@$(BUILD)/deaspice check examples/figure10.yaml >demo/check || { cat demo/check; exit 3; }
+	@grep -e ': largest strain' -e ' points in ' demo/log
+	@awk '$$NF == "agrees" {n++; for (i = 4; i < NF - 1; i++) if ($$i + 0 > worst) worst = $$i + 0} \
+	END {printf "engines direct, ngspice and ida agree in %d comparisons, the largest relative difference is %.1e\n", n, worst; exit n == 0}' demo/check
+	@echo "the table is demo/figure10.csv, the picture demo/figure10.svg; next: $(BUILD)/deaspice run examples/protocol.yaml --plot demo/protocol.svg"
 
 # Everything that must hold: unit tests, engines against each other, examples, bad input, sanitizers, fuzzing, a second compiler.
 check: packages-check
@@ -176,21 +181,34 @@ $(BUILD)/make_netlists: tests/make_netlists.c $(BUILD)/libdeaspice.a
 	@echo "CC $@"
 	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) $^ -o $@ $(LDFLAGS) $(LIBS)
 
+SHARE = $(DESTDIR)$(PREFIX)/share
+COMPLETIONS = $(SHARE)/bash-completion/completions/deaspice $(SHARE)/zsh/site-functions/_deaspice \
+              $(SHARE)/fish/vendor_completions.d/deaspice.fish
 install: all
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/pkgconfig $(DESTDIR)$(PREFIX)/include/deaspice $(DESTDIR)$(PREFIX)/share/man/man1
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/pkgconfig $(DESTDIR)$(PREFIX)/include/deaspice $(SHARE)/man/man1 \
+	  $(SHARE)/deaspice $(dir $(COMPLETIONS))
 	install -m 755 $(BUILD)/deaspice $(DESTDIR)$(PREFIX)/bin/
 	install -m 644 $(BUILD)/libdeaspice.a $(DESTDIR)$(PREFIX)/lib/
 	install -m 755 $(BUILD)/libdeaspice.so $(DESTDIR)$(PREFIX)/lib/libdeaspice.so.0
 	ln -sf libdeaspice.so.0 $(DESTDIR)$(PREFIX)/lib/libdeaspice.so
 	install -m 644 include/deaspice/*.h $(DESTDIR)$(PREFIX)/include/deaspice/
-	install -m 644 src/program/deaspice.1 $(DESTDIR)$(PREFIX)/share/man/man1/
+	install -m 644 src/program/deaspice.1 $(SHARE)/man/man1/
+	$(BUILD)/deaspice completion bash >$(word 1,$(COMPLETIONS))
+	$(BUILD)/deaspice completion zsh >$(word 2,$(COMPLETIONS))
+	$(BUILD)/deaspice completion fish >$(word 3,$(COMPLETIONS))
+	rm -rf $(SHARE)/deaspice/netlists $(SHARE)/deaspice/examples
+	cp -R netlists examples $(SHARE)/deaspice/
+	chmod -R a+rX $(SHARE)/deaspice
 	printf 'prefix=%s\nlibdir=$${prefix}/lib\nincludedir=$${prefix}/include\n\nName: deaspice\nDescription: networks of dielectric elastomer actuators\nVersion: %s\nLibs: -L$${libdir} -ldeaspice\nLibs.private: %s\nCflags: -I$${includedir}\n' \
 	  '$(PREFIX)' '$(VERSION)' '$(LIBS)' >$(DESTDIR)$(PREFIX)/lib/pkgconfig/deaspice.pc
+	@printf '%s\n' "program      $(DESTDIR)$(PREFIX)/bin/deaspice" "library      $(DESTDIR)$(PREFIX)/lib/libdeaspice.{so,a}" \
+	  "headers      $(DESTDIR)$(PREFIX)/include/deaspice" "man page     $(SHARE)/man/man1/deaspice.1" \
+	  "examples     $(SHARE)/deaspice/examples" "netlists     $(SHARE)/deaspice/netlists" $(COMPLETIONS:%="completion   %")
 
 uninstall:
 	rm -f $(DESTDIR)$(PREFIX)/bin/deaspice $(DESTDIR)$(PREFIX)/lib/libdeaspice.a $(DESTDIR)$(PREFIX)/lib/libdeaspice.so* \
-	  $(DESTDIR)$(PREFIX)/lib/pkgconfig/deaspice.pc $(DESTDIR)$(PREFIX)/share/man/man1/deaspice.1
-	rm -rf $(DESTDIR)$(PREFIX)/include/deaspice
+	  $(DESTDIR)$(PREFIX)/lib/pkgconfig/deaspice.pc $(SHARE)/man/man1/deaspice.1 $(COMPLETIONS)
+	rm -rf $(DESTDIR)$(PREFIX)/include/deaspice $(SHARE)/deaspice
 
 clean:
 	rm -rf $(BUILD) demo

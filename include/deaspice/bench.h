@@ -6,6 +6,7 @@
 #define DEASPICE_BENCH_H
 
 #include "deaspice/engine.h"
+#include "deaspice/plot.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -97,11 +98,13 @@ typedef struct dea_bench_output dea_bench_output;
 /** Opens what a study is to be written to, before the work: a target that cannot be written fails here.
  *
  * @param table   CSV with a row a setting, "-" is standard output; NULL: none
- * @param picture SVG or PNG through gnuplot: error over time, a curve for each engine and model, and beside it, in statics, the
+ * @param picture through gnuplot, by its ending as plot.h says: error over time, a curve for each engine and model, and beside it, in statics, the
  *                models' errors over time a point; NULL: none
+ * @param options of the picture, NULL: none
  * @param[out] output the caller ends it with dea_bench_output_finish()
  * @return DEA_OK, DEA_ERROR_USAGE (ending of the picture), DEA_ERROR_IO, DEA_ERROR_MISSING (no gnuplot), DEA_ERROR_MEMORY */
-DEA_API dea_status dea_bench_output_open(const char *table, const char *picture, dea_bench_output **output, dea_error *error);
+DEA_API dea_status dea_bench_output_open(const char *table, const char *picture, const dea_plot_options *options,
+                                         dea_bench_output **output, dea_error *error);
 /** Writes the study and frees the output; where @p bench is NULL, nothing is written. A NULL output is fine.
  * @return DEA_OK, DEA_ERROR_USAGE (nothing to draw), DEA_ERROR_IO, DEA_ERROR_ENGINE (gnuplot failed: its words),
  * DEA_ERROR_MISSING, DEA_ERROR_MEMORY */

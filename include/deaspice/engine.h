@@ -29,6 +29,8 @@ typedef struct dea_engine {
     double run_patience; /**< the same for one transient or frequency response [s] */
     size_t block;        /**< points that one call of sweep() takes best */
     unsigned omits;      /**< parts of a moving network that cost it time: 1 << dea_part */
+    /** What a static point, a transient or a frequency response of a model of each form takes, in orders of magnitude [s]. */
+    double costs[DEA_STUDIES][DEA_FORMS];
     /** Writes name and version of the foreign library whose numbers these are. NULL: there is none. */
     void (*library)(char *text, size_t size);
     /** NULL where the engine can do this model and scene, else why not (one phrase, static). */
@@ -63,6 +65,18 @@ DEA_API const dea_engine *dea_engine_at(size_t index);
 /** Engine by name, NULL if there is none. */
 DEA_API const dea_engine *dea_engine_find(const char *name);
 
+/** Engines for a model in the order in which they are asked: one is asked where all before it could not deliver. */
+typedef struct dea_crew {
+    const dea_engine *engines[DEA_ENGINES];
+    size_t count; /**< 0: nobody can */
+} dea_crew;
+
+/** Engines that can do a study of the scene with a model: @p engine alone, or where it is NULL those of the scene, without one
+ * that needs worker processes for points that another one solves in this process. */
+DEA_API dea_crew dea_crew_of(const dea_scene *scene, const dea_engine *engine, const dea_model *model);
+/** Names the engines that are asked first, e.g. "direct" or "lumped by direct, coverage by ida". */
+DEA_API void dea_crew_names(const dea_scene *scene, const dea_engine *engine, char *text, size_t size);
+
 /** How a study is run and who listens. Every callback may be NULL except points. */
 typedef struct dea_run_options {
     size_t jobs; /**< worker processes, >= 1; 1 keeps an engine that is not isolated in this process */
@@ -84,7 +98,7 @@ typedef struct dea_run_options {
     void *user;
 } dea_run_options;
 
-/** Runs the scene's study: all models, all points, rows in order.
+/** Runs the scene's study: all models, all points, rows in order, by @p engine, or where it is NULL each model by its crew.
  *
  * Workers are forked; none is left behind, whatever way the run ends. A worker that crashes, hangs or fails costs only the points
  * that it cannot solve even alone: those rows are `failed`.

@@ -25,10 +25,18 @@ typedef struct dea_fit_point {
     dea_load load;  /**< never DEA_LOAD_UNKNOWN */
 } dea_fit_point;
 
+/** Size of a specimen at rest, for tables of displacement and force. */
+typedef struct dea_specimen {
+    double length; /**< between the clamps [m], > 0, 0: not known */
+    double area;   /**< cross-section [m^2], > 0, 0: not known */
+} dea_specimen;
+
 /** Measured points; zeroed: none. Owns its points; free with dea_fit_data_free(). */
 typedef struct dea_fit_data {
     dea_fit_point *points;
-    size_t count, room; /**< points in use, points allocated */
+    size_t count, room;              /**< points in use, points allocated */
+    dea_specimen specimen;           /**< of the tables that are read next */
+    char columns[DEA_SOURCE_LENGTH]; /**< what each column of the table that was read last was taken for, in words */
 } dea_fit_data;
 
 /** A number of constants that was tried. */
@@ -44,14 +52,14 @@ typedef struct dea_fit {
     double constants[DEA_LAW_CONSTANTS]; /**< C_i [Pa], 0 beyond terms */
     double deviation[DEA_YEOH_TERMS]; /**< standard errors of C_i [Pa], given the terms; NAN where points = terms */
     dea_fit_trial trials[DEA_YEOH_TERMS]; /**< 1 constant, 2, ... */
-    double residual_rms;              /**< root mean square of (measured - fitted) [Pa] */
-    double residual_relative;         /**< residual_rms over the rms of the measured stress [1] */
-    double r_squared;                 /**< 1 - sum of squared residuals / sum of squared deviations from the mean [1] */
-    double condition;                 /**< condition number of the column-scaled problem [1] */
-    size_t count[DEA_LOAD_COUNT];     /**< points of each load */
-    double stretch_min, stretch_max;  /**< range of the data [1] */
-    double unstable_stretch;          /**< smallest stretch of the range where a tangent modulus is not positive [1], NAN: none */
-    double unloads_from;              /**< largest stretch before the data go back by a fifth of their range [1], NAN: they do not */
+    double residual_rms;                  /**< root mean square of (measured - fitted) [Pa] */
+    double residual_relative;             /**< residual_rms over the rms of the measured stress [1] */
+    double r_squared;                     /**< 1 - sum of squared residuals / sum of squared deviations from the mean [1] */
+    double condition;                     /**< condition number of the column-scaled problem [1] */
+    size_t count[DEA_LOAD_COUNT];         /**< points of each load */
+    double stretch_min, stretch_max;      /**< range of the data [1] */
+    double unstable_stretch; /**< smallest stretch of the range where a tangent modulus is not positive [1], NAN: none */
+    double unloads_from;     /**< largest stretch before the data go back by a fifth of their range [1], NAN: they do not */
 } dea_fit;
 
 /** Name of a load: "uniaxial", "equibiaxial", "unknown". */
@@ -61,8 +69,10 @@ DEA_API dea_load dea_load_find(const char *name);
 
 /** Reads a table of measured points and appends it to @p data.
  *
- * CSV (or ; or tab between the fields) with a header row: `stretch`, one of `stress_Pa`, `stress_kPa`, `stress_MPa` (nominal
- * stress), and optionally `mode` (uniaxial or equibiaxial). Blank lines and lines that begin with # are skipped.
+ * Fields apart by comma, semicolon, tab or blanks; decimal comma where the fields stand apart by another sign; comments (#),
+ * blank lines and title lines are skipped. The header names columns with their units (`stress_kPa`, `Stress (MPa)`, or a row of
+ * units): stretch, strain (a ratio or percent) or displacement; nominal stress or force; optionally `mode` (uniaxial or
+ * equibiaxial). Displacement and force want the specimen of @p data. Other columns are left alone.
  * @param path file name, "-" for standard input; only regular files and pipes are read, at most 64 MiB
  * @param load of all points of a file without the column `mode`
  * @return DEA_OK, DEA_ERROR_SCENE (message "file:line:column: ..."), DEA_ERROR_IO, DEA_ERROR_MEMORY; @p data is as before on
@@ -91,15 +101,18 @@ DEA_API double dea_fit_stress(const dea_law *law, const double constants[DEA_LAW
 
 /** One measured point of a relaxation test. */
 typedef struct dea_relaxation_point {
-    double time;   /**< since the end of the ramp [s], >= 0 */
-    double stress; /**< at the held stretch, nominal or true [Pa]; not below minus a tenth of the largest, which is noise about 0 */
+    double time; /**< since the end of the ramp [s], >= 0 */
+    double
+        stress; /**< at the held stretch, nominal or true [Pa]; not below minus a tenth of the largest, which is noise about 0 */
 } dea_relaxation_point;
 
 /** One relaxation test; zeroed: a step without points. Owns its points; free with dea_relaxation_data_free(). */
 typedef struct dea_relaxation_data {
-    dea_relaxation_point *points; /**< times increasing */
-    size_t count, room;           /**< points in use, points allocated */
-    double ramp;                  /**< duration of the ramp before the hold [s], >= 0, default 0: an ideal step */
+    dea_relaxation_point *points;    /**< times increasing */
+    size_t count, room;              /**< points in use, points allocated */
+    double ramp;                     /**< duration of the ramp before the hold [s], >= 0, default 0: an ideal step */
+    dea_specimen specimen;           /**< of the table that is read */
+    char columns[DEA_SOURCE_LENGTH]; /**< what each of its columns was taken for, in words */
 } dea_relaxation_data;
 
 /** A number of branches that was tried. */
@@ -139,8 +152,9 @@ typedef struct dea_relaxation {
 
 /** Reads a relaxation test into @p data, which has no points yet; its ramp stays.
  *
- * CSV as dea_fit_read(), with one of `time_s`, `time_ms`, `time_min` (since the end of the ramp, increasing; rows of
- * equal time become their mean) and one of `stress_Pa`, `stress_kPa`, `stress_MPa`.
+ * A table as of dea_fit_read() with time (since the end of the ramp, increasing; rows of equal time become their mean) and stress
+ * or force. With a displacement too, time may count from anywhere: the hold begins where it is reached, and a ramp of 0 becomes
+ * the one before it.
  * @return DEA_OK, DEA_ERROR_SCENE (message "file:line:column: ..."), DEA_ERROR_USAGE (has points), DEA_ERROR_IO,
  * DEA_ERROR_MEMORY; @p data has no points on DEA_ERROR_SCENE
  */

@@ -21,7 +21,7 @@ extern "C" {
 enum { DEA_LAW_CONSTANTS = 8, DEA_PRONY_MAX = 64, DEA_NAME_LENGTH = 64, DEA_SOURCE_LENGTH = 256 };
 
 struct dea_film;
-struct dea_form;
+struct dea_law_form;
 struct dea_pool;
 
 /** Principal in-plane nominal stresses and tangent moduli of the passive film at stretches l1, l2 [Pa]. */
@@ -35,6 +35,13 @@ typedef struct dea_stress {
 typedef struct dea_change {
     double value, slope, curve;
 } dea_change;
+
+/** Changes of the nominal stresses from the equi-biaxial pre-stretch to lambda_pre (1 + e1), lambda_pre (1 + e2), and the tangent
+ * moduli there [Pa]. */
+typedef struct dea_biaxial {
+    double p1, p2;
+    double w11, w12, w22;
+} dea_biaxial;
 
 /** One constant of a law. */
 typedef struct dea_constant {
@@ -53,6 +60,7 @@ typedef struct dea_law {
     const char *name;              /**< key in a scene, e.g. "yeoh" */
     const char *title;             /**< e.g. "Yeoh" */
     const char *energy_text;       /**< W in words of its constants */
+    const char *accepted;          /**< how a scene gives the constants, with an example, for messages */
     const dea_constant *constants; /**< constant_count of them; where it is a list, those of one entry */
     size_t constant_count;         /**< >= 1 */
     size_t entries;                /**< 1: a mapping of constants; more: a list of at most so many such mappings */
@@ -75,7 +83,9 @@ typedef struct dea_law {
     /** Changes of the equi-biaxial Cauchy stress at @p count strains; keep their digits however small the strains are. */
     void (*change)(const struct dea_film *film, size_t count, const double *strains, dea_change *changes);
     /** The same law as expressions, for networks: constants and stretches l1, l2 are terms of a pool (src/material/form.h). */
-    void (*form)(struct dea_pool *pool, const int *constants, int l1, int l2, struct dea_form *form);
+    void (*form)(struct dea_pool *pool, const int *constants, int l1, int l2, struct dea_law_form *form);
+    /** Both nominal stresses and the moduli at once, as exact as rise(). NULL: they are made of rise() and stress(). */
+    dea_biaxial (*biaxial)(const struct dea_film *film, double e1, double e2);
 } dea_law;
 
 /** One branch of a Prony series. */
@@ -157,6 +167,8 @@ DEA_API double dea_law_energy(const dea_law *law, const double constants[DEA_LAW
 DEA_API double dea_law_equibiaxial(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double stretch);
 /** Operating modulus Y = dsigma/dlambda of the equi-biaxial Cauchy stress [Pa]. */
 DEA_API double dea_law_modulus(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double stretch);
+/** Changes of both nominal stresses of a film from its pre-stretch, and moduli; NAN where the energy has ended. */
+DEA_API dea_biaxial dea_film_biaxial(const dea_film *film, double e1, double e2);
 /** Film of a law at rest under an equi-biaxial pre-stretch >= 0, its permittivity 0, without breakdown. */
 DEA_API dea_film dea_law_film(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double prestretch);
 

@@ -58,6 +58,18 @@ typedef struct dea_model {
     bool membrane;
 } dea_model;
 
+/** What solving a model takes, from the cheapest up. */
+typedef enum dea_form {
+    DEA_FORM_CLOSED,       /**< a closed form that is no network */
+    DEA_FORM_LINEAR,       /**< a network of linear springs */
+    DEA_FORM_HYPERELASTIC, /**< a network with others */
+    DEA_FORM_MEMBRANE,     /**< a boundary value problem */
+    DEA_FORMS
+} dea_form;
+
+/** Form of a model. */
+DEA_API dea_form dea_model_form(const dea_model *model);
+
 /** Number of models. */
 DEA_API size_t dea_model_count(void);
 /** Model number @p index from the cheapest up, NULL past the end. The library owns it. */

@@ -1,6 +1,7 @@
 /** @file plot.h
- * Pictures (SVG, PNG) through gnuplot: of studies, of a material, of a fit. A picture appears whole or not at all.
- * The format is that of the path's ending, .svg or .png; "-" is not taken.
+ * Pictures through gnuplot: of studies, of a material, of a fit. A picture appears whole or not at all. The format is that of the
+ * path's ending: .svg, .png, .pdf, .eps, or .gp for the script of gnuplot with its data, which needs no gnuplot to be written;
+ * "-" is not taken.
  */
 #ifndef DEASPICE_PLOT_H
 #define DEASPICE_PLOT_H
@@ -16,6 +17,16 @@ extern "C" {
 
 typedef struct dea_plot dea_plot;
 
+#define DEA_PLOT_SIDE_LEAST 0.04 /**< [m] */
+#define DEA_PLOT_SIDE_MOST 2.0   /**< [m] */
+
+/** How a picture looks. Zeroed, or NULL in its place: 25 cm wide, as high as its panels ask for, axes as the study has them. */
+typedef struct dea_plot_options {
+    double width, height; /**< [m], DEA_PLOT_SIDE_LEAST to DEA_PLOT_SIDE_MOST; 0: as the picture asks for */
+    bool log_x;           /**< logarithmic along x: the long axis, time; points at or below zero are left out */
+    bool log_y;           /**< logarithmic along y: strain, displacement, current, the second axis of a map */
+} dea_plot_options;
+
 /** Opens the picture of a study; the scene must outlive it. It keeps at most some 2000 points of a curve, so its memory is
  * bounded.
  *
@@ -27,7 +38,8 @@ typedef struct dea_plot dea_plot;
  * @return DEA_OK, DEA_ERROR_USAGE (ending, a single point, too many curves), DEA_ERROR_IO, DEA_ERROR_MISSING (no gnuplot),
  *         DEA_ERROR_MEMORY
  */
-DEA_API dea_status dea_plot_begin(const dea_scene *scene, const char *path, dea_plot **plot, dea_error *error);
+DEA_API dea_status dea_plot_begin(const dea_scene *scene, const char *path, const dea_plot_options *options, dea_plot **plot,
+                                  dea_error *error);
 /** Takes the rows of @p count points, laid out as dea_layout_of() says, the first of them being point number @p first: models
  * slowest, last axis fastest. */
 DEA_API void dea_plot_points(dea_plot *plot, size_t first, const void *points, size_t count);
@@ -38,11 +50,13 @@ DEA_API dea_status dea_plot_finish(dea_plot *plot, bool keep, dea_error *error);
 
 /** Draws nominal stress (uniaxial and equi-biaxial) and operating modulus of a material over stretch 1 to @p to, which is
  * above 1. Returns as dea_plot_finish(). */
-DEA_API dea_status dea_plot_material(const dea_material *material, double to, const char *path, dea_error *error);
+DEA_API dea_status dea_plot_material(const dea_material *material, double to, const char *path, const dea_plot_options *options,
+                                     dea_error *error);
 /** Draws measured points and fitted curves: stress over stretch, stress over time, or both side by side; @p fit or @p relaxation
  * may be NULL, not both. Returns as dea_plot_finish(). */
 DEA_API dea_status dea_plot_fit(const dea_fit *fit, const dea_fit_data *data, const dea_relaxation *relaxation,
-                                const dea_relaxation_data *held, const char *path, dea_error *error);
+                                const dea_relaxation_data *held, const char *path, const dea_plot_options *options,
+                                dea_error *error);
 
 #ifdef __cplusplus
 }

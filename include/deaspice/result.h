@@ -88,7 +88,7 @@ typedef struct dea_summary {
     double resonance;  /**< of the damped swing of the free film, at rest and 0 V [Hz]; NAN: it does not swing */
     double decay;      /**< of that swing [1/s], 0: undamped; NAN: none */
     /** Largest magnitude of the source's current, between samples too, within ten times the accuracy [A], and when [s]; NAN where
-     * no series resistance limits it, or the run leaves it out. */
+     * the voltage jumps and no series resistance limits it, or the run leaves out what moves or charges the film in between. */
     double peak_current, peak_time;
     /** Means of the solution over the scene's windows, integrated by the engine whatever the samples, each within the accuracy of
      * the displacement's peak; NAN for those that the scene does not have and where the film has no number in the window. */

@@ -18,10 +18,13 @@ extern "C" {
 #endif
 
 struct dea_model;
+struct dea_engine;
 struct dea_files;
 
 /** Most models that one scene compares (`model: [lumped, coverage]`). */
 enum { DEA_SCENE_MODELS = 8 };
+/** Most engines that there are. */
+enum { DEA_ENGINES = 4 };
 
 /** Where the electrode is: on the disc (dot) or on the annulus (lens). */
 typedef enum dea_kind { DEA_DOT, DEA_LENS } dea_kind;
@@ -64,10 +67,11 @@ typedef struct dea_waveform {
     dea_wave_kind kind;
     dea_step step;
     dea_sine sine;
-    double *times;    /**< points, strictly increasing, point_count of them [s]; owned by the scene */
+    double *times;    /**< points, not decreasing, point_count of them [s]; two of one time are a jump; owned by the scene */
     double *voltages; /**< their voltages, linear in between and held before the first and after the last [V]; owned too */
     size_t point_count;
     double period; /**< what step or points say before this time repeats [s], NAN: once */
+    char columns[DEA_SOURCE_LENGTH]; /**< of points from a file: what each of its columns was taken for, in words; else "" */
 } dea_waveform;
 
 /** Electrical side. */
@@ -92,6 +96,8 @@ typedef struct dea_axis {
 
 /** What a study asks for. */
 typedef enum dea_study_kind { DEA_STUDY_SWEEP, DEA_STUDY_TRANSIENT, DEA_STUDY_AC } dea_study_kind;
+
+enum { DEA_STUDIES = DEA_STUDY_AC + 1 };
 
 /** Most windows over which a transient averages, and most samples of one. */
 enum { DEA_WINDOWS = 8, DEA_SAMPLES_MAX = 4000000 };
@@ -145,9 +151,12 @@ typedef struct dea_scene {
     const struct dea_model *models[DEA_SCENE_MODELS]; /**< models to run one after the other, model_count of them */
     size_t model_count;                               /**< >= 1 */
     bool automatic;          /**< `model: auto`: the first model is the finest there is until dea_needs_model() has chosen one */
+    double model_error;      /**< what the model that `auto` chooses may be off from the finest [1], 0 ... 1, default 0.01 */
+    const struct dea_engine *engines[DEA_ENGINES]; /**< those that may solve it, in the order in which they are asked */
+    size_t engine_count;                           /**< 0 (`engine: auto`): all of them, the cheapest first */
     bool full;               /**< a transient leaves out nothing (see needs.h), default false; never read from a file */
     dea_reduction reduction; /**< never read from a file: set by dea_needs_find() */
-    double accuracy;         /**< wanted relative error of the solution [1], 0 < accuracy < 1, default 1e-6 */
+    double accuracy;         /**< wanted relative error of the solution of the chosen model [1], 0 < accuracy < 1, default 1e-6 */
     dea_study_kind study;    /**< sweep, transient or AC */
     dea_transient transient; /**< of a transient */
     dea_ac ac;               /**< of an AC study */
@@ -166,6 +175,7 @@ typedef struct dea_reading {
     const dea_setting *settings; /**< setting_count of them, which replace what the file says; NULL: none */
     size_t setting_count;
     const char *model; /**< model name, or names with commas between, that replaces the scene's; NULL: the scene's */
+    const char *engine; /**< the same for engines; NULL: the scene's */
     bool no_files;     /**< true: a scene that names another file (material, waveform) is refused; default false */
 } dea_reading;
 

@@ -23,13 +23,27 @@ static size_t larger(size_t a, size_t b)
     return a > b ? a : b;
 }
 
-static size_t block_size(const dea_scene *scene, const dea_engine *engine, size_t points, size_t total)
+/* What all who may be asked can take, and whether one of them is isolated. */
+static size_t best_block(const dea_scene *scene, const dea_engine *engine, bool *isolated)
+{
+    size_t best = SIZE_MAX;
+    *isolated = false;
+    for (size_t m = 0; m < scene->model_count; m++) {
+        const dea_crew crew = dea_crew_of(scene, engine, scene->models[m]);
+        for (size_t i = 0; i < crew.count; i++) {
+            best = smaller(best, larger(crew.engines[i]->block, 1));
+            *isolated = *isolated || crew.engines[i]->isolated;
+        }
+    }
+    return best;
+}
+
+static size_t block_size(const dea_scene *scene, size_t best, bool isolated, size_t points, size_t total)
 {
     if (scene->study != DEA_STUDY_SWEEP)
         return 1; /* a point is a whole run */
-    const size_t best = engine->block > 0 ? engine->block : 1;
     size_t block = smaller(best, larger(divide_up(total, BLOCKS_WANTED), divide_up(best, SMALLEST_SHARE)));
-    if (!engine->isolated)
+    if (!isolated)
         block = smaller(block, MOST_HERE);
     return smaller(block, points);
 }
@@ -42,7 +56,8 @@ dea_status dea_cut_make(const dea_scene *scene, const dea_engine *engine, dea_cu
     if (points > SIZE_MAX / sizeof(dea_row) / scene->model_count)
         return dea_fail(error, DEA_ERROR_USAGE, "the study has more points than this machine can count");
     *cut = (dea_cut){.points = points, .total = points * scene->model_count};
-    cut->block = block_size(scene, engine, points, cut->total);
+    const size_t best = best_block(scene, engine, &cut->isolated);
+    cut->block = block_size(scene, best, cut->isolated, points, cut->total);
     cut->blocks_per_model = divide_up(points, cut->block);
     cut->blocks = cut->blocks_per_model * scene->model_count;
     return DEA_OK;

@@ -1,6 +1,6 @@
 /** @file cut.h
  * How a study is cut into blocks, the unit in which workers get it, journals keep it and shards share it. The cut depends on
- * scene and engine alone, so that a block's number means the same points in every run of a study.
+ * scene and engines alone, so that a block's number means the same points in every run of a study.
  */
 #ifndef DEA_ENGINE_CUT_H
 #define DEA_ENGINE_CUT_H
@@ -12,6 +12,7 @@ typedef struct dea_cut {
     size_t points; /**< points of one model */
     size_t total;  /**< points of the study: of all models */
     size_t block;  /**< most points in a block */
+    bool isolated; /**< an engine that may be asked runs only in worker processes */
     size_t blocks_per_model;
     size_t blocks; /**< of the study */
 } dea_cut;
@@ -24,7 +25,7 @@ typedef struct dea_range {
     size_t count; /**< points, >= 1 */
 } dea_range;
 
-/** Cuts a study. @return DEA_OK, DEA_ERROR_USAGE (no point, or too many to count) */
+/** Cuts a study for an engine, or where it is NULL for the crews of its models. @return DEA_OK, DEA_ERROR_USAGE (no point, or too many to count) */
 dea_status dea_cut_make(const dea_scene *scene, const dea_engine *engine, dea_cut *cut, dea_error *error);
 /** Points of block number @p block. */
 dea_range dea_cut_range(const dea_cut *cut, size_t block);

@@ -1,13 +1,7 @@
 #include "engine/plan.h"
 
-#include "deaspice/needs.h"
-#include "engine/line.h"
-#include "result/scales.h"
-#include "network/swing.h"
-
 #include <math.h>
 #include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 
 enum {
@@ -54,7 +48,7 @@ dea_status dea_plan_make(const dea_scene *scene, const dea_engine *engine, const
 
 bool dea_plan_here(const dea_plan *plan)
 {
-    return !plan->engine->isolated && (plan->options->jobs == 1 || plan->blocks == 1);
+    return !plan->cut.isolated && (plan->options->jobs == 1 || plan->blocks == 1);
 }
 
 dea_span dea_plan_next(const dea_plan *plan, size_t *block)
@@ -125,8 +119,7 @@ void dea_plan_log(const dea_plan *plan, dea_damage *damage, const char *format, 
         plan->options->log(plan->options->user, "more failures follow and are not listed");
 }
 
-/* Writes e.g. " (coverage=0.5, voltage_V=4500)"; the last axis varies fastest. */
-static void point_place(const dea_scene *scene, size_t point, char *text, size_t size)
+void dea_plan_place(const dea_scene *scene, size_t point, char *text, size_t size)
 {
     size_t used = 0;
     size_t stride = dea_scene_point_count(scene);
@@ -142,16 +135,22 @@ static void point_place(const dea_scene *scene, size_t point, char *text, size_t
         snprintf(text + used, size - used, ")");
 }
 
+static const char *asked_first(const dea_plan *plan, const dea_model *model)
+{
+    const dea_crew crew = dea_crew_of(plan->scene, plan->engine, model);
+    return crew.count > 0 ? crew.engines[0]->name : "no engine";
+}
+
 static void log_failure(const dea_plan *plan, const dea_span *span, const dea_attempt *attempt, const char *why,
                         dea_damage *damage)
 {
     char place[256];
     size_t first = span->first + attempt->next;
     if (attempt->end - attempt->next == 1) {
-        point_place(plan->scene, first, place, sizeof place);
-        dea_plan_log(plan, damage, "%s, %s, point %zu%s: %s", plan->engine->name, span->model->name, first, place, why);
+        dea_plan_place(plan->scene, first, place, sizeof place);
+        dea_plan_log(plan, damage, "%s, %s, point %zu%s: %s", asked_first(plan, span->model), span->model->name, first, place, why);
     } else {
-        dea_plan_log(plan, damage, "%s, %s, points %zu to %zu, not isolated after too many failures: %s", plan->engine->name,
+        dea_plan_log(plan, damage, "%s, %s, points %zu to %zu, not isolated after too many failures: %s", asked_first(plan, span->model),
                      span->model->name, first, span->first + attempt->end - 1, why);
     }
 }
@@ -164,11 +163,11 @@ void dea_attempt_remark(const dea_attempt *attempt, const dea_plan *plan, const 
     char place[256];
     const size_t first = span->first + attempt->next;
     if (plan->scene->study == DEA_STUDY_SWEEP) { /* of many points, it names its own */
-        dea_plan_log(plan, damage, "%s, %s: %s", plan->engine->name, span->model->name, why);
+        dea_plan_log(plan, damage, "%s, %s: %s", asked_first(plan, span->model), span->model->name, why);
         return;
     }
-    point_place(plan->scene, first, place, sizeof place);
-    dea_plan_log(plan, damage, "%s, %s, point %zu%s: %s", plan->engine->name, span->model->name, first, place, why);
+    dea_plan_place(plan->scene, first, place, sizeof place);
+    dea_plan_log(plan, damage, "%s, %s, point %zu%s: %s", asked_first(plan, span->model), span->model->name, first, place, why);
 }
 
 static char *point_at(const dea_plan *plan, void *points, size_t index)
@@ -192,136 +191,14 @@ void dea_attempt_abandon(dea_attempt *attempt, const dea_plan *plan, void *point
     give_up(attempt, plan, points, false);
 }
 
-/* A transient whose energies do not add up says so, where the engine itself has said nothing. */
-static void doubt_balance(const dea_scene *scene, const dea_summary *summary, dea_error *error)
+double dea_plan_patience(const dea_plan *plan, const dea_model *model, size_t count)
 {
-    if (summary->residual > 10.0 * scene->accuracy && error->message[0] == '\0')
-        dea_fail(
-            error, DEA_OK,
-            "its energy balance is off by %.2g, more than ten times the accuracy: current and energies are not to be trusted",
-            summary->residual);
-}
-
-/* Of a window that reaches past the last row with numbers there is no mean. */
-static void drop_means(const dea_scene *scene, const dea_sample *samples, size_t rows, dea_summary *summary)
-{
-    size_t good = 0;
-    while (good < rows && isfinite(samples[good].displacement)) {
-        good++;
-    }
-    const double last = good == rows ? scene->transient.until : good > 0 ? samples[good - 1].time : -1.0;
-    for (size_t i = 0; i < DEA_WINDOWS; i++) {
-        if (i >= scene->transient.average_count || scene->transient.averages[i].to > last) {
-            summary->averages[i] = (dea_average){(double)NAN, (double)NAN};
-        }
-    }
-}
-
-/* The swing of the film with all that a run may leave out, unless the engine has found it in its own way. */
-static void tell_swing(dea_swing swing, dea_summary *summary)
-{
-    if (isnan(summary->resonance)) {
-        summary->resonance = swing.frequency;
-        summary->decay = swing.decay;
-    }
-}
-
-/* One transient, without what it does not need: the engine gets what accuracy that leaves. */
-static dea_status run_transient(const dea_plan *plan, void *session, dea_scene *here, const dea_model *model, void *result,
-                                dea_error *error)
-{
-    const dea_engine *engine = plan->engine;
-    dea_summary *summary = dea_layout_summary(&plan->layout, result);
-    dea_needs needs;
-    if (here->full) {
-        here->reduction.ring = (double)INFINITY;
-        const dea_status whole = engine->transient(session, here, model, result, summary, error);
-        tell_swing(dea_swing_free(here, model), summary);
-        return whole;
-    }
-    dea_status status = dea_needs_find(here, model, engine, &needs, error);
-    if (status == DEA_OK) {
-        here->reduction = dea_needs_reduction(needs.omissions, needs.count);
-        here->accuracy -= needs.bound;
-        status = engine->transient(session, here, model, result, summary, error);
-    }
-    tell_swing((dea_swing){needs.resonance, needs.decay}, summary);
-    summary->omitted = needs.bound;
-    summary->error += needs.bound;
-    summary->velocity_error += dea_scales_allowance(offsetof(dea_sample, velocity)) * needs.bound;
-    summary->current_error += dea_scales_allowance(offsetof(dea_sample, current)) * needs.bound;
-    return status;
-}
-
-/* The first of the rows of a sweep that failed, and how many did: in a grid a corner can lie outside the ranges of its numbers.
- */
-static void explain_rows(const dea_plan *plan, size_t first, size_t count, const dea_row *rows, dea_error *error)
-{
-    size_t failed = 0;
-    size_t at = 0;
-    error->message[0] = '\0';
-    for (size_t i = count; i-- > 0;) {
-        if (rows[i].state == DEA_STATE_FAILED) {
-            failed++;
-            at = i;
-        }
-    }
-    if (failed == 0)
-        return;
-    char place[256];
-    dea_point point;
-    dea_scene here = *plan->scene;
-    dea_axes_place(&here, first + at);
-    dea_film_prepare(&here, &point.film);
-    dea_point_place(&here, &point);
-    point_place(plan->scene, first + at, place, sizeof place);
-    const char *why =
-        dea_point_valid(&point) ? "the engine found no answer that passes its own check" : "a number is out of its range";
-    dea_fail(error, DEA_OK, "%zu of %zu points failed, the first at %zu%s: %s", failed, count, first + at, place, why);
-}
-
-/* One transient or frequency response. */
-static dea_status run_point(const dea_plan *plan, void *session, const dea_model *model, size_t point, void *result,
-                            dea_error *error)
-{
-    dea_scene here = *plan->scene; /* shares title, waveform and axes, changes only scalars */
-    dea_axes_place(&here, point);
-    dea_status status;
-    if (here.study == DEA_STUDY_TRANSIENT)
-        status = run_transient(plan, session, &here, model, result, error);
-    else
-        status = plan->engine->ac(session, &here, model, result, dea_layout_band(&plan->layout, result), error);
-    if (status == DEA_ERROR_USAGE && plan->cut.total > 1) {
-        dea_layout_fail(plan->scene, &plan->layout, result);
-        return DEA_OK;
-    }
-    if (status == DEA_OK && here.study == DEA_STUDY_TRANSIENT) {
-        dea_summary *summary = dea_layout_summary(&plan->layout, result);
-        drop_means(&here, result, plan->layout.rows, summary);
-        doubt_balance(&here, summary, error);
-    }
-    return status;
-}
-
-dea_status dea_plan_solve(const dea_plan *plan, void *session, const dea_model *model, size_t first, size_t count, void *points,
-                          dea_error *error)
-{
-    dea_status status = DEA_OK;
-    if (plan->scene->study == DEA_STUDY_SWEEP) {
-        status = plan->engine->sweep(session, plan->scene, model, first, count, points, error);
-        if (status == DEA_OK)
-            explain_rows(plan, first, count, points, error);
-        return status;
-    }
-    for (size_t i = 0; i < count && status == DEA_OK; i++)
-        status = run_point(plan, session, model, first + i, point_at(plan, points, i), error);
-    return status;
-}
-
-double dea_plan_patience(const dea_plan *plan, size_t count)
-{
+    double patience = 0.0;
     const bool sweep = plan->scene->study == DEA_STUDY_SWEEP;
-    return (sweep ? plan->engine->patience : plan->engine->run_patience) * (double)count;
+    const dea_crew crew = dea_crew_of(plan->scene, plan->engine, model);
+    for (size_t i = 0; i < crew.count; i++)
+        patience += sweep ? crew.engines[i]->patience : crew.engines[i]->run_patience;
+    return patience * (double)count;
 }
 
 void dea_attempt_failed(dea_attempt *attempt, const dea_plan *plan, const dea_span *span, void *points, dea_fault fault,

@@ -9,7 +9,7 @@
 /** A study and what of it is to be computed. */
 typedef struct dea_plan {
     const dea_scene *scene;
-    const dea_engine *engine;
+    const dea_engine *engine; /**< NULL: each model by its crew */
     const dea_run_options *options;
     dea_layout layout; /**< of a point's result */
     dea_cut cut;
@@ -81,15 +81,13 @@ void dea_attempt_remark(const dea_attempt *attempt, const dea_plan *plan, const 
                         dea_damage *damage);
 /** True when the engine is past hope: nothing more is tried, the remaining rows are failed. */
 bool dea_damage_hopeless(const dea_damage *damage);
-/** Solves points first ... first + count - 1 of a model into memory laid out as the plan says. A point whose numbers are out of
- * range, as a grid can hold, costs only its own rows where it is one of many. */
-dea_status dea_plan_solve(const dea_plan *plan, void *session, const dea_model *model, size_t first, size_t count, void *points,
-                          dea_error *error);
 /** Hands a block, @p lost points of which are lost, to the caller, adds its points to *@p done and tells progress. */
 dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const void *points, size_t lost, size_t *done,
                             dea_error *error);
-/** Time that a worker may take for so many points before it hangs, beyond what every worker gets [s]. */
-double dea_plan_patience(const dea_plan *plan, size_t count);
+/** Time that a worker may take for so many points of a model before it hangs, beyond what every worker gets [s]. */
+double dea_plan_patience(const dea_plan *plan, const dea_model *model, size_t count);
+/** Writes where a point lies, e.g. " (coverage=0.5, voltage_V=4500)", nothing without axes; the last axis varies fastest. */
+void dea_plan_place(const dea_scene *scene, size_t point, char *text, size_t size);
 /** True when the caller wants the run to end. */
 bool dea_plan_stopped(const dea_plan *plan);
 /** One line for the caller's log. */

@@ -237,7 +237,7 @@ static void pool_dispatch(dea_pool *pool)
         worker->state = DEA_WORKER_BUSY;
         worker->waited = 0.0;
         worker->moved = pool->clock;
-        worker->deadline = pool->clock + pool->beyond + dea_plan_patience(pool->plan, order.count);
+        worker->deadline = pool->clock + pool->beyond + dea_plan_patience(pool->plan, order.model, order.count);
     }
 }
 
@@ -255,7 +255,9 @@ static dea_status worker_failed(dea_pool *pool, dea_worker *worker, dea_fault fa
     if (before != DEA_WORKER_STARTS || (fault != DEA_FAULT_REFUSED && ++pool->false_starts < MOST_FALSE_STARTS))
         return DEA_OK;
     dea_error reason = {0};
-    dea_fail(&reason, status, "engine %s could not begin: %s", pool->plan->engine->name, why);
+    char names[DEA_ERROR_LENGTH / 8];
+    dea_crew_names(pool->plan->scene, pool->plan->engine, names, sizeof names);
+    dea_fail(&reason, status, "engine %s could not begin: %s", names, why);
     return pool_shrink(pool, status, &reason, error);
 }
 

@@ -1,5 +1,5 @@
-#include "engine/plan.h"
 #include "engine/pool.h"
+#include "engine/solve.h"
 
 #include <stdlib.h>
 
@@ -11,24 +11,25 @@ static dea_status check_request(const dea_scene *scene, const dea_engine *engine
     if (options->jobs == 0 || !options->points)
         return dea_fail(error, DEA_ERROR_USAGE, "a run needs at least one job and someone who takes the points");
     for (size_t i = 0; i < scene->model_count; i++) {
-        const char *why = dea_engine_refuses(engine, scene, scene->models[i]);
-        if (why)
+        if (dea_crew_of(scene, engine, scene->models[i]).count == 0 && engine)
             return dea_fail(error, DEA_ERROR_UNSUPPORTED, "engine %s cannot do model %s: %s", engine->name,
-                            scene->models[i]->name, why);
+                            scene->models[i]->name, dea_engine_refuses(engine, scene, scene->models[i]));
+        if (dea_crew_of(scene, engine, scene->models[i]).count == 0)
+            return dea_fail(error, DEA_ERROR_UNSUPPORTED, "no engine can do model %s in this study at this accuracy",
+                            scene->models[i]->name);
     }
     return DEA_OK;
 }
 
-static dea_status session_renew(const dea_engine *engine, void **session, dea_error *error)
+static dea_status sessions_renew(const dea_plan *plan, dea_sessions *sessions, dea_error *error)
 {
-    engine->end(*session);
-    *session = NULL;
-    return engine->begin(session, error);
+    dea_sessions_end(sessions);
+    return dea_sessions_begin(plan, sessions, error);
 }
 
 /* Solves one block in this process; a session that failed is replaced. */
-static dea_status solve_block(const dea_plan *plan, const dea_span *span, void **session, dea_attempt *attempt, char *points,
-                              dea_damage *damage, dea_error *error)
+static dea_status solve_block(const dea_plan *plan, const dea_span *span, dea_sessions *sessions, dea_attempt *attempt,
+                              char *points, dea_damage *damage, dea_error *error)
 {
     while (!dea_attempt_over(attempt)) {
         if (dea_plan_stopped(plan))
@@ -38,8 +39,9 @@ static dea_status solve_block(const dea_plan *plan, const dea_span *span, void *
             return DEA_OK;
         }
         dea_error reason = {0};
-        dea_status status = dea_plan_solve(plan, *session, span->model, span->first + attempt->next, attempt->end - attempt->next,
-                                           points + attempt->next * plan->layout.point_size, &reason);
+        const dea_errand errand = {span->model, span->first + attempt->next, attempt->end - attempt->next};
+        dea_status status =
+            dea_plan_solve(plan, sessions, &errand, points + attempt->next * plan->layout.point_size, &reason);
         if (status == DEA_OK) {
             dea_attempt_remark(attempt, plan, span, reason.message, damage);
             dea_attempt_solved(attempt, damage);
@@ -47,7 +49,7 @@ static dea_status solve_block(const dea_plan *plan, const dea_span *span, void *
         }
         const char *why = reason.message[0] ? reason.message : dea_status_text(status);
         dea_attempt_failed(attempt, plan, span, points, dea_fault_of(status), why, damage);
-        status = session_renew(plan->engine, session, error);
+        status = sessions_renew(plan, sessions, error);
         if (status != DEA_OK)
             return status;
     }
@@ -59,18 +61,18 @@ static dea_status run_here(const dea_plan *plan, dea_error *error)
     char *points = malloc(plan->cut.block * plan->layout.point_size);
     if (!points)
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for a block of %zu points", plan->cut.block);
-    void *session = NULL;
+    dea_sessions sessions;
     dea_damage damage = {0};
-    dea_status status = plan->engine->begin(&session, error);
+    dea_status status = dea_sessions_begin(plan, &sessions, error);
     size_t next = 0, done = 0;
     while (status == DEA_OK && done < plan->points) {
         dea_span span = dea_plan_next(plan, &next);
         dea_attempt attempt = dea_attempt_start(span.count);
-        status = solve_block(plan, &span, &session, &attempt, points, &damage, error);
+        status = solve_block(plan, &span, &sessions, &attempt, points, &damage, error);
         if (status == DEA_OK)
             status = dea_plan_deliver(plan, &span, points, attempt.lost, &done, error);
     }
-    plan->engine->end(session);
+    dea_sessions_end(&sessions);
     free(points);
     return status;
 }

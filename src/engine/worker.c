@@ -1,5 +1,6 @@
 #define _GNU_SOURCE
 #include "engine/worker.h"
+#include "engine/solve.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -56,16 +57,16 @@ static ssize_t receive(int socket, void *data, size_t size)
 
 static void work(const dea_plan *plan, int socket, dea_error *error)
 {
-    void *session = NULL;
+    dea_sessions sessions;
     error->message[0] = '\0';
-    dea_status status = plan->engine->begin(&session, error);
+    dea_status status = dea_sessions_begin(plan, &sessions, error);
     dea_order order;
     while (report(socket, status) && status == DEA_OK && receive(socket, &order, sizeof order) == (ssize_t)sizeof order) {
         error->message[0] = '\0';
-        status = dea_plan_solve(plan, session, order.model, order.first, order.count, order.points, error);
+        const dea_errand errand = {order.model, order.first, order.count};
+        status = dea_plan_solve(plan, &sessions, &errand, order.points, error);
     }
-    if (status == DEA_OK)
-        plan->engine->end(session);
+    dea_sessions_end(&sessions);
 }
 
 static _Noreturn void live(const dea_plan *plan, int socket, pid_t parent, dea_error *error)

@@ -42,8 +42,8 @@ DEA_INLINE double gain(const double *c, double j, double dj)
     return c[MU] * quotient(slope_shares, (j + 3.0) * unit, dj * unit) * dj * unit;
 }
 
-/* sum C_i lambda_m^(2 - 2 i) (I1^i - 3^i) = J sum C_i x_0^(i - 1) (1 + ... + (x/x_0)^(i - 1)), x_0 = 3/lambda_m^2: the quotient of
- * the polynomial sum C_i x^i. */
+/* sum C_i lambda_m^(2 - 2 i) (I1^i - 3^i) = J sum C_i x_0^(i - 1) (1 + ... + (x/x_0)^(i - 1)), x_0 = 3/lambda_m^2: the quotient
+ * of the polynomial sum C_i x^i. */
 static double energy(const double *c, double l1, double l2)
 {
     const double unit = 1.0 / (c[LAMBDA_M] * c[LAMBDA_M]);
@@ -80,13 +80,18 @@ static void change(const dea_film *film, size_t count, const double *strains, de
     }
 }
 
+static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
+{
+    return dea_invariant_biaxial(slopes, gain, film, e1, e2);
+}
+
 /* The chain stretch sqrt(I1/3) has come to lambda_m; the five terms go on. */
 static double locking(const double *c)
 {
     return 3.0 * (c[LAMBDA_M] - 1.0) * (c[LAMBDA_M] + 1.0);
 }
 
-static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_form *form)
+static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_law_form *form)
 {
     const dea_form_invariants at = dea_form_invariants_of(pool, l1, l2);
     const dea_expr most = SQUARE(c[LAMBDA_M]);
@@ -108,6 +113,7 @@ const dea_law dea_law_arruda_boyce = {
     .name = "arruda_boyce",
     .title = "Arruda-Boyce",
     .energy_text = "W = mu sum C_i lambda_m^(2 - 2 i) (I1^i - 3^i), C = 1/2, 1/20, 11/1050, 19/7000, 519/673750",
+    .accepted = "a mapping with mu and lambda_m, e.g. {mu: 40 kPa, lambda_m: 5.99}",
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,
@@ -118,4 +124,5 @@ const dea_law dea_law_arruda_boyce = {
     .prepare = prepare,
     .change = change,
     .form = form,
+    .biaxial = biaxial,
 };

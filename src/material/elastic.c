@@ -71,6 +71,21 @@ dea_film dea_law_film(const dea_law *law, const double constants[DEA_LAW_CONSTAN
     return film;
 }
 
+dea_biaxial dea_film_biaxial(const dea_film *film, double e1, double e2)
+{
+    const dea_law *law = film->law;
+    if (law->biaxial) {
+        return law->biaxial(film, e1, e2);
+    }
+    const double l = film->prestretch;
+    const dea_stress at = law->stress(film->constants, l * (1.0 + e1), l * (1.0 + e2));
+    return (dea_biaxial){.p1 = law->rise(film->constants, l, l * e1, l * e2),
+                         .p2 = law->rise(film->constants, l, l * e2, l * e1),
+                         .w11 = at.w11,
+                         .w12 = at.w12,
+                         .w22 = at.w22};
+}
+
 /* As the change from the film that is not stretched, which has no stress. */
 double dea_law_equibiaxial(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double stretch)
 {

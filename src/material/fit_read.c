@@ -2,137 +2,114 @@
 #include "deaspice/fit.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "material/fit_plausible.h"
-#include "material/fit_table.h"
+#include "support/file.h"
+#include "support/table.h"
 
-enum stretch_role { ROLE_STRETCH, ROLE_STRESS, ROLE_MODE };
-enum relaxation_role { ROLE_TIME, ROLE_HELD_STRESS };
+enum { STRETCH, STRAIN, DISPLACEMENT, STRESS, FORCE, MODE, TIME, COLUMNS };
+_Static_assert((int)COLUMNS <= (int)DEA_TABLE_WANTED, "a row has room for every column");
 
-static const dea_column stretch_columns[] = {
-    {"stretch", ROLE_STRETCH, 1.0},   {"stress_Pa", ROLE_STRESS, 1.0}, {"stress_kPa", ROLE_STRESS, 1e3},
-    {"stress_MPa", ROLE_STRESS, 1e6}, {"mode", ROLE_MODE, 1.0},
+static const char *const stretch_names[] = {"stretch ratio", "lambda", NULL};
+static const char *const strain_names[] = {"nominal strain", "engineering strain", "tensile strain", "eng strain", NULL};
+static const char *const displacement_names[] = {"extension", "elongation", "displ", "disp", "crosshead", "position", NULL};
+static const char *const stress_names[] = {"nominal stress", "engineering stress", "tensile stress", "eng stress", NULL};
+static const char *const force_names[] = {"load", NULL};
+static const char *const mode_words[] = {"uniaxial", "equibiaxial", NULL};
+static const char *const time_names[] = {"t", NULL};
+
+static const dea_wanted wanted[COLUMNS] = {
+    [STRETCH] = {.name = "stretch", .aliases = stretch_names, .unit = "1", .assumed = "1"},
+    [STRAIN] = {.name = "strain", .aliases = strain_names, .unit = "1", .assumed = "1"},
+    [DISPLACEMENT] = {.name = "displacement", .aliases = displacement_names, .unit = "m", .by_unit = true},
+    [STRESS] = {.name = "stress", .aliases = stress_names, .unit = "Pa", .by_unit = true},
+    [FORCE] = {.name = "force", .aliases = force_names, .unit = "N", .by_unit = true},
+    [MODE] = {.name = "mode", .words = mode_words},
+    [TIME] = {.name = "time", .aliases = time_names, .unit = "s", .by_unit = true},
 };
 
-static const dea_column relaxation_columns[] = {
-    {"time_s", ROLE_TIME, 1.0},           {"time_ms", ROLE_TIME, 1e-3},          {"time_min", ROLE_TIME, 60.0},
-    {"stress_Pa", ROLE_HELD_STRESS, 1.0}, {"stress_kPa", ROLE_HELD_STRESS, 1e3}, {"stress_MPa", ROLE_HELD_STRESS, 1e6},
-};
+/* A displacement within this share of the largest one is that of the hold, or that of the rest before the ramp. */
+static const double held_share = 2e-3;
 
-/* Where points of stress over stretch go. */
-typedef struct stretch_target {
-    dea_load load;
+/* What reads one kind of table. */
+typedef struct target {
+    dea_load load; /* of points of a file without the column mode */
     dea_fit_data *data;
-} stretch_target;
+    dea_relaxation_data *relaxation;
+} target;
 
-static dea_status stretch_header(dea_table *t, dea_load load)
+static double stretch_of(const dea_table *t, const double values[], const dea_specimen *specimen)
 {
-    const dea_status status = dea_table_header(t);
-    if (status != DEA_OK) {
-        return status;
-    }
-    if (!t->seen[ROLE_STRETCH] || !t->seen[ROLE_STRESS]) {
-        return dea_table_fail(t, 1, t->seen[ROLE_STRETCH] ? "no column stress_Pa, stress_kPa or stress_MPa" : "no column stretch",
-                              NULL);
-    }
-    if (!t->seen[ROLE_MODE] && load == DEA_LOAD_UNKNOWN) {
-        return dea_table_fail(t, 1, "no column mode, and no load given for the file (uniaxial or equibiaxial)", NULL);
-    }
-    return DEA_OK;
+    return t->seen[STRETCH]  ? values[STRETCH]
+           : t->seen[STRAIN] ? 1.0 + values[STRAIN]
+                             : 1.0 + values[DISPLACEMENT] / specimen->length;
 }
 
-static dea_status stretch_point(const dea_table *t, dea_fit_point *point)
+static double stress_of(const dea_table *t, const double values[], const dea_specimen *specimen)
 {
-    for (size_t i = 0; i < t->count; i++) {
-        const dea_field *f = &t->fields[i];
-        const int role = f->holds->role;
-        if (role == ROLE_MODE) {
-            point->load = dea_load_find(f->text);
-            if (point->load == DEA_LOAD_UNKNOWN) {
-                return dea_table_fail(t, f->column, "unknown mode (accepted: uniaxial, equibiaxial):", f->text);
-            }
-            continue;
-        }
-        const dea_status status = dea_table_number(t, f, role == ROLE_STRETCH ? &point->stretch : &point->stress);
-        if (status != DEA_OK) {
-            return status;
-        }
-        if (role == ROLE_STRETCH && !(point->stretch > 0.0)) {
-            return dea_table_fail(t, f->column, "a stretch is above 0 (1 is the film at rest, 1 + strain):", f->text);
-        }
-    }
-    return DEA_OK;
+    return t->seen[STRESS] ? values[STRESS] : values[FORCE] / specimen->area;
 }
 
-static dea_status stretch_read(dea_table *t, const stretch_target *target)
+/* What turns the table's columns into a stress. */
+static dea_status stress_check(const dea_table *t, const dea_specimen *specimen)
 {
-    dea_fit_data *data = target->data;
+    if (t->seen[STRESS] || (t->seen[FORCE] && specimen->area > 0.0)) {
+        return DEA_OK;
+    }
+    return t->seen[FORCE]
+               ? dea_table_fail(t, 1, "a stress from a force wants the area of the specimen at rest (--area \"22 mm^2\")")
+               : dea_table_missing(t, STRESS, "name it with its unit, e.g. stress_kPa, or force_N with --area");
+}
+
+static dea_status stretch_check(const dea_table *t, const dea_specimen *specimen, dea_load load)
+{
+    if (!t->seen[STRETCH] && !t->seen[STRAIN] && !t->seen[DISPLACEMENT]) {
+        return dea_table_missing(t, STRETCH,
+                                 "name it stretch (length over length at rest), strain, or displacement_mm with --length");
+    }
+    if (!t->seen[STRETCH] && !t->seen[STRAIN] && !(specimen->length > 0.0)) {
+        return dea_table_fail(t, 1,
+                              "a stretch from a displacement wants the length of the specimen at rest (--length \"80 mm\")");
+    }
+    if (!t->seen[MODE] && load == DEA_LOAD_UNKNOWN) {
+        return dea_table_fail(t, 1, "no column mode, and no load given for the file (--uniaxial or --equibiaxial)");
+    }
+    return stress_check(t, specimen);
+}
+
+static dea_status stretch_read(dea_table *t, const target *to)
+{
+    dea_fit_data *data = to->data;
     const size_t before = data->count;
-    dea_status status = stretch_header(t, target->load);
-    while (status == DEA_OK) {
-        status = dea_table_row(t);
-        if (status != DEA_OK || t->count == 0) {
+    double values[DEA_TABLE_WANTED];
+    bool more = true;
+    dea_status status = stretch_check(t, &data->specimen, to->load);
+    status = status ? status : dea_table_row(t, values, &more);
+    while (status == DEA_OK && more) {
+        const dea_fit_point point = {.stretch = stretch_of(t, values, &data->specimen),
+                                     .stress = stress_of(t, values, &data->specimen),
+                                     .load = t->seen[MODE] ? (dea_load)values[MODE] : to->load};
+        if (!(point.stretch > 0.0)) {
+            status = dea_table_fail_at(t,
+                                       t->seen[STRETCH]  ? STRETCH
+                                       : t->seen[STRAIN] ? STRAIN
+                                                         : DISPLACEMENT,
+                                       "a stretch is above 0 (1 is the film at rest, 1 + strain):");
             break;
         }
-        dea_fit_point point = {.load = target->load};
-        status = stretch_point(t, &point);
-        if (status == DEA_OK) {
-            status = dea_fit_add(data, point, t->error);
-        }
+        status = dea_fit_add(data, point, t->error);
+        status = status ? status : dea_table_row(t, values, &more);
     }
     if (status == DEA_OK && data->count == before) {
-        status = dea_table_fail(t, 1, "no measured points below the header", NULL);
+        status = dea_fail(t->error, DEA_ERROR_SCENE, "%.300s: no measured points", t->name);
     }
     if (status != DEA_OK) {
         data->count = before;
     }
     return status;
-}
-
-static dea_status stretch_parse(const char *text, size_t length, const char *name, void *user, dea_error *error)
-{
-    dea_table t = {.columns = stretch_columns,
-                   .column_count = sizeof stretch_columns / sizeof *stretch_columns,
-                   .accepted = "stretch, stress_Pa, stress_kPa, stress_MPa, mode",
-                   .advice = "stretch = 1 + displacement/length, stress = force/area of the specimen at rest"};
-    dea_status status = dea_table_begin(&t, text, length, name, error);
-    if (status == DEA_OK) {
-        status = stretch_read(&t, user);
-    }
-    dea_table_end(&t);
-    return status;
-}
-
-dea_status dea_fit_parse(const char *text, size_t length, const char *name, dea_load load, dea_fit_data *data, dea_error *error)
-{
-    stretch_target target = {load, data};
-    return stretch_parse(text, length, name, &target, error);
-}
-
-dea_status dea_fit_read(const char *path, dea_load load, dea_fit_data *data, dea_error *error)
-{
-    stretch_target target = {load, data};
-    return dea_table_open(path, stretch_parse, &target, error);
-}
-
-static dea_status relaxation_point(const dea_table *t, const dea_relaxation_data *data, dea_relaxation_point *point)
-{
-    for (size_t i = 0; i < t->count; i++) {
-        const dea_field *f = &t->fields[i];
-        const bool time = f->holds->role == ROLE_TIME;
-        const dea_status status = dea_table_number(t, f, time ? &point->time : &point->stress);
-        if (status != DEA_OK) {
-            return status;
-        }
-        if (time && !(point->time >= 0.0)) {
-            return dea_table_fail(t, f->column, "a time is not negative, it counts from the end of the ramp:", f->text);
-        }
-        if (time && data->count > 0 && !(point->time >= data->points[data->count - 1].time)) {
-            return dea_table_fail(t, f->column, "time does not increase:", f->text);
-        }
-    }
-    return DEA_OK;
 }
 
 /* Adds a point; rows of equal time, as a rounded clock writes them, become their mean. *equal counts them. */
@@ -148,89 +125,161 @@ static dea_status relaxation_add(dea_relaxation_data *data, dea_relaxation_point
     return DEA_OK;
 }
 
+/* Begin and end of the ramp by the displacement of the whole test, which a second pass then leaves out. */
+typedef struct ramp {
+    double begin, end; /* [s] */
+} ramp;
+
+static dea_status ramp_find(dea_table t, ramp *found)
+{
+    double values[DEA_TABLE_WANTED];
+    double largest = 0.0;
+    bool more = true;
+    const dea_table again = t;
+    dea_status status = dea_table_row(&t, values, &more);
+    for (; status == DEA_OK && more; status = dea_table_row(&t, values, &more)) {
+        largest = fmax(largest, fabs(values[DISPLACEMENT]));
+    }
+    *found = (ramp){NAN, NAN};
+    t = again;
+    more = status == DEA_OK;
+    for (status = status ? status : dea_table_row(&t, values, &more); status == DEA_OK && more;
+         status = dea_table_row(&t, values, &more)) {
+        const double size = fabs(values[DISPLACEMENT]);
+        found->begin = size <= held_share * largest || isnan(found->begin) ? values[TIME] : found->begin;
+        if (size >= (1.0 - held_share) * largest) {
+            found->end = values[TIME];
+            break;
+        }
+    }
+    return status;
+}
+
 /* The lowest stress with its place, and the largest one. */
 typedef struct extremes {
     size_t line, column;
     double lowest, largest;
 } extremes;
 
-static void extremes_take(extremes *found, const dea_table *t, double stress)
-{
-    if (stress < found->lowest) {
-        found->lowest = stress;
-        found->line = t->line;
-        found->column = t->fields[t->fields[0].holds->role == ROLE_HELD_STRESS ? 0 : 1].column;
-    }
-    found->largest = fmax(found->largest, stress);
-}
-
 static dea_status relaxation_judge(dea_table *t, const dea_relaxation_data *data, const extremes *found)
 {
     char problem[80];
     if (data->count < DEA_RELAXATION_LEAST) {
         snprintf(problem, sizeof problem, "%zu points; a relaxation test needs at least %d", data->count, DEA_RELAXATION_LEAST);
-        return dea_table_fail(t, 1, problem, NULL);
+        return dea_table_fail(t, 1, problem);
     }
     if (dea_plausible_negative(found->lowest, found->largest)) {
         t->line = found->line;
         snprintf(problem, sizeof problem, "a stress is not negative, in compression too: %.6g Pa", found->lowest);
-        return dea_table_fail(t, found->column, problem, NULL);
+        return dea_table_fail(t, found->column, problem);
     }
     return DEA_OK;
 }
 
-static dea_status relaxation_read(dea_table *t, dea_relaxation_data *data)
+static dea_status point_take(const dea_table *t, dea_relaxation_data *data, dea_relaxation_point point, size_t *equal)
+{
+    if (!(point.time >= 0.0)) {
+        return dea_table_fail_at(t, TIME, "a time is not negative, it counts from the end of the ramp:");
+    }
+    if (data->count > 0 && !(point.time >= data->points[data->count - 1].time)) {
+        return dea_table_fail_at(t, TIME, "time does not increase:");
+    }
+    return relaxation_add(data, point, equal, t->error);
+}
+
+static dea_status relaxation_rows(dea_table *t, dea_relaxation_data *data, double begin)
 {
     extremes found = {.lowest = INFINITY};
+    double values[DEA_TABLE_WANTED];
     size_t equal = 0;
-    dea_status status = dea_table_header(t);
-    if (status == DEA_OK && (!t->seen[ROLE_TIME] || !t->seen[ROLE_HELD_STRESS])) {
-        status = dea_table_fail(
-            t, 1, t->seen[ROLE_TIME] ? "no column stress_Pa, stress_kPa or stress_MPa" : "no column time_s, time_ms or time_min",
-            NULL);
-    }
-    while (status == DEA_OK) {
-        status = dea_table_row(t);
-        if (status != DEA_OK || t->count == 0) {
-            break;
+    bool more = true;
+    dea_status status = dea_table_row(t, values, &more);
+    for (; status == DEA_OK && more; status = status ? status : dea_table_row(t, values, &more)) {
+        const dea_relaxation_point point = {values[TIME] - begin, stress_of(t, values, &data->specimen)};
+        if (t->seen[DISPLACEMENT] && values[TIME] < begin) {
+            continue; /* of the ramp */
         }
-        dea_relaxation_point point = {0};
-        status = relaxation_point(t, data, &point);
-        if (status == DEA_OK) {
-            extremes_take(&found, t, point.stress);
-            status = relaxation_add(data, point, &equal, t->error);
+        if (point.stress < found.lowest) {
+            found.lowest = point.stress;
+            found.line = t->line;
+            found.column = dea_table_place(t, t->seen[STRESS] ? STRESS : FORCE);
         }
+        found.largest = fmax(found.largest, point.stress);
+        status = point_take(t, data, point, &equal);
     }
     return status == DEA_OK ? relaxation_judge(t, data, &found) : status;
 }
 
-static dea_status relaxation_parse(const char *text, size_t length, const char *name, void *user, dea_error *error)
+static dea_status relaxation_read(dea_table *t, const target *to)
 {
-    dea_relaxation_data *data = user;
-    dea_table t = {.columns = relaxation_columns,
-                   .column_count = sizeof relaxation_columns / sizeof *relaxation_columns,
-                   .accepted = "time_s, time_ms, time_min, stress_Pa, stress_kPa, stress_MPa",
-                   .advice = "time counts from the end of the ramp, stress = force/area of the specimen"};
-    if (data->count > 0) {
-        return dea_fail(error, DEA_ERROR_USAGE, "one relaxation test at a time");
+    dea_relaxation_data *data = to->relaxation;
+    ramp found = {0.0, 0.0};
+    dea_status status =
+        t->seen[TIME] ? stress_check(t, &data->specimen) : dea_table_missing(t, TIME, "name it with its unit, e.g. time_s");
+    if (status == DEA_OK && t->seen[DISPLACEMENT]) {
+        status = ramp_find(*t, &found);
+        data->ramp = status == DEA_OK && data->ramp == 0.0 ? found.end - found.begin : data->ramp;
     }
-    dea_status status = dea_table_begin(&t, text, length, name, error);
-    if (status == DEA_OK) {
-        status = relaxation_read(&t, data);
-    }
+    status = status ? status : relaxation_rows(t, data, found.end);
     if (status != DEA_OK) {
         data->count = 0;
     }
-    dea_table_end(&t);
     return status;
+}
+
+typedef dea_status table_reader(dea_table *table, const target *to);
+
+static dea_status parse(const char *text, size_t length, const char *name, table_reader *read, const target *to,
+                        char columns[DEA_SOURCE_LENGTH], dea_error *error)
+{
+    dea_units *units = dea_units_open();
+    dea_table t = {.name = name, .wanted = wanted, .wanted_count = COLUMNS, .units = units, .error = error};
+    dea_status status = units ? dea_table_begin(&t, text, length) : dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+    status = status ? status : read(&t, to);
+    snprintf(columns, DEA_SOURCE_LENGTH, "%.*s", DEA_SOURCE_LENGTH - 1, t.told);
+    dea_table_end(&t);
+    dea_units_close(units);
+    return status;
+}
+
+static dea_status parse_file(const char *path, table_reader *read, const target *to, char columns[DEA_SOURCE_LENGTH],
+                             dea_error *error)
+{
+    char *text = NULL;
+    size_t length = 0;
+    const char *why = NULL;
+    dea_status status = dea_file_read(path, true, DEA_WAVE_FILE_MAX, &text, &length, NULL, &why);
+    if (status != DEA_OK) {
+        return dea_fail(error, status, "cannot read %.400s: %s", path, why);
+    }
+    status = parse(text, length, strcmp(path, "-") == 0 ? "standard input" : path, read, to, columns, error);
+    free(text);
+    return status;
+}
+
+dea_status dea_fit_parse(const char *text, size_t length, const char *name, dea_load load, dea_fit_data *data, dea_error *error)
+{
+    return parse(text, length, name, stretch_read, &(target){.load = load, .data = data}, data->columns, error);
+}
+
+dea_status dea_fit_read(const char *path, dea_load load, dea_fit_data *data, dea_error *error)
+{
+    return parse_file(path, stretch_read, &(target){.load = load, .data = data}, data->columns, error);
+}
+
+static dea_status one_test(const dea_relaxation_data *data, dea_error *error)
+{
+    return data->count > 0 ? dea_fail(error, DEA_ERROR_USAGE, "one relaxation test at a time") : DEA_OK;
 }
 
 dea_status dea_relaxation_parse(const char *text, size_t length, const char *name, dea_relaxation_data *data, dea_error *error)
 {
-    return relaxation_parse(text, length, name, data, error);
+    const dea_status status = one_test(data, error);
+    return status ? status : parse(text, length, name, relaxation_read, &(target){.relaxation = data}, data->columns, error);
 }
 
 dea_status dea_relaxation_read(const char *path, dea_relaxation_data *data, dea_error *error)
 {
-    return dea_table_open(path, relaxation_parse, data, error);
+    const dea_status status = one_test(data, error);
+    return status ? status : parse_file(path, relaxation_read, &(target){.relaxation = data}, data->columns, error);
 }

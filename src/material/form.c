@@ -10,7 +10,7 @@ dea_form_invariants dea_form_invariants_of(dea_pool *pool, dea_expr l1, dea_expr
     return at;
 }
 
-void dea_form_stresses(dea_pool *pool, const dea_form_invariants *at, dea_expr first, dea_expr second, dea_form *form)
+void dea_form_stresses(dea_pool *pool, const dea_form_invariants *at, dea_expr first, dea_expr second, dea_law_form *form)
 {
     for (int a = 0; a < 2; a++) {
         const dea_expr w = ADD(first, MUL(at->y[1 - a], second));

@@ -8,10 +8,10 @@
 #include "expression/formula.h"
 #include "material/law.h"
 
-typedef struct dea_form {
+typedef struct dea_law_form {
     dea_expr stress[2]; /* principal Cauchy stresses [Pa] */
     dea_expr room;      /* > 0 where the law holds, 1: everywhere */
-} dea_form;
+} dea_law_form;
 
 typedef struct dea_form_invariants {
     dea_expr y[2], v;
@@ -21,6 +21,6 @@ typedef struct dea_form_invariants {
 dea_form_invariants dea_form_invariants_of(dea_pool *pool, dea_expr l1, dea_expr l2);
 
 /* The stresses of an energy of both invariants; NUM(0) for one that does not enter. */
-void dea_form_stresses(dea_pool *pool, const dea_form_invariants *at, dea_expr first, dea_expr second, dea_form *form);
+void dea_form_stresses(dea_pool *pool, const dea_form_invariants *at, dea_expr first, dea_expr second, dea_law_form *form);
 
 #endif

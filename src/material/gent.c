@@ -54,12 +54,17 @@ static void change(const dea_film *film, size_t count, const double *strains, de
     }
 }
 
+static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
+{
+    return dea_invariant_biaxial(slopes, gain, film, e1, e2);
+}
+
 static double locking(const double *c)
 {
     return c[JM];
 }
 
-static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_form *form)
+static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_law_form *form)
 {
     const dea_form_invariants at = dea_form_invariants_of(pool, l1, l2);
     const dea_expr room = SUB(c[JM], at.j);
@@ -76,6 +81,7 @@ const dea_law dea_law_gent = {
     .name = "gent",
     .title = "Gent",
     .energy_text = "W = -mu Jm/2 ln(1 - (I1 - 3)/Jm)",
+    .accepted = "a mapping with mu and Jm, e.g. {mu: 45 kPa, Jm: 120}",
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,
@@ -87,4 +93,5 @@ const dea_law dea_law_gent = {
     .prepare = prepare,
     .change = change,
     .form = form,
+    .biaxial = biaxial,
 };

@@ -94,4 +94,30 @@ DEA_INLINE dea_change dea_invariant_change(dea_slopes_at *slopes, dea_slope_gain
     return (dea_change){2.0 * (dg * w + film->g * dw), slope * dy, curve * dy * dy + slope * 2.0 * y0};
 }
 
+/* With y = lambda^2 and v = (y1 y2)^-1: J = y1 + y2 + v - 3, P1 = 2 w (lambda1 - v/lambda1); film->rest[0] is w at the
+ * pre-stretch. */
+DEA_INLINE dea_biaxial dea_invariant_biaxial(dea_slopes_at *slopes, dea_slope_gain *gain, const dea_film *film, double e1, double e2)
+{
+    const double l0 = film->prestretch, y0 = film->square, v0 = film->inverse_fourth;
+    const double inverse0 = l0 * y0 * v0; /* 1/lambda_pre */
+    const double l1 = l0 * (1.0 + e1), l2 = l0 * (1.0 + e2);
+    const double d1 = y0 * e1 * (2.0 + e1), d2 = y0 * e2 * (2.0 + e2); /* of y1, y2 */
+    const double over = 1.0 / (l1 * l2), v = over * over;
+    const double inverse1 = over * l2, inverse2 = over * l1;
+    const double dv = -v * v0 * (y0 * (d1 + d2) + d1 * d2);
+    const double dj = d1 + d2 + dv;
+    const double dw = gain(film->constants, film->j, dj);
+    const double w = 2.0 * (film->rest[0] + dw), w1 = 4.0 * slopes(film->constants, film->j + dj).w1;
+    const double a0 = film->g * inverse0; /* lambda - v/lambda at the pre-stretch */
+    const double da1 = l0 * e1 - (dv - v0 * e1) * inverse1, da2 = l0 * e2 - (dv - v0 * e2) * inverse2;
+    const double a1 = a0 + da1, a2 = a0 + da2;
+    return (dea_biaxial){
+        .p1 = w * da1 + 2.0 * a0 * dw,
+        .p2 = w * da2 + 2.0 * a0 * dw,
+        .w11 = w * (1.0 + 3.0 * v * inverse1 * inverse1) + w1 * a1 * a1,
+        .w12 = 2.0 * w * v * over + w1 * a1 * a2,
+        .w22 = w * (1.0 + 3.0 * v * inverse2 * inverse2) + w1 * a2 * a2,
+    };
+}
+
 #endif

@@ -53,10 +53,15 @@ static void change(const dea_film *film, size_t count, const double *strains, de
     }
 }
 
-static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_form *form)
+static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_law_form *form)
 {
     const dea_form_invariants at = dea_form_invariants_of(pool, l1, l2);
     dea_form_stresses(pool, &at, SCALE(0.5, c[MU]), NUM(0.0), form);
+}
+
+static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
+{
+    return dea_invariant_biaxial(slopes, gain, film, e1, e2);
 }
 
 static const dea_constant constants[] = {{"mu", "Pa", true, 0.0, NAN, "a shear modulus > 0, e.g. 44 kPa"}};
@@ -65,6 +70,7 @@ const dea_law dea_law_neo_hookean = {
     .name = "neo_hookean",
     .title = "neo-Hookean",
     .energy_text = "W = mu/2 (I1 - 3)",
+    .accepted = "a mapping with mu, e.g. {mu: 44 kPa}",
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,
@@ -75,4 +81,5 @@ const dea_law dea_law_neo_hookean = {
     .prepare = prepare,
     .change = change,
     .form = form,
+    .biaxial = biaxial,
 };

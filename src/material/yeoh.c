@@ -8,8 +8,7 @@ enum { C1, C2, C3 };
 
 DEA_INLINE dea_slopes slopes(const double *c, double j)
 {
-    return (dea_slopes){
-        .w = c[C1] + j * (2.0 * c[C2] + 3.0 * c[C3] * j), .w1 = 2.0 * c[C2] + 6.0 * c[C3] * j, .w2 = 6.0 * c[C3]};
+    return (dea_slopes){.w = c[C1] + j * (2.0 * c[C2] + 3.0 * c[C3] * j), .w1 = 2.0 * c[C2] + 6.0 * c[C3] * j, .w2 = 6.0 * c[C3]};
 }
 
 DEA_INLINE double gain(const double *c, double j, double dj)
@@ -54,11 +53,16 @@ static void change(const dea_film *film, size_t count, const double *strains, de
     }
 }
 
-static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_form *form)
+static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_law_form *form)
 {
     const dea_form_invariants at = dea_form_invariants_of(pool, l1, l2);
     const dea_expr w = ADD(c[C1], MUL(at.j, ADD(SCALE(2.0, c[C2]), MUL(SCALE(3.0, c[C3]), at.j))));
     dea_form_stresses(pool, &at, w, NUM(0.0), form);
+}
+
+static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
+{
+    return dea_invariant_biaxial(slopes, gain, film, e1, e2);
 }
 
 static const dea_constant constants[] = {
@@ -71,6 +75,7 @@ const dea_law dea_law_yeoh = {
     .name = "yeoh",
     .title = "Yeoh",
     .energy_text = "W = C1 (I1 - 3) + C2 (I1 - 3)^2 + C3 (I1 - 3)^3",
+    .accepted = "a mapping with C1, C2, C3, e.g. {C1: 178426 Pa}",
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,
@@ -81,4 +86,5 @@ const dea_law dea_law_yeoh = {
     .prepare = prepare,
     .change = change,
     .form = form,
+    .biaxial = biaxial,
 };

@@ -21,9 +21,9 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
 static void build(const dea_symbols *symbols, dea_network *network)
 {
     dea_pool *pool = symbols->pool;
-    network->area = dea_hyperelastic_area(symbols, network->strain);
-    dea_network_add(network, DEA_ROLE_HYPERELASTIC, "n_disc", "disc, sigma - sigma_pre [Pa] on the area A, Eq. 13",
-                    dea_hyperelastic_change(symbols, network->strain));
+    const dea_expr area = dea_hyperelastic_area(symbols, network->strain);
+    dea_network_add_stress(network, "n_disc", "disc, sigma - sigma_pre [Pa] on the area A, Eq. 13",
+                           dea_hyperelastic_change(symbols, network->strain), area);
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force, A eps E^2, Eq. 13 [N]",
                     dea_hyperelastic_force(symbols, network->strain, network->strain));
     network->field = dea_hyperelastic_field(symbols, network->strain);

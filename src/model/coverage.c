@@ -130,12 +130,12 @@ static void build(const dea_symbols *symbols, dea_network *network)
     const dea_expr annulus = dea_symbols_annulus_strain(symbols);
     const dea_expr active = dot ? disc : annulus;
     const dea_expr passive = dot ? annulus : disc;
-    network->area = dea_hyperelastic_area(symbols, disc);
+    const dea_expr area = dea_hyperelastic_area(symbols, disc);
     network->capacitance = capacitance(symbols, disc);
-    dea_network_add(network, DEA_ROLE_HYPERELASTIC, "n_disc", "disc, sigma - sigma_pre [Pa] on the area A, Eq. 18",
-                    dea_hyperelastic_change(symbols, disc));
-    dea_network_add(network, DEA_ROLE_HYPERELASTIC, "n_annulus", "annulus, sigma_pre - sigma [Pa] on the area A, Eqs. 17, 18",
-                    NEG(dea_hyperelastic_change(symbols, annulus)));
+    dea_network_add_stress(network, "n_disc", "disc, sigma - sigma_pre [Pa] on the area A, Eq. 18",
+                           dea_hyperelastic_change(symbols, disc), area);
+    dea_network_add_stress(network, "n_annulus", "annulus, sigma_pre - sigma [Pa] on the area A, Eqs. 17, 18",
+                           NEG(dea_hyperelastic_change(symbols, annulus)), area);
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force, A eps E^2, Eq. 18 [N]",
                     SCALE(network->sign, dea_hyperelastic_force(symbols, disc, active)));
     network->end = dot ? dea_symbols_annulus_width(symbols) : MUL(symbols->coverage, symbols->frame_radius);

@@ -1,12 +1,20 @@
 /* See film_balance.h. The law gives stress differences to the pre-stretch that keep their digits at a strain of 1e-12. */
 #include "model/film_balance.h"
 
+#include "model/path.h"
+
 typedef struct balance {
     double load;  /* N = sigma_A - sigma_P [Pa] */
     double slope; /* dN/de */
     double curve; /* d2N/de2 */
     double fold;  /* (1 + e) dN/de - 4 N, sign of dU/de */
 } balance;
+
+/* Two films of which the passive one gives back `ratio` of the active one's strain. */
+typedef struct film_pair {
+    const dea_film *film;
+    double ratio;
+} film_pair;
 
 static inline balance balance_at(const dea_film *film, double ratio, double e)
 {
@@ -25,16 +33,12 @@ static inline balance balance_at(const dea_film *film, double ratio, double e)
     return b;
 }
 
-static double fourth(double x)
+static dea_path_place place_at(const void *user, double e)
 {
-    return x * x * x * x;
-}
-
-/* Width in strain below which `fold` between two samples of like size is trusted to keep its sign: 5 % of stretch in either
- * region. */
-static double trusted_width(double ratio, double e)
-{
-    return 0.05 * (1.0 + e) / (1.0 + ratio);
+    const film_pair *pair = user;
+    const balance b = balance_at(pair->film, pair->ratio, e);
+    const double cube = (1.0 + e) * (1.0 + e) * (1.0 + e);
+    return (dea_path_place){b.load, b.slope, cube * (1.0 + e), 4.0 * cube};
 }
 
 /* Strain of the active film at which a region vanishes, or the energy of the material ends. */
@@ -42,101 +46,6 @@ static double end_of(const dea_film *film, double ratio)
 {
     const double passive = ratio > 0.0 ? film->shrinks / ratio : film->grows;
     return passive < film->grows ? passive : film->grows;
-}
-
-/* Looks for a fold on [low, high], where `fold` has the values at_low > 0 and at_high. Returns true and a narrow bracket of the
- * first sample with fold <= 0, else false. Samples lie so close that `fold` at most halves, or moves by 5 % of stretch, between
- * two of them. */
-static bool find_fold(const dea_film *film, double ratio, double low, double at_low, double high, double at_high, double *before,
-                      double *after)
-{
-    double at = low;
-    double fold = at_low;
-    double next = high;
-    double next_fold = at_high;
-    while (at < high) {
-        const double width = next - at;
-        const double trusted = trusted_width(ratio, at);
-        const bool finest = width <= 1e-5 * trusted;
-        if (finest && !(next_fold > 0.0)) {
-            *before = at;
-            *after = next;
-            return true;
-        }
-        if (finest || (width <= trusted && fmin(fold, next_fold) > 0.5 * fmax(fold, next_fold))) {
-            at = next;
-            fold = next_fold;
-            next = fmin(high, at + 2.0 * width);
-        } else {
-            next = at + 0.5 * width;
-        }
-        next_fold = next == high ? at_high : balance_at(film, ratio, next).fold;
-    }
-    return false;
-}
-
-/* Root of N - m (1+e)^4 in [low, high], where it changes sign from - to +: Newton, with bisection where Newton leaves the
- * bracket. */
-static double bracketed_root(const dea_film *film, double ratio, double m, double low, double high)
-{
-    double e = 0.5 * (low + high);
-    for (int i = 0; i < 200 && high - low > 1e-16 * high; i++) {
-        const balance b = balance_at(film, ratio, e);
-        const double residual = b.load - m * fourth(1.0 + e);
-        if (residual == 0.0) {
-            return e;
-        }
-        *(residual < 0.0 ? &low : &high) = e;
-        const double next = e - residual / (b.slope - 4.0 * m * (1.0 + e) * (1.0 + e) * (1.0 + e));
-        const double step = fabs(next - e);
-        e = next > low && next < high ? next : 0.5 * (low + high);
-        if (e == next && step <= 2e-16 * fabs(e)) {
-            break;
-        }
-    }
-    return e;
-}
-
-/* The fold itself, where `fold` changes sign in [before, after]. */
-static double locate_fold(const dea_film *film, double ratio, double before, double after)
-{
-    for (int i = 0; i < 100; i++) {
-        const double middle = 0.5 * (before + after);
-        if (middle <= before || middle >= after) {
-            break;
-        }
-        *(balance_at(film, ratio, middle).fold > 0.0 ? &before : &after) = middle;
-    }
-    return before;
-}
-
-/* Follows the equilibrium from rest with growing strain until the load reaches m, or a fold, or the end of the film. */
-static bool trace(const dea_film *film, double ratio, double m, double *strain)
-{
-    const double end = (1.0 - 1e-12) * end_of(film, ratio);
-    double low = 0.0;
-    double fold = balance_at(film, ratio, low).fold;
-    while (low < end) {
-        double high = fmin(end, low + trusted_width(ratio, low));
-        double before = 0.0;
-        double after = 0.0;
-        balance at = balance_at(film, ratio, high);
-        const bool folds = find_fold(film, ratio, low, fold, high, at.fold, &before, &after);
-        if (folds) {
-            high = locate_fold(film, ratio, before, after);
-            at = balance_at(film, ratio, high);
-        }
-        if (at.load >= m * fourth(1.0 + high)) {
-            *strain = bracketed_root(film, ratio, m, low, high);
-            return true;
-        }
-        if (folds) {
-            return false;
-        }
-        low = high;
-        fold = at.fold;
-    }
-    return false;
 }
 
 /* Halley's iteration from the second-order answer; false where it does not settle. Convergence is cubic, so the step after the
@@ -171,7 +80,8 @@ static bool halley(const dea_film *film, double ratio, double m, double stiffnes
 }
 
 /* True where `fold` keeps far from zero all the way from rest to e, near which @p at was taken: over so short a way two values
- * and two tangents of it that stay within a factor of two leave no room for a fold between. Spares the samples of find_fold(). */
+ * and two tangents of it that stay within a factor of two leave no room for a fold between. Spares the samples of
+ * dea_path_grows(). */
 static bool cannot_fold(const dea_film *film, double ratio, double stiffness, double e, const balance *at)
 {
     const double slope_at_rest = film->square * film->curvature * (1.0 - ratio * ratio) - 3.0 * stiffness;
@@ -179,7 +89,7 @@ static bool cannot_fold(const dea_film *film, double ratio, double stiffness, do
     const double tangent_at_rest = stiffness + slope_at_rest * e;
     const double tangent_at_end = at->fold - slope_at_end * e;
     const double half = 0.5 * (stiffness > at->fold ? stiffness : at->fold);
-    return e <= 3.0 * trusted_width(ratio, 0.0) && tangent_at_rest > half && tangent_at_end > half && stiffness > half &&
+    return e <= 0.15 / (1.0 + ratio) && tangent_at_rest > half && tangent_at_end > half && stiffness > half &&
            at->fold > half;
 }
 
@@ -193,13 +103,12 @@ bool dea_film_balance(const dea_film *film, double ratio, double m, double *stra
     if (!(stiffness > 0.0) || !isfinite(m)) {
         return false;
     }
+    const film_pair pair = {film, ratio};
+    const dea_path path = {place_at, &pair, stiffness, end_of(film, ratio), 1.0 / (1.0 + ratio)};
     balance at;
-    double before;
-    double after;
     if (halley(film, ratio, m, stiffness, strain, &at) && at.fold > 0.0 &&
-        (cannot_fold(film, ratio, stiffness, *strain, &at) ||
-         !find_fold(film, ratio, 0.0, stiffness, *strain, at.fold, &before, &after))) {
+        (cannot_fold(film, ratio, stiffness, *strain, &at) || dea_path_grows(&path, *strain))) {
         return true; /* U grows all the way from rest to this root, so it is the first */
     }
-    return trace(film, ratio, m, strain);
+    return dea_path_trace(&path, m, strain);
 }

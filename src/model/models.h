@@ -11,6 +11,7 @@ extern const dea_model dea_model_constant_force;
 extern const dea_model dea_model_lumped;
 extern const dea_model dea_model_coverage;
 extern const dea_model dea_model_lame;
+extern const dea_model dea_model_ring;
 extern const dea_model dea_model_field;
 
 /* +1 for a dot (the disc grows), -1 for a lens (the disc shrinks). */

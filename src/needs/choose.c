@@ -7,9 +7,8 @@
 #include "engine/line.h"
 #include "needs/trial.h"
 
-static const double share = 0.5;        /* of the accuracy that a model error may take */
 static const double safety = 1.5;       /* bound over the largest error of the probes */
-static const double trial_share = 0.03; /* of the accuracy: what a run may be off by that a model is judged by */
+static const double trial_share = 0.03; /* of the model error: what a run may be off by that a model is judged by */
 
 enum { VOLTAGES = 4, MOST_MODELS = 16 };
 
@@ -54,7 +53,7 @@ static dea_row row_of(const dea_scene *scene, const dea_model *model)
     dea_film_prepare(scene, &point.film);
     dea_point_place(scene, &point);
     if (dea_point_valid(&point)) {
-        model->solve(&point, 1e-3 * scene->accuracy, &row);
+        model->solve(&point, 1e-3 * scene->model_error, &row);
     }
     return row;
 }
@@ -108,7 +107,7 @@ static bool run_model(const dea_scene *scene, const dea_model *model, dea_trial_
 {
     dea_trial trial;
     const dea_reduction all = {.ring = (double)INFINITY};
-    *status = dea_trial_open(scene, model, &all, trial_share * scene->accuracy, &trial, error);
+    *status = dea_trial_open(scene, model, &all, trial_share * scene->model_error, &trial, error);
     bool solved = *status == DEA_OK && trial.engine;
     if (solved) {
         run->samples = malloc(trial.layout.point_size);
@@ -229,26 +228,20 @@ static dea_status bound_of(const dea_scene *scene, const dea_model *model, const
     return DEA_OK;
 }
 
-/* Cost in kind: a closed form, linear springs, hyperelastic ones, a membrane. */
-static int rank(const dea_model *model)
-{
-    return model->membrane ? 3 : model->linear ? 1 : model->network ? 2 : 0;
-}
-
 static bool fits(const dea_scene *scene, const dea_engine *engine, const dea_model *model)
 {
     const bool kind = (model->lens || scene->actuator.kind == DEA_DOT) && (model->dynamic || scene->study == DEA_STUDY_SWEEP);
-    return kind && (!engine || !dea_engine_refuses(engine, scene, model));
+    return kind && dea_crew_of(scene, engine, model).count > 0;
 }
 
-/* Models that fit, the cheapest first. */
+/* Models that fit, the cheapest first, and of those that cost the same the nearest to the membrane: the last of the table. */
 static size_t list_models(const dea_scene *scene, const dea_engine *engine, const dea_model *list[MOST_MODELS])
 {
     size_t count = 0;
-    for (int cost = 0; cost <= 3; cost++) {
-        for (size_t i = 0; i < dea_model_count() && count < MOST_MODELS; i++) {
+    for (int form = 0; form < DEA_FORMS; form++) {
+        for (size_t i = dea_model_count(); i-- > 0 && count < MOST_MODELS;) {
             const dea_model *model = dea_model_at(i);
-            if (rank(model) == cost && fits(scene, engine, model)) {
+            if ((int)dea_model_form(model) == form && fits(scene, engine, model)) {
                 list[count++] = model;
             }
         }
@@ -271,7 +264,7 @@ const dea_model *dea_needs_truth(dea_study_kind study)
     const dea_model *truth = NULL;
     for (size_t i = 0; i < dea_model_count(); i++) {
         const dea_model *model = dea_model_at(i);
-        const bool finer = !truth || rank(model) > rank(truth);
+        const bool finer = !truth || dea_model_form(model) >= dea_model_form(truth);
         truth = finer && (study == DEA_STUDY_SWEEP || model->dynamic) ? model : truth;
     }
     return truth;
@@ -283,7 +276,7 @@ dea_status dea_needs_model(const dea_scene *scene, const dea_engine *engine, dea
     const size_t count = list_models(scene, engine, list);
     *choice = (dea_model_choice){.truth = dea_needs_truth(scene->study), .bound = (double)INFINITY};
     /* who cannot do the truth itself is told how good the best of the others is */
-    const double wanted = share * scene->accuracy;
+    const double wanted = scene->model_error;
     const double enough = includes(list, count, choice->truth) ? wanted : (double)INFINITY;
     for (size_t i = 0; i < count && !choice->model; i++) {
         double bound;

@@ -237,7 +237,7 @@ static double ring_at(const planner *p, double omega, size_t probe)
 /* Angular frequency of the film at rest, its branches held [rad/s]. */
 static double omega_of(const dea_surrogate *s)
 {
-    return sqrt(s->points[0].passive * (1.0 + s->dynamics.total_share) / s->dynamics.mass);
+    return sqrt((s->points[0].passive + s->dynamics.total_share * s->points[0].viscous) / s->dynamics.mass);
 }
 
 /* The mass from that time behind a corner on from which no sample sees its ring any more. */

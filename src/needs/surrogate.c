@@ -71,11 +71,11 @@ static double stiffness_at(dea_surrogate *s, double u, double square)
     return dea_dynamics_stiffness(&s->dynamics, u, sqrt(square), true);
 }
 
-/* U^2 that holds the relaxed film at u: A S/phi [V^2]. */
+/* U^2 that holds the relaxed film at u [V^2]. */
 static double holding_square(dea_surrogate *s, double u)
 {
     const dea_edge e = dea_dynamics_edge(&s->dynamics, u);
-    return fmax(0.0, e.area * e.stress / e.push);
+    return fmax(0.0, dea_edge_held(&s->dynamics, &e, NULL) / e.push);
 }
 
 static void add_point(dea_surrogate *s, double u, double square)
@@ -83,8 +83,9 @@ static void add_point(dea_surrogate *s, double u, double square)
     const dea_edge e = dea_dynamics_edge(&s->dynamics, u);
     const double largest = s->source.largest * s->source.largest;
     dea_surrogate_point *point = &s->points[s->point_count++];
-    *point = (dea_surrogate_point){.passive = e.area * e.stress_slope + e.area_slope * e.stress,
-                                   .viscous = e.area * e.stress_slope,
+    *point = (dea_surrogate_point){.passive = dea_edge_held_slope(&s->dynamics, &e, NULL),
+                                   .tension = e.tension_slope,
+                                   .viscous = dea_edge_viscous(&s->dynamics, &e),
                                    .push = e.push,
                                    .push_slope = e.push_slope,
                                    .square = square,
@@ -173,7 +174,7 @@ static bool swing_out(dea_surrogate *s, double from, double step, double square,
             return false;
         }
         const dea_edge e = dea_dynamics_edge(&s->dynamics, u);
-        const double force = e.area * e.stress - e.push * square;
+        const double force = dea_edge_held(&s->dynamics, &e, NULL) - e.push * square;
         taken += 0.5 * (force + before) * step;
         before = force;
         pass(s, u, square, w);
@@ -195,8 +196,9 @@ static bool find_way(dea_surrogate *s, way *w)
         const double u = i < STEPS ? i * step : s->loaded;
         const dea_edge e = dea_dynamics_edge(&s->dynamics, u);
         const double share = i == 0 || i == STEPS ? 0.5 : 1.0;
-        pushed += share * (e.push * square - e.area * e.stress) * step;
-        strained += share * e.area * e.stress * step;
+        const double held = dea_edge_held(&s->dynamics, &e, NULL);
+        pushed += share * (e.push * square - held) * step;
+        strained += share * held * step;
         pass(s, u, i < STEPS ? holding_square(s, u) : square, w);
     }
     const double jumps = s->swing * s->swing;
@@ -229,7 +231,7 @@ static void drag_points(dea_surrogate *s, double resistance)
     for (int i = 0; i < count; i++) {
         dea_surrogate_point *point = &s->points[i];
         s->points[s->point_count++] = *point;
-        const double held = point->passive * (1.0 + s->dynamics.total_share);
+        const double held = point->passive + s->dynamics.total_share * point->viscous;
         const double omega = s->dynamics.mass > 0.0 ? sqrt(held / s->dynamics.mass) : 0.0;
         const double transduction = 2.0 * point->push * s->largest;
         const double turn = omega * resistance * s->capacitance;
@@ -349,7 +351,7 @@ static void set_walk(dea_surrogate *s, const dea_reduction *reduction, const dea
                           .from_bias = s->scene->transient.from_bias,
                           .chain = dea_walk_chain(&d, whole * point->viscous)};
     s->walk->chain.damping += charging ? point->drag : 0.0;
-    s->walk->chain.stiffness = whole * point->passive - slope * point->square;
+    s->walk->chain.stiffness = whole * (point->passive - point->tension) + point->tension - slope * point->square;
     s->walk->linear.softening = point->square > 0.0 || !s->dynamics.linear ? 0.0 : -slope;
     s->walk->linear.force = point->push;
 }

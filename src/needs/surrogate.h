@@ -12,7 +12,8 @@ enum { DEA_SURROGATE_POINTS = 6 };
 /* An operating point. Behind a series resistance each stands twice: the current that a moving film draws damps it, by most under
  * the largest voltage, and before the film is charged not at all. */
 typedef struct dea_surrogate_point {
-    double passive, viscous; /* d(A S)/du and A S' of the film without held branches [N/m] */
+    double passive, viscous; /* of the relaxed film's force its slope over u, and sum B_a S_a', without held branches [N/m] */
+    double tension;          /* of passive what held branches leave as it is, G' [N/m] */
     double push, push_slope; /* phi [N/V^2], dphi/du [N/m/V^2] */
     double drag;             /* of that current [N s/m] */
     double square;           /* U^2 under which the voltage's stiffness counts as constant [V^2]; 0: it follows the voltage */

@@ -163,9 +163,11 @@ static void write_linear_springs(writer *w)
 /* The relaxed stresses of the branches follow the stress with their time constants. */
 static void write_relaxations(const writer *w)
 {
-    for (size_t i = 0; i < w->dynamics.branch_count; i++) {
-        const dea_branch *branch = &w->dynamics.branches[i];
-        const size_t n = i + 1;
+    const size_t count = w->dynamics.branch_count;
+    for (size_t k = 0; k < dea_dynamics_states(&w->dynamics); k++) {
+        const dea_branch *branch = &w->dynamics.branches[k % count];
+        const dea_stress_node stress = dea_mobility_stress_node(&w->dynamics, k / count);
+        const size_t n = k + 1;
         fprintf(w->out,
                 "* branch %zu of the prony series: relaxed stress v(z%zu) [Pa], tau dz/dt = S - z; tau [s], share of the "
                 "long-term stress [1]\n",
@@ -175,25 +177,41 @@ static void write_relaxations(const writer *w)
         fprintf(w->out, "\n.param share%zu=", n);
         dea_export_number(w->out, branch->share);
         fprintf(w->out, "\n.param z_start%zu=", n);
-        dea_export_number(w->out, w->start.z[i]);
-        fprintf(w->out, "\ngbranch%zu 0 z%zu stress z%zu 1\ncbranch%zu z%zu 0 {tau%zu} ic={z_start%zu}\n", n, n, n, n, n, n, n);
+        dea_export_number(w->out, w->start.z[k]);
+        fprintf(w->out, "\ngbranch%zu 0 z%zu %s z%zu 1\ncbranch%zu z%zu 0 {tau%zu} ic={z_start%zu}\n", n, n, stress.name, n, n, n,
+                n, n);
     }
 }
 
-/* A [S + sum c_i (S - z_i)] against the motion. */
+/* B_a [S_a + sum c_i (S_a - z_ai)]. */
+static void write_stress_force(writer *w, size_t a)
+{
+    const dea_stress_node stress = dea_mobility_stress_node(&w->dynamics, a);
+    dea_part_text_write(&w->text, w->mobility.stresses[a].lever);
+    fprintf(w->out, "*(v(%s)", stress.name);
+    for (size_t i = 0; i < w->dynamics.branch_count; i++) {
+        const size_t n = a * w->dynamics.branch_count + i + 1;
+        char name[NODE_NAME];
+        snprintf(name, sizeof name, "share%zu", n);
+        fputc('+', w->out);
+        dea_dialect_parameter(w->dialect, w->out, name);
+        fprintf(w->out, "*(v(%s)-v(z%zu))", stress.name, n);
+    }
+    fputc(')', w->out);
+}
+
+/* All of them and G against the motion. */
 static void write_spring_force(writer *w)
 {
     begin_force(w, "spring", false);
-    dea_part_text_write(&w->text, w->mobility.area);
-    fputs("*(v(stress)", w->out);
-    for (size_t i = 1; i <= w->dynamics.branch_count; i++) {
-        char name[NODE_NAME];
-        snprintf(name, sizeof name, "share%zu", i);
-        fputc('+', w->out);
-        dea_dialect_parameter(w->dialect, w->out, name);
-        fprintf(w->out, "*(v(stress)-v(z%zu))", i);
+    for (size_t a = 0; a < w->dynamics.stress_count; a++) {
+        fputs(a > 0 ? "+" : "", w->out);
+        write_stress_force(w, a);
     }
-    fputc(')', w->out);
+    if (w->mobility.tense) {
+        fputc('+', w->out);
+        dea_part_text_write(&w->text, w->mobility.tension);
+    }
     end_source(w);
 }
 
@@ -202,15 +220,19 @@ static void write_hyperelastic_springs(writer *w)
     FILE *out = w->out;
     fputs("* displacement of the edge [m], the integral of its velocity\n", out);
     dea_export_parameter(out, "u_start", w->start.u);
-    fputs("gdisp 0 disp edge 0 1\ncdisp disp 0 1 ic={u_start}\n* stress S of the relaxed film [Pa], Eq. 18\n", out);
-    dea_dialect_source_begin(w->dialect, out, DEA_VOLTAGE, "stress", "stress", "0");
-    dea_part_text_write(&w->text, w->mobility.stress);
-    end_source(w);
+    fputs("gdisp 0 disp edge 0 1\ncdisp disp 0 1 ic={u_start}\n", out);
+    for (size_t a = 0; a < w->dynamics.stress_count; a++) {
+        const dea_stress_node node = dea_mobility_stress_node(&w->dynamics, a);
+        fputs("* stress S of the relaxed film [Pa], its change from rest\n", out);
+        dea_dialect_source_begin(w->dialect, out, DEA_VOLTAGE, node.name, node.name, "0");
+        dea_part_text_write(&w->text, w->mobility.stresses[a].stress);
+        end_source(w);
+    }
     write_relaxations(w);
-    fputs("* force of the film [N], its stress and that of its branches over the area A(u) of Eq. 18\n", out);
+    fputs("* force of the film [N], its stresses and those of its branches on their levers [m^2]\n", out);
     write_spring_force(w);
     if (w->dynamics.retardation > 0.0) {
-        fputs("* kelvin-voigt damper, tau A dS/du times the velocity [N]\n", out);
+        fputs("* kelvin-voigt damper, tau sum B dS/du times the velocity [N]\n", out);
         begin_force(w, "damper", false);
         dea_part_text_write(&w->text, w->mobility.resistance);
         fputs("*v(edge)", out);
@@ -374,8 +396,13 @@ static void declare(writer *w)
     dea_part_text_use(&w->text, m->push);
     dea_part_text_use(&w->text, m->network.capacitance);
     if (!w->dynamics.linear) {
-        dea_part_text_use(&w->text, m->area);
-        dea_part_text_use(&w->text, m->stress);
+        for (size_t a = 0; a < w->dynamics.stress_count; a++) {
+            dea_part_text_use(&w->text, m->stresses[a].lever);
+            dea_part_text_use(&w->text, m->stresses[a].stress);
+        }
+        if (w->mobility.tense) {
+            dea_part_text_use(&w->text, m->tension);
+        }
         if (w->dynamics.retardation > 0.0) {
             dea_part_text_use(&w->text, m->resistance);
         }
@@ -402,8 +429,10 @@ static dea_status write_nodes(writer *w, dea_error *error)
         }
     }
     if (!w->dynamics.linear) {
-        fputs(" v(stress)=", w->out);
-        dea_export_number(w->out, rest[w->mobility.stress]);
+        for (size_t a = 0; a < w->dynamics.stress_count; a++) {
+            fprintf(w->out, " v(%s)=", dea_mobility_stress_node(&w->dynamics, a).name);
+            dea_export_number(w->out, rest[w->mobility.stresses[a].stress]);
+        }
     }
     fputc('\n', w->out);
     free(rest);
@@ -516,9 +545,8 @@ static dea_status set_start(writer *w, dea_error *error)
     if (w->export->scene->transient.from_bias) {
         voltage = source / (1.0 + d->series * d->conductance);
         there = dea_dynamics_equilibrium(d, voltage, &w->start.u);
-        for (size_t i = 0; i < d->branch_count; i++) {
-            w->start.z[i] = dea_dynamics_edge(d, w->start.u).stress;
-        }
+        const dea_edge e = dea_dynamics_edge(d, w->start.u);
+        dea_edge_relax(d, &e, w->start.z);
     } else if (follows) {
         there = dea_dynamics_follow(d, source, w->start.z, &w->start.u);
     }
@@ -624,8 +652,8 @@ static void write_transducer(writer *w, const dea_edge *edge, double voltage)
 static void write_small_mechanics(writer *w, const dea_edge *edge, double u, double voltage)
 {
     dea_dynamics *d = &w->dynamics;
-    const double viscous = edge->area * edge->stress_slope;
-    fputs("* compliance of the relaxed film at the bias, d(A S - phi U^2)/du inverted [m/N]\n", w->out);
+    const double viscous = dea_edge_viscous(d, edge);
+    fputs("* compliance of the relaxed film at the bias, of film and voltage, inverted stiffness [m/N]\n", w->out);
     write_spring(w, 1.0 / dea_dynamics_stiffness(d, u, voltage, true), NULL);
     for (size_t i = 0; i < d->branch_count; i++) {
         write_branch(w, i + 1, viscous * d->branches[i].share, d->branches[i].tau, NULL);

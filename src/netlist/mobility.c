@@ -26,11 +26,16 @@ dea_status dea_mobility_open(const dea_scene *scene, const dea_dynamics *dynamic
         return status;
     }
     dea_pool *pool = &network->pool;
-    mobility->stress = dea_dynamics_stress(dynamics, network);
-    mobility->area = dea_network_area(network);
+    dea_dynamics_stresses(dynamics, network, mobility->stresses);
+    mobility->tension = dea_network_tension(network);
+    mobility->tense = dea_expr_constant(pool, mobility->tension) != 0.0;
     mobility->push = dea_dynamics_push(dynamics, network);
-    const dea_expr slope = dea_expr_slope(pool, mobility->stress);
-    mobility->resistance = SCALE(dynamics->retardation, MUL(mobility->area, slope));
+    dea_expr viscous = NUM(0.0), slope = NUM(0.0);
+    for (size_t a = 0; a < dynamics->stress_count; a++) {
+        slope = dea_expr_slope(pool, mobility->stresses[a].stress);
+        viscous = ADD(viscous, MUL(mobility->stresses[a].lever, slope));
+    }
+    mobility->resistance = SCALE(dynamics->retardation, viscous);
     if (pool->exhausted) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built");
     }
@@ -52,6 +57,15 @@ void dea_mobility_displace(dea_mobility *mobility)
 {
     mobility->displaced = true;
     mobility->stiffness = (double)NAN;
+}
+
+dea_stress_node dea_mobility_stress_node(const dea_dynamics *dynamics, size_t index)
+{
+    dea_stress_node node = {"stress"};
+    if (dynamics->stress_count > 1) {
+        snprintf(node.name, sizeof node.name, "stress%zu", index + 1);
+    }
+    return node;
 }
 
 static bool is_linear(const dea_mobility *mobility)
@@ -107,11 +121,23 @@ static void write_springs(const writer *w)
         parameter(out, "u_start", w->piece->start.u);
         fputs("gdisp 0 disp edge 0 1\ncdisp disp 0 1 ic={u_start}\n", out);
     }
-    fputs("* stress of the relaxed springs [Pa] and their force [N], Eq. 18\nbstress stress 0 v=", out);
-    dea_expression_text_write(&w->text, w->mobility->stress);
-    fprintf(out, "\nbspring %s 0 i=", force_node(w));
-    dea_expression_text_factor(&w->text, w->mobility->area);
-    fputs("*v(stress)\n", out);
+    for (size_t a = 0; a < w->dynamics->stress_count; a++) {
+        const dea_stress_node node = dea_mobility_stress_node(w->dynamics, a);
+        fprintf(out, "* stress of the relaxed springs [Pa]\nb%s %s 0 v=", node.name, node.name);
+        dea_expression_text_write(&w->text, w->mobility->stresses[a].stress);
+        fputc('\n', out);
+    }
+    fprintf(out, "* their force [N]\nbspring %s 0 i=", force_node(w));
+    for (size_t a = 0; a < w->dynamics->stress_count; a++) {
+        fputs(a > 0 ? "+" : "", out);
+        dea_expression_text_factor(&w->text, w->mobility->stresses[a].lever);
+        fprintf(out, "*v(%s)", dea_mobility_stress_node(w->dynamics, a).name);
+    }
+    if (w->mobility->tense) {
+        fputc('+', out);
+        dea_expression_text_factor(&w->text, w->mobility->tension);
+    }
+    fputc('\n', out);
 }
 
 /* A branch of the Prony series beside a linear spring: a spring and a damper in series. */
@@ -132,27 +158,34 @@ static void write_linear_branches(const writer *w)
     }
 }
 
-/* Quasi-linear branches: z_i follows the stress with its time constant, A sum c_i (S - z_i) acts on the edge. */
+/* Quasi-linear branches: z follows its stress with its time constant, sum B_a c_i (S_a - z_ai) acts on the edge. */
 static void write_stress_branches(const writer *w)
 {
-    for (size_t i = 0; i < w->dynamics->branch_count; i++) {
-        const dea_branch *branch = &w->dynamics->branches[i];
-        const size_t n = i + 1;
+    const size_t count = w->dynamics->branch_count;
+    for (size_t k = 0; k < dea_dynamics_states(w->dynamics); k++) {
+        const dea_branch *branch = &w->dynamics->branches[k % count];
+        const dea_stress_node stress = dea_mobility_stress_node(w->dynamics, k / count);
+        const size_t n = k + 1;
         fprintf(w->out, "* branch %zu: relaxed stress [Pa] with its time constant [s] and share of the long-term stress [1]\n",
                 n);
         indexed(w->out, "tau", n, branch->tau);
         indexed(w->out, "share", n, branch->share);
-        indexed(w->out, "z_start", n, w->piece->start.z[i]);
-        fprintf(w->out, "gbranch%zu 0 z%zu stress z%zu 1\ncbranch%zu z%zu 0 {tau%zu} ic={z_start%zu}\n", n, n, n, n, n, n, n);
+        indexed(w->out, "z_start", n, w->piece->start.z[k]);
+        fprintf(w->out, "gbranch%zu 0 z%zu %s z%zu 1\ncbranch%zu z%zu 0 {tau%zu} ic={z_start%zu}\n", n, n, stress.name, n, n, n,
+                n, n);
     }
-    if (w->dynamics->branch_count > 0) {
+    if (count > 0) {
         fprintf(w->out, "* force of the branches [N]\nbbranches %s 0 i=", force_node(w));
-        dea_expression_text_factor(&w->text, w->mobility->area);
-        for (size_t i = 1; i <= w->dynamics->branch_count; i++) {
-            fprintf(w->out, "%s{share%zu}*(v(stress)-v(z%zu))", i == 1 ? "*(" : "+", i, i);
-        }
-        fputs(")\n", w->out);
     }
+    for (size_t k = 0; k < dea_dynamics_states(w->dynamics); k++) {
+        if (k % count == 0) {
+            fputs(k > 0 ? ")+" : "", w->out);
+            dea_expression_text_factor(&w->text, w->mobility->stresses[k / count].lever);
+        }
+        fprintf(w->out, "%s{share%zu}*(v(%s)-v(z%zu))", k % count == 0 ? "*(" : "+", k + 1,
+                dea_mobility_stress_node(w->dynamics, k / count).name, k + 1);
+    }
+    fputs(count > 0 ? ")\n" : "", w->out);
 }
 
 static void write_motion(const writer *w)
@@ -176,7 +209,7 @@ static void write_motion(const writer *w)
         parameter(out, "r_damper", 1.0 / (w->dynamics->retardation * w->mobility->stiffness));
         fputs("rdamper edge 0 {r_damper}\n", out);
     } else if (w->dynamics->retardation > 0.0) {
-        fputs("* kelvin-voigt damper, tau A dS/du times the velocity [N]\nbdamper edge 0 i=", out);
+        fputs("* kelvin-voigt damper, tau sum B dS/du times the velocity [N]\nbdamper edge 0 i=", out);
         dea_expression_text_factor(&w->text, w->mobility->resistance);
         fputs("*v(edge)\n", out);
     }
@@ -306,8 +339,10 @@ static void write_start(writer *w)
     dea_expression_text_start(&w->text, 0.0, start->u);
     if (!is_linear(w->mobility)) {
         start_node(out, "disp", start->u);
-        start_node(out, "stress", w->text.rest[w->mobility->stress]);
-        for (size_t i = 0; i < w->dynamics->branch_count; i++) {
+        for (size_t a = 0; a < w->dynamics->stress_count; a++) {
+            start_node(out, dea_mobility_stress_node(w->dynamics, a).name, w->text.rest[w->mobility->stresses[a].stress]);
+        }
+        for (size_t i = 0; i < dea_dynamics_states(w->dynamics); i++) {
             char name[24];
             snprintf(name, sizeof name, "z%zu", i + 1);
             start_node(out, name, start->z[i]);
@@ -316,8 +351,8 @@ static void write_start(writer *w)
     fputc('\n', out);
 }
 
-/* Pivots are the largest elements (pivrel=1): with smaller ones the velocity of a spring's end, the difference of two fluxes over a
- * step, is taken from the row that rounds it most, by 1e-16 u/h, which no tolerance of a velocity allows for.
+/* Pivots are the largest elements (pivrel=1): with smaller ones the velocity of a spring's end, the difference of two fluxes over
+ * a step, is taken from the row that rounds it most, by 1e-16 u/h, which no tolerance of a velocity allows for.
  *
  * The steps are as long as they may be, the step control of the library is off: its errors would follow no order. The library
  * takes a corner at the print interval, with a first step of the Euler rule behind it, which would damp a ring: with mass that
@@ -363,15 +398,18 @@ static void declare(writer *w)
     if (w->dynamics->series > 0.0) {
         dea_expression_text_use(&w->text, m->network.capacitance);
     }
-    if (!is_linear(m)) {
-        dea_expression_text_use(&w->text, m->area);
-        dea_expression_text_use(&w->text, m->stress);
+    for (size_t a = 0; a < w->dynamics->stress_count && !is_linear(m); a++) {
+        dea_expression_text_use(&w->text, m->stresses[a].lever);
+        dea_expression_text_use(&w->text, m->stresses[a].stress);
         if (w->dynamics->branch_count > 0) {
-            dea_expression_text_use(&w->text, m->area);
+            dea_expression_text_use(&w->text, m->stresses[a].lever);
         }
-        if (w->dynamics->retardation > 0.0) {
-            dea_expression_text_use(&w->text, m->resistance);
-        }
+    }
+    if (!is_linear(m) && m->tense) {
+        dea_expression_text_use(&w->text, m->tension);
+    }
+    if (!is_linear(m) && w->dynamics->retardation > 0.0) {
+        dea_expression_text_use(&w->text, m->resistance);
     }
     dea_expression_text_share(&w->text);
 }
@@ -443,7 +481,7 @@ dea_mobility_vectors dea_mobility_vectors_of(const dea_mobility *mobility)
     if (!mobility->displaced) {
         add_vector(&vectors, "edge", 0);
     }
-    for (size_t i = 1; i <= mobility->dynamics->branch_count; i++) {
+    for (size_t i = 1; i <= dea_dynamics_states(mobility->dynamics); i++) {
         add_vector(&vectors, linear ? "lbranch%#branch" : "z%", i);
     }
     if (mobility->dynamics->series > 0.0) {
@@ -460,12 +498,12 @@ dea_mobility_state dea_mobility_read(const dea_mobility *mobility, const double 
     const size_t next = mobility->displaced ? 2 : 3;
     dea_mobility_state state = {.u = is_linear(mobility) ? first / k : first};
     state.v = mobility->displaced ? 0.0 : columns[2][index];
-    for (size_t i = 0; i < d->branch_count; i++) {
+    for (size_t i = 0; i < dea_dynamics_states(d); i++) {
         const double value = columns[next + i][index];
         state.z[i] = is_linear(mobility) ? first - value / d->branches[i].share : value;
     }
     if (d->series > 0.0) {
-        state.charge = mobility->rest * columns[next + d->branch_count][index];
+        state.charge = mobility->rest * columns[next + dea_dynamics_states(d)][index];
     }
     return state;
 }
@@ -494,8 +532,9 @@ static void write_transducer(FILE *out, const dea_dynamics *d, const dea_edge *e
 
 static void write_small_mechanics(FILE *out, dea_dynamics *d, const dea_edge *e, const dea_mobility_bias *bias)
 {
-    const double viscous = e->area * e->stress_slope;
-    fputs("* compliance of the relaxed film at the bias, d(A S - phi U^2)/du inverted [m/N]; its flux is the displacement\n",
+    const double viscous = dea_edge_viscous(d, e);
+    fputs("* compliance of the relaxed film at the bias, of film and voltage, inverted stiffness [m/N]; its flux is the "
+          "displacement\n",
           out);
     parameter(out, "n_spring", 1.0 / dea_dynamics_stiffness(d, bias->u, bias->voltage, true));
     fputs("lspring edge 0 {n_spring}\n", out);

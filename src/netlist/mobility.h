@@ -7,20 +7,22 @@
 #include "network/dynamics.h"
 
 typedef struct dea_mobility {
-    const dea_dynamics *dynamics; /* borrowed */
-    dea_network network;          /* owned: built under 1 V, so that the force is phi */
-    dea_expr stress, area, push;  /* S, A, phi */
-    dea_expr resistance;          /* tau_KV A S' [N s/m], where there is a damper */
-    double stiffness;             /* of all linear springs [N/m]; NAN where the springs are hyperelastic */
-    double rest;                  /* capacitance of the film at rest [F] */
-    bool displaced;               /* set by dea_mobility_displace() */
+    const dea_dynamics *dynamics;              /* borrowed */
+    dea_network network;                       /* owned: built under 1 V, so that the force is phi */
+    dea_network_stress stresses[DEA_STRESSES]; /* S_a and B_a, as many as the dynamics have */
+    dea_expr tension, push;                    /* G, phi */
+    bool tense;                                /* there is a G */
+    dea_expr resistance;                       /* tau_KV sum B_a S_a' [N s/m], where there is a damper */
+    double stiffness;                          /* of all linear springs [N/m]; NAN where the springs are hyperelastic */
+    double rest;                               /* capacitance of the film at rest [F] */
+    bool displaced;                            /* set by dea_mobility_displace() */
 } dea_mobility;
 
 /* States of the network: what one piece of a run hands to the next. */
 typedef struct dea_mobility_state {
-    double u, v;             /* [m], [m/s] */
-    double charge;           /* of the film [C], where there is a series resistance */
-    double z[DEA_PRONY_MAX]; /* relaxed stresses of the branches */
+    double u, v;               /* [m], [m/s] */
+    double charge;             /* of the film [C], where there is a series resistance */
+    double z[DEA_RELAXED_MAX]; /* relaxed stresses of the branches, as the dynamics number them */
 } dea_mobility_state;
 
 /* One piece of a transient. */
@@ -52,7 +54,7 @@ typedef struct dea_mobility_band {
 } dea_mobility_band;
 
 /* Most vectors of a run: time, displacement, velocity, charge, branches. */
-enum { DEA_MOBILITY_VECTORS = 4 + DEA_PRONY_MAX, DEA_MOBILITY_NAME = 24 };
+enum { DEA_MOBILITY_VECTORS = 4 + DEA_RELAXED_MAX, DEA_MOBILITY_NAME = 24 };
 
 typedef struct dea_mobility_vectors {
     char names[DEA_MOBILITY_VECTORS][DEA_MOBILITY_NAME];
@@ -66,6 +68,12 @@ void dea_mobility_close(dea_mobility *mobility);
 /* Transients of a film without mass and damper in the displacement form from here on: nothing holds its velocity, a difference of
  * displacements over a step that drowns in rounding where steps are short. */
 void dea_mobility_displace(dea_mobility *mobility);
+
+/* Node of stress number @p index: `stress` where it is alone. */
+typedef struct dea_stress_node {
+    char name[32];
+} dea_stress_node;
+dea_stress_node dea_mobility_stress_node(const dea_dynamics *dynamics, size_t index);
 
 /* Netlist of one piece of a transient; on DEA_OK the caller frees *text. */
 dea_status dea_mobility_write(const dea_mobility *mobility, const dea_mobility_piece *piece, char **text, dea_error *error);

@@ -153,8 +153,10 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
     const dea_expr pull = SUB(dea_network_load(network), MUL(dea_network_softening(network), network->edge));
     p->push = at_volts(pool, pull, 1.0);
     p->push_slope = dea_expr_slope(pool, p->push);
-    p->area = dea_network_area(network);
-    p->stress = dea_network_stress(network);
+    dea_network_stress stress[DEA_NETWORK_STRESSES];
+    (void)dea_network_stresses(network, stress);
+    p->area = stress[0].lever;
+    p->stress = stress[0].stress;
     p->stress_slope = dea_expr_slope(pool, p->stress);
     p->k_rest = SCALE(form_of(model)->stress, dea_expr_at_rest(pool, MUL(p->area, p->stress_slope)));
     p->capacitance = network->capacitance;
@@ -734,11 +736,28 @@ static void write_preamble(const dea_dialect *dialect, const char *title, const 
         prefix, dialect->inside);
 }
 
+#define LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+static const char marks[] = LETTERS "0123456789_";
+
 bool dea_part_name_valid(const char *name)
 {
-    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
-    static const char marks[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
-    return *name && strchr(letters, *name) && strspn(name, marks) == strlen(name) && strlen(name) <= DEA_PART_NAME_LENGTH;
+    return *name && strchr(LETTERS, *name) && strspn(name, marks) == strlen(name) && strlen(name) <= DEA_PART_NAME_LENGTH;
+}
+
+bool dea_part_name_after(const char *path, char name[DEA_PART_NAME_LENGTH + 1])
+{
+    const char *slash = strrchr(path, '/');
+    const char *file = slash ? slash + 1 : path;
+    const size_t length = strcspn(file, ".");
+    if (length == 0 || strcmp(file, "-") == 0) {
+        return false;
+    }
+    const char *prefix = strchr(LETTERS, *file) ? "" : DEA_PART_PREFIX "_";
+    snprintf(name, DEA_PART_NAME_LENGTH + 1, "%s%.*s", prefix, (int)fmin((double)length, DEA_PART_NAME_LENGTH), file);
+    for (char *c = name; *c; c++) {
+        *c = strchr(marks, *c) ? *c : '_';
+    }
+    return true;
 }
 
 dea_status dea_part_of_scene(const dea_scene *scene, const dea_model *model, const char *name, const dea_dialect *dialect,

@@ -23,6 +23,10 @@ const char *dea_part_name_of(dea_kind kind, const dea_model *model, char name[DE
 /* A name that every simulator takes: a letter, then letters, digits and underscores, at most DEA_PART_NAME_LENGTH in all. */
 bool dea_part_name_valid(const char *name);
 
+/* The name of a part in the file of that path, or from the scene of that path: that of the file up to its first dot, "_" for what
+ * no name holds, "dea_" before what is no letter, as long as a name can be. False where the file has none: "-", ".lib". */
+bool dea_part_name_after(const char *path, char name[DEA_PART_NAME_LENGTH + 1]);
+
 /* Writes one subcircuit called @p name, NULL: as dea_part_name_of() says. Its defaults are the numbers of the scene, an axis at
  * its first value. As many Prony branches as the scene has, but three at least. DEA_ERROR_UNSUPPORTED for a model that is no
  * part. */

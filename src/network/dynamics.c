@@ -6,7 +6,7 @@
 
 #include "support/gauss.h"
 
-enum { AREA, STRESS, PUSH, CAPACITANCE, OUTPUTS };
+enum { TENSION, PUSH, CAPACITANCE, STRESSES, OUTPUTS = STRESSES + 2 * DEA_STRESSES };
 
 /* Slowest first. */
 static int by_time(const void *a, const void *b)
@@ -90,10 +90,12 @@ static void set_port(const dea_scene *scene, dea_dynamics *d)
     d->conductance = isnan(drive->leakage_resistance) ? 0.0 : 1.0 / drive->leakage_resistance;
 }
 
-dea_expr dea_dynamics_stress(const dea_dynamics *d, dea_network *network)
+void dea_dynamics_stresses(const dea_dynamics *d, dea_network *network, dea_network_stress *stresses)
 {
-    const dea_expr stress = dea_network_stress(network);
-    return d->held > 0.0 ? dea_expr_scale(&network->pool, 1.0 + d->held, stress) : stress;
+    const int count = dea_network_stresses(network, stresses);
+    for (int a = 0; a < count && d->held > 0.0; a++) {
+        stresses[a].stress = dea_expr_scale(&network->pool, 1.0 + d->held, stresses[a].stress);
+    }
 }
 
 dea_expr dea_dynamics_push(const dea_dynamics *d, dea_network *network)
@@ -118,11 +120,16 @@ dea_linear dea_dynamics_linear(const dea_dynamics *d)
 /* The functions of u under 1 V, so that the force is phi. */
 static dea_status compile(dea_network *network, dea_dynamics *d, dea_error *error)
 {
-    const dea_expr refs[OUTPUTS] = {[AREA] = dea_network_area(network),
-                                    [STRESS] = dea_dynamics_stress(d, network),
-                                    [PUSH] = dea_dynamics_push(d, network),
-                                    [CAPACITANCE] = network->capacitance};
-    const dea_status status = dea_tape_compile(&network->pool, refs, OUTPUTS, &d->tape, error);
+    dea_network_stress stresses[DEA_STRESSES];
+    d->stress_count = (size_t)dea_network_stresses(network, stresses);
+    dea_dynamics_stresses(d, network, stresses);
+    dea_expr refs[OUTPUTS] = {
+        [TENSION] = dea_network_tension(network), [PUSH] = dea_dynamics_push(d, network), [CAPACITANCE] = network->capacitance};
+    for (size_t a = 0; a < d->stress_count; a++) {
+        refs[STRESSES + 2 * a] = stresses[a].stress;
+        refs[STRESSES + 2 * a + 1] = stresses[a].lever;
+    }
+    const dea_status status = dea_tape_compile(&network->pool, refs, STRESSES + 2 * (int)d->stress_count, &d->tape, error);
     return status == DEA_OK ? dea_balance_open(network, &d->balance, error) : status;
 }
 
@@ -190,16 +197,92 @@ dea_edge dea_dynamics_edge(dea_dynamics *dynamics, double u)
 {
     dea_tape *tape = &dynamics->tape;
     dea_tape_run(tape, 1.0, u);
-    return (dea_edge){
-        .area = dea_tape_value(tape, AREA),
-        .area_slope = dea_tape_slope(tape, AREA),
-        .stress = dea_tape_value(tape, STRESS),
-        .stress_slope = dea_tape_slope(tape, STRESS),
-        .push = dea_tape_value(tape, PUSH),
-        .push_slope = dea_tape_slope(tape, PUSH),
-        .capacitance = dea_tape_value(tape, CAPACITANCE),
-        .capacitance_slope = dea_tape_slope(tape, CAPACITANCE),
-    };
+    dea_edge e;
+    e.tension = dea_tape_value(tape, TENSION);
+    e.tension_slope = dea_tape_slope(tape, TENSION);
+    e.push = dea_tape_value(tape, PUSH);
+    e.push_slope = dea_tape_slope(tape, PUSH);
+    e.capacitance = dea_tape_value(tape, CAPACITANCE);
+    e.capacitance_slope = dea_tape_slope(tape, CAPACITANCE);
+    for (size_t a = 0; a < dynamics->stress_count; a++) {
+        const int stress = STRESSES + 2 * (int)a, lever = stress + 1;
+        e.stress[a] = dea_tape_value(tape, stress);
+        e.stress_slope[a] = dea_tape_slope(tape, stress);
+        e.lever[a] = dea_tape_value(tape, lever);
+        e.lever_slope[a] = dea_tape_slope(tape, lever);
+    }
+    return e;
+}
+
+/* sum c_i (S_a - z_ai) of stress number @p a, and what it loses a second. */
+static double branch_stress(const dea_dynamics *d, const dea_edge *e, size_t a, const double *z)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < d->branch_count; i++) {
+        sum += d->branches[i].share * (e->stress[a] - z[a * d->branch_count + i]);
+    }
+    return sum;
+}
+
+static double branch_loss(const dea_dynamics *d, const dea_edge *e, size_t a, const double *z)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < d->branch_count; i++) {
+        sum += d->branches[i].share * (e->stress[a] - z[a * d->branch_count + i]) / d->branches[i].tau;
+    }
+    return sum;
+}
+
+double dea_edge_held(const dea_dynamics *d, const dea_edge *e, const double *z)
+{
+    double sum = e->tension;
+    for (size_t a = 0; a < d->stress_count; a++) {
+        sum += e->lever[a] * (z ? e->stress[a] + branch_stress(d, e, a, z) : e->stress[a]);
+    }
+    return sum;
+}
+
+/* Slope of what the film holds, @p share the stress that goes with a strain, over that of the relaxed film. */
+static double held_slope(const dea_dynamics *d, const dea_edge *e, double share, const double *z)
+{
+    double sum = e->tension_slope;
+    for (size_t a = 0; a < d->stress_count; a++) {
+        const double stress = z ? e->stress[a] + branch_stress(d, e, a, z) : e->stress[a];
+        sum += e->lever[a] * share * e->stress_slope[a] + e->lever_slope[a] * stress;
+    }
+    return sum;
+}
+
+double dea_edge_held_slope(const dea_dynamics *d, const dea_edge *e, const double *z)
+{
+    return held_slope(d, e, z ? 1.0 + d->total_share : 1.0, z);
+}
+
+double dea_edge_viscous(const dea_dynamics *d, const dea_edge *e)
+{
+    double sum = 0.0;
+    for (size_t a = 0; a < d->stress_count; a++) {
+        sum += e->lever[a] * e->stress_slope[a];
+    }
+    return sum;
+}
+
+double dea_edge_viscous_slope(const dea_dynamics *d, const dea_edge *e)
+{
+    double sum = 0.0;
+    for (size_t a = 0; a < d->stress_count; a++) {
+        sum += e->lever_slope[a] * e->stress_slope[a];
+    }
+    return sum;
+}
+
+void dea_edge_relax(const dea_dynamics *d, const dea_edge *e, double *z)
+{
+    for (size_t a = 0; a < d->stress_count; a++) {
+        for (size_t i = 0; i < d->branch_count; i++) {
+            z[a * d->branch_count + i] = e->stress[a];
+        }
+    }
 }
 
 bool dea_dynamics_equilibrium(const dea_dynamics *dynamics, double voltage, double *u)
@@ -215,8 +298,8 @@ bool dea_dynamics_equilibrium(const dea_dynamics *dynamics, double voltage, doub
 double dea_dynamics_stiffness(dea_dynamics *dynamics, double u, double voltage, bool relaxed)
 {
     const dea_edge e = dea_dynamics_edge(dynamics, u);
-    const double held = relaxed ? 0.0 : dynamics->total_share;
-    return e.area * (1.0 + held) * e.stress_slope + e.area_slope * e.stress - e.push_slope * voltage * voltage;
+    const double share = relaxed ? 1.0 : 1.0 + dynamics->total_share;
+    return held_slope(dynamics, &e, share, NULL) - e.push_slope * voltage * voltage;
 }
 
 double dea_dynamics_hold(dea_dynamics *dynamics, double u, double voltage)
@@ -230,37 +313,17 @@ double dea_dynamics_hold(dea_dynamics *dynamics, double u, double voltage)
 double dea_dynamics_scale(dea_dynamics *dynamics, double voltage)
 {
     const dea_edge e = dea_dynamics_edge(dynamics, 0.0);
-    const double size = fabs(e.push * voltage * voltage / (e.area * e.stress_slope));
+    const double size = fabs(e.push * voltage * voltage / dea_edge_held_slope(dynamics, &e, NULL));
     const double longest = fmin(dynamics->radius, dynamics->point.frame_radius - dynamics->radius);
     return size > 0.0 && size < longest ? size : longest;
 }
 
-/* Sum of c_i (S - z_i), and of what these lose a second. */
-static double branch_stress(const dea_dynamics *d, double stress, const double *z)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < d->branch_count; i++) {
-        sum += d->branches[i].share * (stress - z[i]);
-    }
-    return sum;
-}
-
-static double branch_loss(const dea_dynamics *d, double stress, const double *z)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < d->branch_count; i++) {
-        sum += d->branches[i].share * (stress - z[i]) / d->branches[i].tau;
-    }
-    return sum;
-}
-
-/* Net force without mass and damper, A [S + sum c_i (S - z_i)] - phi U^2, and its slope over u. */
+/* Net force without mass and damper, sum B_a [S_a + sum c_i (S_a - z_ai)] + G - phi U^2, and its slope over u. */
 static double imbalance(dea_dynamics *d, double u, double voltage, const double *z, double *slope)
 {
     const dea_edge e = dea_dynamics_edge(d, u);
-    const double stress = e.stress + branch_stress(d, e.stress, z);
-    *slope = e.area_slope * stress + e.area * (1.0 + d->total_share) * e.stress_slope - e.push_slope * voltage * voltage;
-    return e.area * stress - e.push * voltage * voltage;
+    *slope = dea_edge_held_slope(d, &e, z) - e.push_slope * voltage * voltage;
+    return dea_edge_held(d, &e, z) - e.push * voltage * voltage;
 }
 
 /* Newton on imbalance = wanted from *u on, over stable states only. */
@@ -291,7 +354,7 @@ static bool newton(dea_dynamics *d, double voltage, const double *z, double want
 static double holding_square(dea_dynamics *d, double u, const double *z)
 {
     const dea_edge e = dea_dynamics_edge(d, u);
-    const double square = e.area * (e.stress + branch_stress(d, e.stress, z)) / e.push;
+    const double square = dea_edge_held(d, &e, z) / e.push;
     return square > 0.0 ? square : 0.0;
 }
 
@@ -321,17 +384,21 @@ bool dea_dynamics_follow(dea_dynamics *dynamics, double voltage, const double *z
     return true;
 }
 
-/* K v = 2 phi U U' + A sum c_i (S - z_i)/tau_i, U' = slope - reaction v. */
+/* K v = 2 phi U U' + sum B_a c_i (S_a - z_ai)/tau_i, U' = slope - reaction v. */
 static double velocity(dea_dynamics *d, double u, double voltage, double slope, double reaction, const double *z)
 {
     double stiffness;
     const double force = imbalance(d, u, voltage, z, &stiffness);
     const dea_edge e = dea_dynamics_edge(d, u);
     if (d->retardation > 0.0) {
-        return -force / (e.area * d->retardation * e.stress_slope);
+        return -force / (d->retardation * dea_edge_viscous(d, &e));
     }
     const double push = 2.0 * e.push * voltage;
-    return (push * slope + e.area * branch_loss(d, e.stress, z)) / (stiffness + push * reaction);
+    double loss = 0.0;
+    for (size_t a = 0; a < d->stress_count; a++) {
+        loss += e.lever[a] * branch_loss(d, &e, a, z);
+    }
+    return (push * slope + loss) / (stiffness + push * reaction);
 }
 
 double dea_dynamics_velocity(dea_dynamics *dynamics, double u, double voltage, double slope, const double *z)
@@ -407,10 +474,8 @@ void dea_dynamics_start(dea_dynamics *dynamics, dea_moment *moment)
     }
     double stiffness;
     const dea_edge e = dea_dynamics_edge(dynamics, moment->u);
-    double z[DEA_PRONY_MAX];
-    for (size_t i = 0; i < dynamics->branch_count; i++) {
-        z[i] = e.stress;
-    }
+    double z[DEA_RELAXED_MAX];
+    dea_edge_relax(dynamics, &e, z);
     (void)imbalance(dynamics, moment->u, moment->voltage, z, &stiffness);
     moment->v = dynamics->clamped ? 0.0 : 2.0 * e.push * moment->voltage * moment->slope / stiffness;
     moment->charging = dynamics->series > 0.0 || dynamics->dropped > 0.0;
@@ -451,6 +516,16 @@ bool dea_dynamics_sample(dea_dynamics *dynamics, const dea_moment *moment, dea_s
     return true;
 }
 
+/* sum B_a c_i (S_a - z_ai) [N]. */
+static double branch_force(const dea_dynamics *d, const dea_edge *e, const double *z)
+{
+    double sum = 0.0;
+    for (size_t a = 0; a < d->stress_count; a++) {
+        sum += e->lever[a] * branch_stress(d, e, a, z);
+    }
+    return sum;
+}
+
 void dea_audit_add(dea_audit *audit, dea_dynamics *dynamics, const dea_moment *m, const double *z, double weight)
 {
     const dea_edge e = dea_dynamics_edge(dynamics, m->u);
@@ -461,15 +536,15 @@ void dea_audit_add(dea_audit *audit, dea_dynamics *dynamics, const dea_moment *m
     const double work = series ? m->source * flow : e.push * square * m->v + leak;
     const double ohmic = leak + flow * flow * dynamics->series;
     audit->work += weight * work;
-    audit->dissipated += weight * (ohmic + e.area * dynamics->retardation * e.stress_slope * m->v * m->v);
-    audit->branch += weight * e.area * branch_stress(dynamics, e.stress, z) * m->v;
+    audit->dissipated += weight * (ohmic + dynamics->retardation * dea_edge_viscous(dynamics, &e) * m->v * m->v);
+    audit->branch += weight * branch_force(dynamics, &e, z) * m->v;
     const double kinetic = 0.5 * dynamics->mass * m->v * m->v;
     audit->largest = fmax(fmax(audit->largest, kinetic), fmax(fabs(audit->work), fabs(audit->dissipated)));
 }
 
 enum { PANELS = 16 };
 
-/* int A S du and, where z is given, int A sum c_i (S - z_i) du instead, from u to @p to. */
+/* What the relaxed film holds, and where z is given the force of the branches instead, integrated over u from u to @p to. */
 static double force_integral(dea_dynamics *d, double u, double to, const double *z)
 {
     double sum = 0.0;
@@ -477,7 +552,7 @@ static double force_integral(dea_dynamics *d, double u, double to, const double 
         for (int i = 0; i < DEA_GAUSS_POINTS; i++) {
             const double place = ((double)panel + dea_gauss_place(i)) / PANELS;
             const dea_edge e = dea_dynamics_edge(d, u + (to - u) * place);
-            sum += dea_gauss_weight(i) * e.area * (z ? branch_stress(d, e.stress, z) : e.stress);
+            sum += dea_gauss_weight(i) * (z ? branch_force(d, &e, z) : dea_edge_held(d, &e, NULL));
         }
     }
     return sum * (to - u) / PANELS;
@@ -491,14 +566,18 @@ void dea_audit_jump(dea_audit *audit, dea_dynamics *dynamics, double u, double t
     audit->largest = fmax(audit->largest, fabs(audit->work));
 }
 
-/* Energy of the branches' springs: (1/2) c_i (A/S') (S - z_i)^2. */
+/* Energy of the branches' springs: (1/2) f_i^2/k_i with f_i = c_i sum B_a (S_a - z_ai) and k_i = c_i sum B_a S_a'. */
 static double branch_energy(dea_dynamics *d, double u, const double *z)
 {
     const dea_edge e = dea_dynamics_edge(d, u);
+    const double viscous = dea_edge_viscous(d, &e);
     double sum = 0.0;
     for (size_t i = 0; i < d->branch_count; i++) {
-        const double stretch = e.stress - z[i];
-        sum += 0.5 * d->branches[i].share * e.area / e.stress_slope * stretch * stretch;
+        double force = 0.0;
+        for (size_t a = 0; a < d->stress_count; a++) {
+            force += e.lever[a] * (e.stress[a] - z[a * d->branch_count + i]);
+        }
+        sum += 0.5 * d->branches[i].share * force * force / viscous;
     }
     return sum;
 }

@@ -1,13 +1,18 @@
 /* The moving network of one run: what every engine in the time and frequency domain, and every row of them, is made from.
  *
- *   m u'' + A(u) [ S(u) + tau_KV S'(u) u' + sum c_i (S(u) - z_i) ] = phi(u) U^2,    z_i' = (S(u) - z_i)/tau_i
+ *   m u'' + sum_a B_a(u) [ S_a(u) + tau_KV S_a'(u) u' + sum_i c_i (S_a - z_ai) ] + G(u) = phi(u) U^2,    z_ai' = (S_a -
+ * z_ai)/tau_i
  *
- * with the film voltage U, the long-term stress S on the area A (A = 1 and S = K u where the springs are linear), c_i =
- * g_i/g_inf, phi = (1/2) dC/du. Relaxed, z_i = S. With an electrical port: U_s = U + R_s (d(C U)/dt + U/R_p). */
+ * with the film voltage U, the changes S_a of the long-term stresses from rest on their levers B_a (one with B = 1 and S = K u
+ * where the springs are linear, one of Eq. 18, three of rings), what the stress at rest does by its levers, G, c_i = g_i/g_inf,
+ * phi = (1/2) dC/du. Relaxed, z_ai = S_a. With an electrical port: U_s = U + R_s (d(C U)/dt + U/R_p). */
 #ifndef DEA_DYNAMICS_H
 #define DEA_DYNAMICS_H
 
 #include "network/balance.h"
+
+/* Most stresses of a film, and most states of its branches: z_ai stands at a branch_count + i. */
+enum { DEA_STRESSES = DEA_NETWORK_STRESSES, DEA_RELAXED_MAX = DEA_STRESSES * DEA_PRONY_MAX };
 
 typedef struct dea_branch {
     double share; /* c = g/g_inf, of the stress S [1] */
@@ -23,6 +28,7 @@ typedef struct dea_dynamics {
     bool softens;                       /* the voltage changes the stiffness */
     dea_branch branches[DEA_PRONY_MAX]; /* slowest first, those of equal time drawn together */
     size_t branch_count;
+    size_t stress_count;                   /* of the S_a, >= 1 */
     double total_share;                    /* sum of their c_i */
     bool port;                             /* a resistance is given: current and charge are wanted */
     double series;                         /* R_s [Ohm], 0: the film sees the source */
@@ -32,17 +38,18 @@ typedef struct dea_dynamics {
     double conductance;                    /* 1/R_p [S], 0: no leakage */
     double radius;                         /* r_a [m] */
     double focal_length, refractive_index; /* NAN: no optics */
-    bool linear;                           /* A and dS/du are constant */
-    dea_tape tape;                         /* owned: A, S, phi, C */
+    bool linear;                           /* one stress K u on the lever 1, without G */
+    dea_tape tape;                         /* owned: G, phi, C, then S_a and B_a in turn */
     dea_balance balance;                   /* owned: rows */
 } dea_dynamics;
 
 /* The functions of u and their slopes. */
 typedef struct dea_edge {
-    double area, area_slope;               /* A [m^2 or 1] */
-    double stress, stress_slope;           /* S [Pa or N] */
-    double push, push_slope;               /* phi [N/V^2] */
-    double capacitance, capacitance_slope; /* C [F]; its slope is 2 phi */
+    double stress[DEA_STRESSES], stress_slope[DEA_STRESSES]; /* S_a [Pa or N], stress_count of them */
+    double lever[DEA_STRESSES], lever_slope[DEA_STRESSES];   /* B_a [m^2 or 1] */
+    double tension, tension_slope;                           /* G [N] */
+    double push, push_slope;                                 /* phi [N/V^2] */
+    double capacitance, capacitance_slope;                   /* C [F]; its slope is 2 phi */
 } dea_edge;
 
 /* Compiles the network of a scene whose axes are at their place; the caller ends it with dea_dynamics_close(), also after a
@@ -50,8 +57,8 @@ typedef struct dea_edge {
 dea_status dea_dynamics_open(const dea_scene *scene, const dea_model *model, dea_dynamics *dynamics, dea_error *error);
 void dea_dynamics_close(dea_dynamics *dynamics);
 
-/* S, and phi under 1 V, of a network that was built under 1 V for these dynamics. */
-dea_expr dea_dynamics_stress(const dea_dynamics *dynamics, dea_network *network);
+/* The stresses, as many as the dynamics have, and phi under 1 V, of a network that was built under 1 V for these dynamics. */
+void dea_dynamics_stresses(const dea_dynamics *dynamics, dea_network *network, dea_network_stress *stresses);
 dea_expr dea_dynamics_push(const dea_dynamics *dynamics, dea_network *network);
 /* Sets damper and branches from the scene's material and reduction anew; false where no long-term stress is left. */
 bool dea_dynamics_relax(dea_dynamics *dynamics, const dea_scene *scene);
@@ -59,6 +66,20 @@ bool dea_dynamics_relax(dea_dynamics *dynamics, const dea_scene *scene);
 dea_linear dea_dynamics_linear(const dea_dynamics *dynamics);
 
 dea_edge dea_dynamics_edge(dea_dynamics *dynamics, double u);
+/* What the film holds against u but for its damper, sum B_a [S_a + sum c_i (S_a - z_ai)] + G [N]; z NULL: relaxed. Its slope over
+ * u [N/m] with the branches held at z; z NULL: with them relaxed. */
+double dea_edge_held(const dea_dynamics *dynamics, const dea_edge *edge, const double *z);
+double dea_edge_held_slope(const dea_dynamics *dynamics, const dea_edge *edge, const double *z);
+/* sum B_a S_a' [N/m], which damper and branches scale; and sum B_a' S_a' [N/m^2]: its slope but for S''. */
+double dea_edge_viscous(const dea_dynamics *dynamics, const dea_edge *edge);
+double dea_edge_viscous_slope(const dea_dynamics *dynamics, const dea_edge *edge);
+/* Sets z to the branches relaxed at the edge. */
+void dea_edge_relax(const dea_dynamics *dynamics, const dea_edge *edge, double *z);
+/* Number of the z. */
+static inline size_t dea_dynamics_states(const dea_dynamics *dynamics)
+{
+    return dynamics->stress_count * dynamics->branch_count;
+}
 /* Static displacement under film voltage U from the model's own equation; false where there is none. */
 bool dea_dynamics_equilibrium(const dea_dynamics *dynamics, double voltage, double *u);
 /* Net stiffness of the relaxed film dR/du - dF/du at u under film voltage U [N/m]; relaxed false: with the branches held. */

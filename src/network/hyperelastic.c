@@ -7,7 +7,7 @@ dea_expr dea_hyperelastic_principal(const dea_symbols *symbols, dea_expr e1, dea
 {
     dea_pool *pool = symbols->pool;
     const dea_expr one = NUM(1.0);
-    dea_form form = {0};
+    dea_law_form form = {0};
     if (!pool->exhausted) {
         const dea_expr l1 = MUL(symbols->prestretch, ADD(one, e1)), l2 = MUL(symbols->prestretch, ADD(one, e2));
         symbols->law->form(pool, symbols->constants, l1, l2, &form);

@@ -18,7 +18,7 @@ void dea_network_free(dea_network *network)
     }
 }
 
-void dea_network_add(dea_network *network, dea_role role, const char *name, const char *meaning, dea_expr value)
+static void add_element(dea_network *network, dea_element element)
 {
     const size_t count = (size_t)network->element_count;
     dea_element *elements = realloc(network->elements, (count + 1) * sizeof *elements);
@@ -26,8 +26,18 @@ void dea_network_add(dea_network *network, dea_role role, const char *name, cons
         network->pool.exhausted = true;
         return;
     }
-    elements[network->element_count++] = (dea_element){role, name, meaning, value};
+    elements[network->element_count++] = element;
     network->elements = elements;
+}
+
+void dea_network_add(dea_network *network, dea_role role, const char *name, const char *meaning, dea_expr value)
+{
+    add_element(network, (dea_element){role, name, meaning, value, 0});
+}
+
+void dea_network_add_stress(dea_network *network, const char *name, const char *meaning, dea_expr stress, dea_expr lever)
+{
+    add_element(network, (dea_element){DEA_ROLE_HYPERELASTIC, name, meaning, stress, lever});
 }
 
 /* One more expression at the end of a list. */
@@ -103,9 +113,9 @@ static dea_expr film_voltage(dea_pool *pool, const dea_scene *scene, const dea_a
 }
 
 /* The law at two stretches. */
-static dea_form form_at(const dea_symbols *symbols, dea_expr l1, dea_expr l2)
+static dea_law_form form_at(const dea_symbols *symbols, dea_expr l1, dea_expr l2)
 {
-    dea_form form = {0};
+    dea_law_form form = {0};
     if (!symbols->pool->exhausted) {
         symbols->law->form(symbols->pool, symbols->constants, l1, l2, &form);
     }
@@ -277,25 +287,33 @@ static dea_expr sum_of(dea_network *network, dea_role role)
     return sum;
 }
 
-static bool is_hyperelastic(const dea_network *network)
-{
-    for (int i = 0; i < network->element_count; i++) {
-        if (network->elements[i].role == DEA_ROLE_HYPERELASTIC) {
-            return true;
-        }
-    }
-    return false;
-}
-
-dea_expr dea_network_area(dea_network *network)
-{
-    return is_hyperelastic(network) ? network->area : dea_expr_number(&network->pool, 1.0);
-}
-
-dea_expr dea_network_stress(dea_network *network)
+int dea_network_stresses(dea_network *network, dea_network_stress *stresses)
 {
     dea_pool *pool = &network->pool;
-    return ADD(MUL(sum_of(network, DEA_ROLE_SPRING), network->edge), sum_of(network, DEA_ROLE_HYPERELASTIC));
+    int count = 0;
+    for (int i = 0; i < network->element_count; i++) {
+        const dea_element *element = &network->elements[i];
+        int k = 0;
+        while (k < count && stresses[k].lever != element->lever) {
+            k++;
+        }
+        if (element->role == DEA_ROLE_HYPERELASTIC && k < count) {
+            stresses[k].stress = ADD(stresses[k].stress, element->value);
+        } else if (element->role == DEA_ROLE_HYPERELASTIC && count < DEA_NETWORK_STRESSES) {
+            stresses[count++] = (dea_network_stress){element->value, element->lever};
+        } else if (element->role == DEA_ROLE_HYPERELASTIC) {
+            pool->exhausted = true; /* a network that holds more is not built */
+        }
+    }
+    if (count == 0) {
+        stresses[count++] = (dea_network_stress){MUL(sum_of(network, DEA_ROLE_SPRING), network->edge), NUM(1.0)};
+    }
+    return count;
+}
+
+dea_expr dea_network_tension(dea_network *network)
+{
+    return sum_of(network, DEA_ROLE_TENSION);
 }
 
 dea_expr dea_network_softening(dea_network *network)
@@ -307,10 +325,10 @@ dea_expr dea_network_elastic(dea_network *network)
 {
     dea_pool *pool = &network->pool;
     const dea_expr stiffness = ADD(sum_of(network, DEA_ROLE_SPRING), sum_of(network, DEA_ROLE_SOFTENING));
-    dea_expr force = NUM(0.0);
+    dea_expr force = dea_network_tension(network);
     for (int i = 0; i < network->element_count; i++) {
         if (network->elements[i].role == DEA_ROLE_HYPERELASTIC) {
-            force = ADD(force, MUL(network->area, network->elements[i].value));
+            force = ADD(force, MUL(network->elements[i].lever, network->elements[i].value));
         }
     }
     return ADD(MUL(stiffness, network->edge), force);

@@ -8,6 +8,9 @@
 #include "deaspice/model.h"
 #include "expression/tape.h"
 
+/* Most levers of a film. */
+enum { DEA_NETWORK_STRESSES = 3 };
+
 /* What a model's network is built from: numbers, or expressions of symbol 0 where the swept scalar enters. */
 typedef struct dea_symbols {
     dea_pool *pool;
@@ -24,22 +27,28 @@ typedef struct dea_symbols {
     dea_expr voltage;              /* across the film [V] */
 } dea_symbols;
 
-typedef enum dea_role { DEA_ROLE_SPRING, DEA_ROLE_SOFTENING, DEA_ROLE_HYPERELASTIC, DEA_ROLE_SOURCE } dea_role;
+typedef enum dea_role { DEA_ROLE_SPRING, DEA_ROLE_SOFTENING, DEA_ROLE_HYPERELASTIC, DEA_ROLE_TENSION, DEA_ROLE_SOURCE } dea_role;
 
 /* One element between edge and frame. */
 typedef struct dea_element {
     dea_role role;
     const char *name;    /* netlist name, e.g. "n_a" */
     const char *meaning; /* what it is, with its unit and equation */
-    dea_expr value; /* spring, softening: stiffness 1/n [N/m]; hyperelastic spring: stress over the network's area [Pa]; source:
-                       outward force [N] */
+    dea_expr value; /* spring, softening: stiffness 1/n [N/m]; hyperelastic spring: change of its stress from rest [Pa]; tension:
+                       what the stress at rest does by its levers, against u [N]; source: outward force [N] */
+    dea_expr lever; /* of a hyperelastic spring: force against u over stress [m^2] */
 } dea_element;
+
+/* A stress of the relaxed film that its branches and damper follow: the change of stress of all hyperelastic springs that share a
+ * lever [Pa], or the force of all linear springs with the lever 1 [N]. */
+typedef struct dea_network_stress {
+    dea_expr stress, lever;
+} dea_network_stress;
 
 typedef struct dea_network {
     dea_pool pool;
     dea_element *elements; /* owned */
     int element_count;
-    dea_expr area;        /* on which the stresses of hyperelastic springs act [m^2] */
     dea_expr capacitance; /* of the film [F], where the model is dynamic */
     dea_expr edge;        /* u [m] */
     dea_expr strain;      /* s [1] */
@@ -62,8 +71,10 @@ dea_status dea_network_build(const dea_scene *scene, const dea_model *model, con
 dea_status dea_network_build_symbols(const dea_symbols *symbols, const dea_model *model, dea_network *network, dea_error *error);
 void dea_network_free(dea_network *network);
 /* These add to a network; without memory its pool is exhausted, which the end of the building tells.
- * An element; names and meanings are borrowed for the life of the network. */
+ * An element that is no hyperelastic spring; names and meanings are borrowed for the life of the network. */
 void dea_network_add(dea_network *network, dea_role role, const char *name, const char *meaning, dea_expr value);
+/* A hyperelastic spring: a change of stress from rest and its lever. */
+void dea_network_add_stress(dea_network *network, const char *name, const char *meaning, dea_expr stress, dea_expr lever);
 
 /* Something that is positive while the film is taut. */
 void dea_network_taut(dea_network *network, dea_expr tension);
@@ -72,10 +83,10 @@ void dea_network_demand(dea_network *network, dea_expr range);
 /* Sets the true field from the area that disc (dot) or annulus (lens) has at u: U lambda_pre^2/H times the area ratio. */
 void dea_network_limit_area(const dea_symbols *symbols, dea_network *network);
 
-/* What the passive film holds against its voltage-free rest, over the area on which it acts [m^2] (1 where the springs are
- * linear): their product is the restoring force without softening [N]. */
-dea_expr dea_network_stress(dea_network *network);
-dea_expr dea_network_area(dea_network *network);
+/* The stresses of the film, at most DEA_NETWORK_STRESSES; their number. Stress times lever, summed, and dea_network_tension() are
+ * the restoring force without softening [N]. */
+int dea_network_stresses(dea_network *network, dea_network_stress *stresses);
+dea_expr dea_network_tension(dea_network *network);
 /* Stiffness that the voltage adds, negative where it softens [N/m]. */
 dea_expr dea_network_softening(dea_network *network);
 /* Sum of the elastic forces (restoring) and of the sources (outward) as expressions of u [N]. */

@@ -62,3 +62,33 @@ void dea_peak_search(dea_peak *peak, double from, double to, dea_current_at *at,
         close_in(peak, times[largest == 0 ? 0 : PLACES - 2], times[largest == 0 ? 1 : PLACES - 1], at, user);
     }
 }
+
+/* The voltage jumps where a segment begins with another one than that before it ends with: 0 V before the first, unless at bias. */
+static bool jumps(const dea_scene *scene, const dea_signal *signal)
+{
+    double before = scene->transient.from_bias ? signal->segments[0].start : 0.0;
+    for (size_t i = 0; i < signal->count; i++) {
+        if (signal->segments[i].start != before) {
+            return true;
+        }
+        before = signal->segments[i].end;
+    }
+    return false;
+}
+
+bool dea_peak_is_known(const dea_scene *scene, const dea_dynamics *dynamics, const dea_signal *signal)
+{
+    const dea_reduction *reduction = &scene->reduction;
+    const bool heavy = dea_point_mass(scene, &dynamics->point) > 0.0;
+    if (!dynamics->port || dynamics->dropped > 0.0 || (reduction->mass && heavy) ||
+        (reduction->damper && scene->material.retardation > 0.0)) {
+        return false;
+    }
+    for (size_t i = 0; i < scene->material.prony_count; i++) {
+        const dea_branch_form form = reduction->branches[i];
+        if (form == DEA_BRANCH_DAMPER || form == DEA_BRANCH_OUT) {
+            return false;
+        }
+    }
+    return dynamics->series > 0.0 || !jumps(scene, signal);
+}

@@ -40,7 +40,7 @@ static void join_equal(film *f)
 static film film_at(dea_dynamics *d, double u, double voltage)
 {
     const dea_edge e = dea_dynamics_edge(d, u);
-    const double viscous = e.area * e.stress_slope;
+    const double viscous = dea_edge_viscous(d, &e);
     const double transduction = d->series > 0.0 ? 2.0 * e.push * voltage : 0.0;
     film f = {.mass = d->mass, .resistance = d->retardation * viscous};
     f.stiffness = dea_dynamics_stiffness(d, u, voltage, true);

@@ -1,6 +1,6 @@
 /* The damped swing of the film about an equilibrium: the one pair of complex roots that the linearised network can have. With the
- * film's own branches k_i = A S' c_i, q_i = 1/tau_i and, under a voltage behind a series resistance, the charge as one more,
- * k = (2 phi U)^2/C, q = (1/R_s + 1/R_p)/C,
+ * film's own branches k_i = c_i sum B_a S_a', q_i = 1/tau_i and, under a voltage behind a series resistance, the charge as one
+ * more, k = (2 phi U)^2/C, q = (1/R_s + 1/R_p)/C,
  *
  *   D(s) = m s^2 + r s + K + sum k_i s/(s + q_i) = 0. */
 #ifndef DEA_SWING_H

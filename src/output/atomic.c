@@ -187,3 +187,15 @@ dea_status dea_atomic_close(dea_atomic *file, bool keep, dea_error *error)
     atomic_clear(file);
     return status;
 }
+
+dea_status dea_atomic_put(const char *path, const char *text, size_t length, dea_error *error)
+{
+    dea_atomic file;
+    dea_status status = dea_atomic_open(&file, path, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    status = dea_atomic_write(&file, text, length, error);
+    const dea_status closed = dea_atomic_close(&file, status == DEA_OK, status == DEA_OK ? error : NULL);
+    return status != DEA_OK ? status : closed;
+}

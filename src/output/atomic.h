@@ -18,5 +18,7 @@ dea_status dea_atomic_open(dea_atomic *file, const char *path, dea_error *error)
 dea_status dea_atomic_write(dea_atomic *file, const void *bytes, size_t size, dea_error *error);
 /* Renames into place when @p keep is true, else removes what was written; a closed or never opened (zeroed) file is fine. */
 dea_status dea_atomic_close(dea_atomic *file, bool keep, dea_error *error);
+/* Writes a whole file at once: opens, writes and closes. */
+dea_status dea_atomic_put(const char *path, const char *text, size_t length, dea_error *error);
 
 #endif

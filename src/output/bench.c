@@ -8,7 +8,8 @@ struct dea_bench_output {
     bool has_table, has_picture;
 };
 
-dea_status dea_bench_output_open(const char *table, const char *picture, dea_bench_output **output, dea_error *error)
+dea_status dea_bench_output_open(const char *table, const char *picture, const dea_plot_options *options,
+                                 dea_bench_output **output, dea_error *error)
 {
     *output = NULL;
     dea_bench_output *opened = calloc(1, sizeof *opened);
@@ -18,7 +19,7 @@ dea_status dea_bench_output_open(const char *table, const char *picture, dea_ben
     dea_status status = table ? dea_atomic_open(&opened->table, table, error) : DEA_OK;
     opened->has_table = table && status == DEA_OK;
     if (status == DEA_OK && picture) {
-        status = dea_gnuplot_begin(&opened->picture, picture, error);
+        status = dea_gnuplot_begin(&opened->picture, picture, options, error);
         opened->has_picture = status == DEA_OK;
     }
     if (status != DEA_OK) {

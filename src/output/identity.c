@@ -47,16 +47,23 @@ static void put_numbers(FILE *out, const char *name, const double *values, size_
     fprintf(out, "%s=%zu values %s ... %s (%016" PRIx64 ")\n", name, count, first, last, dea_digest_end(&digest));
 }
 
-/* Two keys can name one scalar; the first of them that this kind of actuator has stands for it. */
-static bool stands_for_its_place(size_t index, unsigned kind)
+/* Does the key name a scalar that this kind of actuator and this law of its material have? */
+static bool is_scalar(const dea_scene *scene, const dea_key *key)
 {
-    const dea_key *key = dea_key_at(index);
-    if (key->offset == DEA_KEY_NOWHERE || key->stride > 0 || (key->kinds & kind) == 0) {
+    const unsigned kind = scene->actuator.kind == DEA_DOT ? DEA_KEY_DOT : DEA_KEY_LENS;
+    return key->offset != DEA_KEY_NOWHERE && key->stride == 0 && (key->kinds & kind) != 0 &&
+           (!key->law || key->law == scene->material.law);
+}
+
+/* Two keys can name one scalar; the first of them that the scene has stands for it. */
+static bool stands_for_its_place(const dea_scene *scene, const dea_key *key, size_t index)
+{
+    dea_key before;
+    if (!is_scalar(scene, key)) {
         return false;
     }
-    for (size_t i = 0; i < index; i++) {
-        const dea_key *before = dea_key_at(i);
-        if (before->offset == key->offset && before->stride == 0 && (before->kinds & kind) != 0) {
+    for (size_t i = 0; i < index && dea_key_at(i, &before); i++) {
+        if (before.offset == key->offset && is_scalar(scene, &before)) {
             return false;
         }
     }
@@ -65,12 +72,12 @@ static bool stands_for_its_place(size_t index, unsigned kind)
 
 static void put_scalars(FILE *out, const dea_scene *scene)
 {
-    const unsigned kind = scene->actuator.kind == DEA_DOT ? DEA_KEY_DOT : DEA_KEY_LENS;
-    for (size_t i = 0; dea_key_at(i); i++) {
-        if (stands_for_its_place(i, kind)) {
+    dea_key key;
+    for (size_t i = 0; dea_key_at(i, &key); i++) {
+        if (stands_for_its_place(scene, &key, i)) {
             double value;
-            memcpy(&value, (const char *)scene + dea_key_at(i)->offset, sizeof value);
-            put_number(out, dea_key_at(i)->path, value);
+            memcpy(&value, (const char *)scene + key.offset, sizeof value);
+            put_number(out, key.path, value);
         }
     }
 }
@@ -80,6 +87,10 @@ static void put_lists(FILE *out, const dea_scene *scene)
     const dea_material *material = &scene->material;
     const dea_transient *transient = &scene->transient;
     const dea_waveform *wave = &scene->drive.waveform;
+    if (material->law->entries > 1) {
+        fprintf(out, "material.law=%s\n", material->law->name);
+        put_numbers(out, "material.constants", material->constants, material->entry_count * material->law->constant_count);
+    }
     put_numbers(out, "material.prony", &material->prony[0].g, 2 * material->prony_count);
     put_numbers(out, "material.stretches", material->stretches, 2);
     fprintf(out, "material.moduli=%s\n", material->instantaneous ? "instantaneous" : "long-term");
@@ -111,19 +122,49 @@ static void put_study(FILE *out, const dea_scene *scene)
     }
 }
 
+static bool same_crew(const dea_crew *a, const dea_crew *b)
+{
+    return a->count == b->count && memcmp(a->engines, b->engines, a->count * sizeof *a->engines) == 0;
+}
+
+/* All who may be asked, model by model where they are not the same: what comes out depends on each. */
+static void put_engines(FILE *out, const dea_scene *scene, const dea_engine *engine)
+{
+    bool asked[DEA_ENGINES] = {false};
+    dea_crew before = {0};
+    fputs("engine=", out);
+    for (size_t m = 0; m < scene->model_count; m++) {
+        const dea_crew crew = dea_crew_of(scene, engine, scene->models[m]);
+        const bool told = same_crew(&crew, &before);
+        for (size_t i = 0; i < crew.count && !told; i++) {
+            fprintf(out, "%s%s", i > 0 ? "," : m > 0 ? "; " : "", crew.engines[i]->name);
+            for (size_t k = 0; dea_engine_at(k); k++) {
+                asked[k] = asked[k] || dea_engine_at(k) == crew.engines[i];
+            }
+        }
+        before = crew;
+    }
+    fputs("\nlibrary of the engine=", out);
+    for (size_t k = 0; dea_engine_at(k); k++) {
+        char library[DEA_NAME_LENGTH] = "none";
+        if (asked[k] && dea_engine_at(k)->library) {
+            dea_engine_at(k)->library(library, sizeof library);
+        }
+        fprintf(out, "%s%s", asked[k] ? library : "", asked[k] ? " " : "");
+    }
+    fputc('\n', out);
+}
+
 dea_status dea_identity_write(const dea_scene *scene, const dea_engine *engine, char **text, dea_error *error)
 {
     size_t length;
-    char library[DEA_NAME_LENGTH] = "none";
     *text = NULL;
     FILE *out = open_memstream(text, &length);
     if (!out) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
-    if (engine->library) {
-        engine->library(library, sizeof library);
-    }
-    fprintf(out, "program version=%s\nengine=%s\nlibrary of the engine=%s\n", DEA_VERSION, engine->name, library);
+    fprintf(out, "program version=%s\n", DEA_VERSION);
+    put_engines(out, scene, engine);
     put_study(out, scene);
     put_scalars(out, scene);
     put_lists(out, scene);

@@ -1,6 +1,8 @@
 #include "output/image.h"
 
 #include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { SIGNATURE = 8, CHUNK = 12, DEPTH = 64 };
@@ -23,8 +25,9 @@ static uint32_t checksum(const unsigned char *bytes, size_t size)
     return ~rest;
 }
 
-bool dea_image_png_whole(const unsigned char *bytes, size_t size)
+bool dea_image_png_whole(const char *text, size_t size)
 {
+    const unsigned char *bytes = (const unsigned char *)text;
     static const unsigned char signature[SIGNATURE] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     if (size < SIGNATURE || memcmp(bytes, signature, SIGNATURE) != 0) {
         return false;
@@ -103,4 +106,57 @@ bool dea_image_svg_whole(const char *text, size_t size)
         at = last;
     }
     return ended;
+}
+
+/* Number that follows the last @p word of the text, -1 without one. */
+static long number_behind(const char *text, size_t size, const char *word)
+{
+    const size_t length = strlen(word);
+    for (size_t at = size < length ? 0 : size - length; at > 0; at--) {
+        if (memcmp(text + at, word, length) == 0) {
+            return strtol(text + at + length, NULL, 10);
+        }
+    }
+    return -1;
+}
+
+/* Entry number @p index of the table of objects: "offset generation n", of a used object "index generation obj" stands there. */
+static bool object_stands(const char *text, size_t size, const char *entry, long index)
+{
+    char head[24];
+    if (entry[17] != 'n') {
+        return entry[17] == 'f';
+    }
+    const int length = snprintf(head, sizeof head, "%ld 0 obj", index);
+    const long at = strtol(entry, NULL, 10);
+    return at > 0 && (size_t)at + (size_t)length < size && memcmp(text + at, head, (size_t)length) == 0;
+}
+
+bool dea_image_pdf_whole(const char *text, size_t size)
+{
+    enum { ENTRY = 20 };
+    static const char end[] = "%%EOF";
+    long count = 0;
+    int used = 0;
+    while (size > 0 && (text[size - 1] == '\n' || text[size - 1] == '\r')) {
+        size--;
+    }
+    const long table = size > 1024 && memcmp(text, "%PDF-", 5) == 0 ? number_behind(text, size, "startxref") : -1;
+    if (table <= 0 || (size_t)table >= size - sizeof end || memcmp(text + size - sizeof end + 1, end, sizeof end - 1) != 0) {
+        return false;
+    }
+    if (memcmp(text + table, "xref", 4) != 0) { /* a compressed table is an object */
+        return sscanf(text + table, "%*d 0 ob%*c%n", &used) == 0 && used > 0;
+    }
+    if (sscanf(text + table, "xref 0 %ld%n", &count, &used) != 1 || count < 1 ||
+        (size_t)count >= (size - (size_t)table) / ENTRY) {
+        return false;
+    }
+    const char *entry = text + table + used + strspn(text + table + used, " \r\n");
+    for (long i = 0; i < count; i++, entry += ENTRY) {
+        if (!object_stands(text, size, entry, i)) {
+            return false;
+        }
+    }
+    return true;
 }

@@ -5,15 +5,33 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 /* Units that take a prefix. */
 static bool unit_scales(const char *unit)
 {
-    static const char *const units[] = {"m", "V", "Pa", "N", "s", "Ohm", "ohm", "V/m", "Hz", "F", "A"};
+    static const char *const units[] = {"m", "V", "Pa", "N", "s", "Ohm", "ohm", "V/m", "Hz", "F", "A", "C", "J"};
     for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
         if (strcmp(unit, units[i]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Longer times are told in the units of clocks and calendars; false where seconds will do. */
+static bool scale_time(double largest, const char *unit, dea_scale *scale)
+{
+    static const struct {
+        double from, length; /* [s] */
+        const char *name;
+    } units[] = {{3.0 * 86400.0, 86400.0, "d"}, {7200.0, 3600.0, "h"}, {300.0, 60.0, "min"}};
+    for (size_t i = 0; i < sizeof units / sizeof *units && strcmp(unit, "s") == 0 && isfinite(largest); i++) {
+        if (largest >= units[i].from) {
+            *scale = (dea_scale){.factor = 1.0 / units[i].length};
+            snprintf(scale->unit, sizeof scale->unit, "%s", units[i].name);
             return true;
         }
     }
@@ -24,7 +42,7 @@ dea_scale dea_scale_choose(double largest, const char *unit)
 {
     static const char *const prefixes[] = {"p", "n", "µ", "m", "", "k", "M", "G", "T"};
     dea_scale scale = {.factor = 1.0};
-    if (strcmp(unit, "1") == 0) {
+    if (strcmp(unit, "1") == 0 || scale_time(largest, unit, &scale)) {
         return scale;
     }
     const char *shown = strcasecmp(unit, "ohm") == 0 ? "Ω" : unit;
@@ -47,6 +65,25 @@ dea_scale dea_scale_axis(const dea_axis *axis)
     return dea_scale_choose(largest, axis->unit);
 }
 
+/* The constant of a law that the key names, and "Yeoh constant" for it; NULL: another key. */
+static const dea_constant *law_constant(const char *key, char words[DEA_NAME_LENGTH])
+{
+    const char *last = strrchr(key, '.');
+    for (size_t i = 0; dea_law_at(i); i++) {
+        const dea_law *law = dea_law_at(i);
+        char front[DEA_NAME_LENGTH];
+        const int length = snprintf(front, sizeof front, "material.%s.", law->name);
+        for (size_t k = 0; k < law->constant_count && strncmp(key, front, (size_t)length) == 0; k++) {
+            if (strcmp(last + 1, law->constants[k].name) == 0) {
+                const int entry = law->entries > 1 ? atoi(key + length) + 1 : 0;
+                snprintf(words, DEA_NAME_LENGTH, entry ? "%s constant of term %d" : "%s constant", law->title, entry);
+                return &law->constants[k];
+            }
+        }
+    }
+    return NULL;
+}
+
 /* Words and symbol of a quantity. */
 static void axis_names(const dea_axis *axis, char words[DEA_NAME_LENGTH], const char **symbol)
 {
@@ -65,9 +102,6 @@ static void axis_names(const dea_axis *axis, char words[DEA_NAME_LENGTH], const 
         {"study.ac.bias", "Bias voltage", "U"},
         {"material.modulus", "Operating modulus", "Y"},
         {"material.permittivity", "Relative permittivity", "ε"},
-        {"material.yeoh.C1", "Yeoh constant", "C1"},
-        {"material.yeoh.C2", "Yeoh constant", "C2"},
-        {"material.yeoh.C3", "Yeoh constant", "C3"},
     };
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         if (strcmp(axis->key, known[i].key) == 0) {
@@ -75,6 +109,11 @@ static void axis_names(const dea_axis *axis, char words[DEA_NAME_LENGTH], const 
             *symbol = known[i].symbol;
             return;
         }
+    }
+    const dea_constant *constant = law_constant(axis->key, words);
+    if (constant) {
+        *symbol = constant->name;
+        return;
     }
     const char *dot = strchr(axis->key, '.');
     snprintf(words, DEA_NAME_LENGTH, "%s", dot ? dot + 1 : axis->key);

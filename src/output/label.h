@@ -12,7 +12,7 @@ typedef struct dea_scale {
     char unit[24]; /* empty where there is no dimension */
 } dea_scale;
 
-/* Scale that makes @p largest (absolute, SI) read as 1 to 999. */
+/* Scale that makes @p largest (absolute, SI) read as 1 to 999; times from five minutes on are in min, h or d. */
 dea_scale dea_scale_choose(double largest, const char *unit);
 /* Scale of an axis, from its largest value. */
 dea_scale dea_scale_axis(const dea_axis *axis);

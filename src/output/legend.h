@@ -12,7 +12,7 @@ typedef struct dea_legend_entry {
     char colour[8];
     size_t dash; /* as dea_plot_dash() numbers them, from 1; 0: no line */
     int symbol;  /* point type of gnuplot; 0: no point */
-    double x, y; /* left end and middle line on the canvas, in units of 1/100 inch, y upward */
+    double x, y; /* left end and middle line on the canvas, in its units, y upward */
 } dea_legend_entry;
 
 typedef struct dea_legend {
@@ -22,8 +22,9 @@ typedef struct dea_legend {
 
 /* Next entry of the legend, empty; the last one again where there is no room. */
 dea_legend_entry *dea_legend_add(dea_legend *legend);
-/* Room that an entry takes along x, with the gap behind it. */
-double dea_legend_room(const dea_legend_entry *entry);
+/* Puts the entries into centred rows at the foot of a canvas of that width: in one, or each kind on its own, in several where it
+ * must; entries kinds[i] to kinds[i + 1] are of kind i. Returns the height of the rows. */
+int dea_legend_lay(dea_legend *legend, const size_t *kinds, size_t kind_count, int width);
 /* Draws the entries over a canvas of that size, as the last plot of a multiplot. */
 void dea_legend_draw(const dea_legend *legend, FILE *script, int width, int height);
 

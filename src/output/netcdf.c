@@ -184,15 +184,16 @@ static bool is_used(const dea_scene *scene, const dea_key *key)
     while (!begins_with(key->path, parts[part].path)) {
         part++;
     }
-    return parts[part].used && key->offset != DEA_KEY_NOWHERE && (key->kinds & kind) != 0;
+    const bool listed = key->law && (key->law != scene->material.law || key->stride > 0);
+    return parts[part].used && key->offset != DEA_KEY_NOWHERE && (key->kinds & kind) != 0 && !listed;
 }
 
 /* Two keys can name one scalar; the first of them stands for it. */
-static bool is_first_of_its_place(const dea_scene *scene, size_t index)
+static bool is_first_of_its_place(const dea_scene *scene, const dea_key *key, size_t index)
 {
-    const dea_key *key = dea_key_at(index);
-    for (size_t i = 0; i < index; i++) {
-        if (dea_key_at(i)->offset == key->offset && is_used(scene, dea_key_at(i))) {
+    dea_key before;
+    for (size_t i = 0; i < index && dea_key_at(i, &before); i++) {
+        if (before.offset == key->offset && is_used(scene, &before)) {
             return false;
         }
     }
@@ -221,11 +222,28 @@ static void put_scalar(grid *file, const dea_key *key)
 static void put_scalars(grid *file)
 {
     const dea_scene *scene = file->scene;
-    const dea_key *key;
-    for (size_t i = 0; (key = dea_key_at(i)) != NULL; i++) {
-        if (is_used(scene, key) && is_first_of_its_place(scene, i) && !is_swept(scene, key->offset)) {
-            put_scalar(file, key);
+    dea_key key;
+    for (size_t i = 0; dea_key_at(i, &key); i++) {
+        if (is_used(scene, &key) && is_first_of_its_place(scene, &key, i) && !is_swept(scene, key.offset)) {
+            put_scalar(file, &key);
         }
+    }
+}
+
+/* The constants of a law that is a list, entry after entry, under one name each. */
+static void put_listed_law(grid *file)
+{
+    const dea_material *material = &file->scene->material;
+    const size_t stride = material->law->constant_count;
+    for (size_t k = 0; k < stride && material->law->entries > 1; k++) {
+        char name[DEA_NAME_LENGTH];
+        double values[DEA_LAW_CONSTANTS];
+        for (size_t i = 0; i < material->entry_count; i++) {
+            values[i] = material->constants[i * stride + k];
+        }
+        snprintf(name, sizeof name, "%s_%s%s", material->law->name, material->law->constants[k].name,
+                 material->law->constants[k].modulus ? "_Pa" : "");
+        grid_keep(file, file->nc.nc_put_att_double(file->file, NC_GLOBAL, name, NC_DOUBLE, material->entry_count, values));
     }
 }
 
@@ -269,6 +287,7 @@ static void put_provenance(grid *file, const char *engine)
     put_text(file, NC_GLOBAL, "material", scene->material.name);
     put_text(file, NC_GLOBAL, "material_source", scene->material.source);
     put_scalars(file);
+    put_listed_law(file);
     put_prony(file);
     if (scene->study == DEA_STUDY_TRANSIENT) {
         static const char *const waves[] = {

@@ -1,20 +1,13 @@
-/* Strain and displacement side by side: one colour for each value of the other axes, one dash for each model. */
+/* Strain and displacement: a curve for each model and each value of the other axes. */
 #include "output/label.h"
 #include "output/picture.h"
 #include "output/series.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
 
-enum {
-    WIDTH = 960,
-    PANEL = 300,
-    PANEL_WIDTH = 358,
-    LABELS = 58, /* below a panel */
-    MARKS_PER_CURVE = 20,
-    FEW_POINTS = 25
-};
+enum { MARKS_PER_CURVE = 20, FEW_POINTS = 25, PANELS = 2 };
 
 /* What the whole picture needs to know. */
 typedef struct sheet {
@@ -24,8 +17,9 @@ typedef struct sheet {
     dea_scale across, displacement;
     dea_series series;
     bool seen[DEA_MARKS];
-    double low[2], high[2]; /* of strain and displacement as drawn, 0 included */
-    int height;
+    bool negative[PANELS];           /* strain, displacement have values below zero */
+    dea_span along, spans[PANELS];   /* as drawn */
+    dea_pair pair;
 } sheet;
 
 static const dea_dot *sheet_dot(const sheet *page, size_t curve, size_t place)
@@ -49,23 +43,71 @@ static bool is_marked(const sheet *page, size_t curve, size_t place, size_t mark
     return isfinite(dot->strain) && (before || after);
 }
 
-static void sheet_scan(sheet *page)
+/* Strain and displacement of a dot as drawn: on a logarithmic axis without their sign. */
+static void dot_values(const sheet *page, const dea_dot *dot, double drawn[PANELS])
+{
+    drawn[0] = 100.0 * dot->strain;
+    drawn[1] = page->displacement.factor * dot->displacement;
+    for (int i = 0; i < PANELS; i++) {
+        drawn[i] = !page->spans[i].logarithmic ? drawn[i] : drawn[i] != 0.0 ? fabs(drawn[i]) : (double)NAN;
+    }
+}
+
+/* Where a kept value stands along x, as drawn. */
+static double place_value(const sheet *page, size_t place)
+{
+    return page->across.factor * page->axis->values[dea_thinning_index(&page->plot->across, page->order[place])];
+}
+
+/* Its share of the way along x. */
+static double place_share(const sheet *page, size_t place)
+{
+    const dea_span *x = &page->along;
+    const double value = place_value(page, place);
+    if (x->logarithmic && !(value > 0.0)) {
+        return 0.0;
+    }
+    return x->logarithmic ? log(value / x->low) / log(x->high / x->low) : (value - x->low) / (x->high - x->low);
+}
+
+/* Does the mark of its group stand at this point? On a curve of few points at all of them. */
+static bool has_symbol(const sheet *page, size_t curve, size_t place)
+{
+    const size_t group = curve % page->series.groups;
+    if (page->plot->across.kept <= FEW_POINTS) {
+        return true;
+    }
+    return place > 0 && dea_series_mark(&page->series, group, place_share(page, place)) !=
+                            dea_series_mark(&page->series, group, place_share(page, place - 1));
+}
+
+static void scan_scale(sheet *page)
 {
     const dea_plot *plot = page->plot;
     double largest = 0.0;
     for (size_t i = 0; i < plot->curves * plot->across.kept; i++) {
         if (isfinite(plot->dots[i].displacement)) {
             largest = fmax(largest, fabs(plot->dots[i].displacement));
+            page->negative[0] = page->negative[0] || plot->dots[i].strain < 0.0;
+            page->negative[1] = page->negative[1] || plot->dots[i].displacement < 0.0;
         }
     }
     page->displacement = dea_scale_choose(largest, "m");
+}
+
+static void sheet_scan(sheet *page)
+{
+    const dea_plot *plot = page->plot;
+    scan_scale(page);
+    for (size_t place = 0; place < plot->across.kept; place++) {
+        dea_span_take(&page->along, place_value(page, place));
+    }
     for (size_t curve = 0; curve < plot->curves; curve++) {
         for (size_t place = 0; place < plot->across.kept; place++) {
-            const dea_dot *dot = sheet_dot(page, curve, place);
-            const double drawn[2] = {100.0 * dot->strain, page->displacement.factor * dot->displacement};
-            for (int i = 0; i < 2 && isfinite(drawn[i]); i++) {
-                page->low[i] = fmin(page->low[i], drawn[i]);
-                page->high[i] = fmax(page->high[i], drawn[i]);
+            double drawn[PANELS];
+            dot_values(page, sheet_dot(page, curve, place), drawn);
+            for (int i = 0; i < PANELS && (place_value(page, place) > 0.0 || !page->along.logarithmic); i++) {
+                dea_span_take(&page->spans[i], drawn[i]);
             }
             for (size_t mark = 0; mark < DEA_MARKS; mark++) {
                 page->seen[mark] = page->seen[mark] || is_marked(page, curve, place, mark);
@@ -74,26 +116,33 @@ static void sheet_scan(sheet *page)
     }
 }
 
+static void write_values(FILE *script, const double drawn[PANELS], bool shown)
+{
+    for (int i = 0; i < PANELS; i++) {
+        fputc(' ', script);
+        dea_gnuplot_number(script, shown ? drawn[i] : (double)NAN);
+    }
+}
+
+/* A block a curve: x, then pairs of strain and displacement: all of it, its marks of limits, those of its group. */
 static void write_data(const sheet *page, FILE *script)
 {
     const dea_plot *plot = page->plot;
     for (size_t curve = 0; curve < plot->curves; curve++) {
         fprintf(script, "$curve%zu << END\n", curve);
         for (size_t place = 0; place < plot->across.kept; place++) {
-            const dea_dot *dot = sheet_dot(page, curve, place);
-            const double drawn[2] = {100.0 * dot->strain, page->displacement.factor * dot->displacement};
-            const size_t index = dea_thinning_index(&plot->across, page->order[place]);
-            dea_gnuplot_number(script, page->across.factor * page->axis->values[index]);
-            for (int i = 0; i < 2; i++) {
-                fputc(' ', script);
-                dea_gnuplot_number(script, drawn[i]);
+            double drawn[PANELS];
+            const double x = place_value(page, place);
+            dot_values(page, sheet_dot(page, curve, place), drawn);
+            if (page->along.logarithmic && !(x > 0.0)) {
+                continue;
             }
+            dea_gnuplot_number(script, x);
+            write_values(script, drawn, true);
             for (size_t mark = 0; mark < DEA_MARKS; mark++) {
-                for (int i = 0; i < 2; i++) {
-                    fputc(' ', script);
-                    dea_gnuplot_number(script, is_marked(page, curve, place, mark) ? drawn[i] : NAN);
-                }
+                write_values(script, drawn, is_marked(page, curve, place, mark));
             }
+            write_values(script, drawn, has_symbol(page, curve, place));
             fputc('\n', script);
         }
         fputs("END\n", script);
@@ -102,118 +151,142 @@ static void write_data(const sheet *page, FILE *script)
 
 static void write_marks(const sheet *page, FILE *script, size_t curve, int column)
 {
-    char colour[8];
-    dea_series_colour(&page->series, curve / page->series.groups, curve % page->series.groups, colour);
+    const dea_look look = dea_series_look(&page->series, curve / page->series.groups, curve % page->series.groups);
     for (size_t mark = 0; mark < DEA_MARKS; mark++) {
         if (page->seen[mark]) {
             const int from = column + 2 * ((int)mark + 1);
-            fprintf(script, ", \\\n $curve%zu using 1:%d with points pointtype %d pointsize 0.8 linecolor '#ffffff' notitle",
+            fprintf(script, ", \\\n $curve%zu using 1:%d with points pointtype %d pointsize 0.8*ps linecolor '#ffffff' notitle",
                     curve, from, dea_marks[mark].inside);
-            fprintf(script,
-                    ", \\\n $curve%zu using 1:%d with points pointtype %d pointsize 0.7 linewidth 1.3 linecolor '%s' notitle",
-                    curve, from, dea_marks[mark].symbol, colour);
+            fprintf(script, ", \\\n $curve%zu using 1:%d with points pointtype %d pointsize 0.7*ps linewidth 1.3 ", curve, from,
+                    dea_marks[mark].symbol);
+            dea_look_colour(script, &look);
+            fputs(" notitle", script);
         }
     }
 }
 
-/* One plot command: all curves of column 2 (strain) or 3 (displacement), then their marks. */
-static void write_curves(const sheet *page, FILE *script, int column)
+/* The line of a curve and its marks; single curves of few points show them as dots. */
+static void write_curve(const sheet *page, FILE *script, size_t curve, int column)
 {
-    const dea_plot *plot = page->plot;
-    const bool few = plot->across.kept <= FEW_POINTS;
-    fputs("plot ", script);
-    for (size_t curve = 0; curve < plot->curves; curve++) {
-        char colour[8];
-        dea_series_colour(&page->series, curve / page->series.groups, curve % page->series.groups, colour);
-        fprintf(script, "%s$curve%zu using 1:%d with %s ", curve > 0 ? ", \\\n " : "", curve, column,
-                few ? "linespoints" : "lines");
-        dea_plot_dash(script, curve / page->series.groups + 1);
-        fprintf(script, " linewidth 1.8 linecolor '%s' pointtype 7 pointsize 0.4 notitle", colour);
+    enum { DOT = 7 };
+    const dea_look look = dea_series_look(&page->series, curve / page->series.groups, curve % page->series.groups);
+    const int symbol = look.symbol ? look.symbol : page->plot->across.kept <= FEW_POINTS ? DOT : 0;
+    fprintf(script, "%s$curve%zu using 1:%d with lines ", curve > 0 ? ", \\\n " : "plot ", curve, column);
+    dea_plot_dash(script, look.dash);
+    fputs(" linewidth 1.8 ", script);
+    dea_look_colour(script, &look);
+    fputs(" notitle", script);
+    if (symbol) {
+        fprintf(script, ", \\\n $curve%zu using 1:%d with points pointtype %d pointsize %s*ps linewidth 1.3 ", curve,
+                column + 2 * (DEA_MARKS + 1), symbol, symbol == DOT ? "0.4" : "0.75");
+        dea_look_colour(script, &look);
+        fputs(" notitle", script);
     }
-    for (size_t curve = 0; curve < plot->curves; curve++) {
-        write_marks(page, script, curve, column);
-    }
-    fputc('\n', script);
 }
 
-/* One panel: its place on the canvas, its labels, its curves. */
-static void write_panel(const sheet *page, FILE *script, int number)
+/* One panel: its place on the canvas, its labels, its curves in column 2 (strain) or 3 (displacement). */
+static void write_panel(sheet *page, FILE *script, int number)
 {
-    const double left = number == 0 ? 82.0 : 578.0;
-    const double top = page->plot->scene->title[0] ? DEA_TITLE : DEA_NO_TITLE;
+    static const char *const words[PANELS] = {"Strain", "Displacement"};
+    const dea_plot *plot = page->plot;
+    const dea_box *box = &page->pair.boxes[number];
+    const char *bar = page->negative[number] && page->spans[number].logarithmic ? "|" : "";
     char label[DEA_LABEL_LENGTH + 24];
-    dea_plot_place(script, WIDTH, page->height, (dea_box){left, top, PANEL_WIDTH, PANEL});
-    snprintf(label, sizeof label, number == 0 ? "Strain s [%%]" : "Displacement u [%s]", page->displacement.unit);
+    dea_plot_place(script, plot->picture.canvas.width, page->pair.height, *box);
+    snprintf(label, sizeof label, "%s %s%c%s [%s]", words[number], bar, number == 0 ? 's' : 'u', bar,
+             number == 0 ? "%" : page->displacement.unit);
     fputs("set ylabel ", script);
     dea_gnuplot_text(script, label);
-    fprintf(script, "\nset label 1 '(%c)' at graph 0, graph 1.045 left\n", 'a' + number);
-    const bool flat = !(page->high[number] > page->low[number]);
-    fprintf(script, "set yrange [%s:%s]\n", page->low[number] < 0.0 || flat ? "*" : "0",
-            page->high[number] > 0.0 || flat ? "*" : "0");
-    write_curves(page, script, number + 2);
+    fprintf(script, "\nset label 1 '(%c)' at graph 0, graph 1 offset character 0, character 0.8 left\n", 'a' + number);
+    dea_span_write(script, "x", &page->along, box->width, dea_name_plain);
+    dea_span_write(script, "y", &page->spans[number], box->height, dea_name_plain);
+    if (number == 0 && page->series.bar != SIZE_MAX) {
+        dea_series_bar(&page->series, script, plot->picture.canvas, page->pair.height, *box);
+    }
+    for (size_t curve = 0; curve < plot->curves; curve++) {
+        write_curve(page, script, curve, number + 2);
+    }
+    for (size_t curve = 0; curve < plot->curves; curve++) {
+        write_marks(page, script, curve, number + 2);
+    }
+    fputs("\nunset label 2\nunset colorbox\n", script);
 }
 
-/* Positive values with a constant ratio over two decades or more ask for a logarithmic axis. */
-static bool axis_logarithmic(const sheet *page)
+/* Ranges: strain and displacement from zero, with room above; one value along x is put in the middle. */
+static void sheet_settle(sheet *page)
 {
-    const double *values = page->axis->values;
-    const size_t count = page->axis->count;
-    if (page->axis->uniform || count < 4 || !(values[0] > 0.0) || !(values[count - 1] >= 100.0 * values[0])) {
-        return false;
-    }
-    const double ratio = pow(values[count - 1] / values[0], 1.0 / (double)(count - 1));
-    for (size_t i = 1; i < count; i++) {
-        if (!(fabs(values[i] / (values[i - 1] * ratio) - 1.0) < 0.05)) {
-            return false;
+    for (int i = 0; i < PANELS; i++) {
+        dea_span *span = &page->spans[i];
+        if (!span->logarithmic) {
+            dea_span_take(span, 0.0);
         }
+        dea_span_limit(span);
+        dea_span_pad(span, false);
     }
-    return true;
+    if (!(page->along.high > page->along.low)) {
+        dea_span_pad(&page->along, true);
+    }
 }
 
-static void write_frame(const sheet *page, FILE *script)
+static void write_picture(sheet *page, const dea_legend *legend)
 {
-    const size_t last = page->plot->across.kept - 1;
+    const dea_plot *plot = page->plot;
+    FILE *script = plot->picture.script;
     char label[DEA_LABEL_LENGTH];
+    write_data(page, script);
     dea_plot_style(script);
-    dea_plot_title(script, page->plot->scene->title, page->height);
+    dea_plot_title(script, plot->scene->title, plot->picture.canvas.width, page->pair.height);
     dea_label_axis(page->axis, &page->across, label);
     fputs("set xlabel ", script);
     dea_gnuplot_text(script, label);
-    const double first = page->axis->values[dea_thinning_index(&page->plot->across, page->order[0])];
-    const double end = page->axis->values[dea_thinning_index(&page->plot->across, page->order[last])];
-    const double pad = end > first ? 0.0 : first != 0.0 ? 0.1 * fabs(first) : 1.0; /* an axis may repeat one value */
-    fputs("\nset xrange [", script);
-    dea_gnuplot_number(script, page->across.factor * (first - pad));
-    fputc(':', script);
-    dea_gnuplot_number(script, page->across.factor * (end + pad));
-    fprintf(script, "]\n%s", axis_logarithmic(page) ? "set logscale x\nset format x '%g'\n" : "");
+    fputc('\n', script);
+    for (int i = 0; i < PANELS; i++) {
+        write_panel(page, script, i);
+    }
+    if (legend->count > 0) {
+        dea_legend_draw(legend, script, plot->picture.canvas.width, page->pair.height);
+    }
+    fputs("unset multiplot\nunset output\n", script);
+}
+
+/* Fails where a logarithmic axis has nothing to show. */
+static dea_status sheet_check(const sheet *page, dea_error *error)
+{
+    const dea_span *spans[] = {&page->along, &page->spans[0], &page->spans[1]};
+    for (size_t i = 0; i < sizeof spans / sizeof *spans; i++) {
+        if (spans[i]->low > spans[i]->high) {
+            return dea_fail(error, DEA_ERROR_USAGE, "nothing to draw: nothing is above zero along the logarithmic axis %c",
+                            i == 0 ? 'x' : 'y');
+        }
+    }
+    return DEA_OK;
 }
 
 dea_status dea_plot_draw_curves(dea_plot *plot, dea_error *error)
 {
-    sheet page = {.plot = plot, .axis = &plot->scene->axes[plot->x]};
+    const dea_span none = {INFINITY, -INFINITY, plot->picture.log_y};
+    sheet page = {.plot = plot, .axis = &plot->scene->axes[plot->x], .spans = {none, none}, .along = none};
     size_t *order = dea_plot_order(page.axis, &plot->across);
     if (!order) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
     page.order = order;
+    page.along.logarithmic = plot->picture.log_x || dea_axis_logarithmic(page.axis);
     page.across = dea_scale_axis(page.axis);
-    page.series = (dea_series){plot->scene, plot->x, plot->curves / plot->scene->model_count};
+    page.series = dea_series_of(plot->scene, plot->x, plot->curves / plot->scene->model_count);
     sheet_scan(&page);
+    dea_status status = sheet_check(&page, error);
     dea_legend legend = {.count = 0};
-    page.height = (plot->scene->title[0] ? DEA_TITLE : DEA_NO_TITLE) + PANEL + LABELS +
-                  dea_series_legend(&page.series, page.seen, WIDTH, &legend);
-    FILE *script = plot->picture.script;
-    dea_gnuplot_size(&plot->picture, WIDTH, page.height);
-    write_data(&page, script);
-    write_frame(&page, script);
-    write_panel(&page, script, 0);
-    fputs("unset label 2\n", script);
-    write_panel(&page, script, 1);
-    if (legend.count > 0) {
-        dea_legend_draw(&legend, script, WIDTH, page.height);
+    const int room = dea_series_legend(&page.series, page.seen, plot->picture.canvas.width, &legend);
+    if (status == DEA_OK) {
+        sheet_settle(&page);
+        status = dea_plot_pair(plot->picture.canvas, plot->scene->title, page.series.bar == SIZE_MAX ? 0.0 : DEA_BAR, room, &page.pair,
+                               error);
     }
-    fputs("unset multiplot\nunset output\n", script);
+    if (status == DEA_OK) {
+        dea_gnuplot_size(&plot->picture, page.pair.height);
+        write_picture(&page, &legend);
+    }
     free(order);
-    return DEA_OK;
+    return status;
 }

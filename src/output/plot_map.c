@@ -7,15 +7,17 @@
 #include <stdlib.h>
 
 enum {
-    WIDTH = 760,
-    HEIGHT = 540,
-    PLAIN_WIDTH = 540,
+    WIDTH = 760,       /* of the picture, where no size is wanted */
+    LEFT = 82,         /* of the map */
+    RIGHT = 128,       /* behind it: the colour scale */
     PLAIN_HEIGHT = 405,
+    LABELS = 58,       /* below it */
+    LEGEND = 24,
+    LEAST = 60,
     COLUMNS = 240,
     ROWS = 180,
     HATCH_STEP = 14,
     HATCH_SAMPLES = 400,
-    STOPS = 9,
     HATCHES = 2
 };
 
@@ -32,7 +34,8 @@ typedef struct side {
     const dea_thinning *thinning;
     size_t *order;
     dea_scale scale;
-    double from, to; /* [SI] */
+    double from, to;  /* [SI] */
+    bool logarithmic; /* what is at or below zero is left out */
 } side;
 
 typedef struct chart {
@@ -40,21 +43,32 @@ typedef struct chart {
     side x, y;
     dea_scale colour;
     bool hatched[HATCHES], gaps;
+    dea_canvas canvas;
+    int height;
+    dea_box box;
 } chart;
-
-static bool side_begin(side *edge, const dea_axis *axis, const dea_thinning *thinning)
-{
-    *edge = (side){.axis = axis, .thinning = thinning, .scale = dea_scale_axis(axis), .order = dea_plot_order(axis, thinning)};
-    if (edge->order) {
-        edge->from = axis->values[dea_thinning_index(thinning, edge->order[0])];
-        edge->to = axis->values[dea_thinning_index(thinning, edge->order[thinning->kept - 1])];
-    }
-    return edge->order != NULL;
-}
 
 static double side_value(const side *edge, size_t rank)
 {
     return edge->axis->values[dea_thinning_index(edge->thinning, edge->order[rank])];
+}
+
+static bool side_begin(side *edge, const dea_axis *axis, const dea_thinning *thinning, bool logarithmic)
+{
+    *edge = (side){.axis = axis,
+                   .thinning = thinning,
+                   .scale = dea_scale_axis(axis),
+                   .order = dea_plot_order(axis, thinning),
+                   .logarithmic = logarithmic || dea_axis_logarithmic(axis)};
+    if (edge->order) {
+        size_t rank = 0;
+        while (edge->logarithmic && rank + 1 < thinning->kept && !(side_value(edge, rank) > 0.0)) {
+            rank++;
+        }
+        edge->from = side_value(edge, rank);
+        edge->to = side_value(edge, thinning->kept - 1);
+    }
+    return edge->order != NULL;
 }
 
 /* Interval of the sorted values that holds @p value, and the share of it that lies below. */
@@ -90,10 +104,16 @@ static dea_dot chart_sample(const chart *map, double x, double y)
     return sample;
 }
 
-/* Point number @p index of @p count along a side. */
-static double side_at(const side *edge, int index, int count)
+/* The value at a share of the way along a side. */
+static double side_at(const side *edge, double share)
 {
-    return edge->from + (edge->to - edge->from) * index / (count - 1.0);
+    return edge->logarithmic ? edge->from * pow(edge->to / edge->from, share) : edge->from + (edge->to - edge->from) * share;
+}
+
+/* Where a value is drawn: gnuplot's images know no logarithmic axes. */
+static double side_place(const side *edge, double value)
+{
+    return edge->logarithmic ? log10(value * edge->scale.factor) : value * edge->scale.factor;
 }
 
 static void write_triple(FILE *script, double x, double y, double value)
@@ -111,30 +131,29 @@ static void write_grid(chart *map, FILE *script)
     fputs("$grid << END\n", script);
     for (int j = 0; j < ROWS; j++) {
         for (int i = 0; i < COLUMNS; i++) {
-            const double x = side_at(&map->x, i, COLUMNS), y = side_at(&map->y, j, ROWS);
+            const double x = side_at(&map->x, i / (COLUMNS - 1.0)), y = side_at(&map->y, j / (ROWS - 1.0));
             const dea_dot dot = chart_sample(map, x, y);
             map->gaps = map->gaps || !isfinite(dot.displacement);
-            write_triple(script, x * map->x.scale.factor, y * map->y.scale.factor, dot.displacement * map->colour.factor);
+            write_triple(script, side_place(&map->x, x), side_place(&map->y, y), dot.displacement * map->colour.factor);
         }
         fputc('\n', script);
     }
     fputs("END\n", script);
 }
 
-/* One diagonal of the hatch: x - y = c for a rising one, in units of the canvas with the map at [0, PLAIN_WIDTH] x [0,
- * PLAIN_HEIGHT]; it is drawn where its limit is passed. */
+/* One diagonal of the hatch: x - y = c for a rising one, in units of the canvas from the lower left corner of the map; it is drawn
+ * where its limit is passed. */
 static void write_diagonal(chart *map, FILE *script, int number, double c)
 {
-    const double from = fmax(0.0, c), to = fmin(PLAIN_WIDTH, c + PLAIN_HEIGHT);
+    const double from = fmax(0.0, c), to = fmin(map->box.width, c + map->box.height);
     bool drawing = false;
     for (int i = 0; i <= HATCH_SAMPLES; i++) {
         const double along = from + (to - from) * i / HATCH_SAMPLES;
-        const double up = fmin(fmax((along - c) / PLAIN_HEIGHT, 0.0), 1.0);
-        const double x = map->x.from + (map->x.to - map->x.from) * along / PLAIN_WIDTH;
-        const double y = map->y.from + (map->y.to - map->y.from) * (hatches[number].rising ? up : 1.0 - up);
+        const double up = fmin(fmax((along - c) / map->box.height, 0.0), 1.0);
+        const double x = side_at(&map->x, along / map->box.width), y = side_at(&map->y, hatches[number].rising ? up : 1.0 - up);
         const bool past = chart_sample(map, x, y).state == hatches[number].state;
         if (past) {
-            write_triple(script, x * map->x.scale.factor, y * map->y.scale.factor, 0.0);
+            write_triple(script, side_place(&map->x, x), side_place(&map->y, y), 0.0);
         } else if (drawing) {
             fputc('\n', script);
         }
@@ -147,34 +166,29 @@ static void write_diagonal(chart *map, FILE *script, int number, double c)
 static void write_hatch(chart *map, FILE *script, int number)
 {
     fprintf(script, "$hatch%d << END\n", number);
-    for (int c = HATCH_STEP - PLAIN_HEIGHT; c < PLAIN_WIDTH; c += HATCH_STEP) {
+    for (double c = HATCH_STEP - map->box.height; c < map->box.width; c += HATCH_STEP) {
         write_diagonal(map, script, number, c);
     }
     fputs("END\n", script);
 }
 
-static void write_palette(FILE *script)
-{
-    fputs("set palette defined (", script);
-    for (int i = 0; i < STOPS; i++) {
-        char colour[8];
-        dea_plot_gradient(i / (STOPS - 1.0), colour);
-        fprintf(script, "%s%d '%s'", i > 0 ? ", " : "", i, colour);
-    }
-    fputs(")\n", script);
-}
-
-static void write_side(FILE *script, const side *edge, char letter)
+static void write_side(FILE *script, const side *edge, const char *letter, double length)
 {
     char label[DEA_LABEL_LENGTH];
+    const dea_span span = {edge->from * edge->scale.factor, edge->to * edge->scale.factor, true};
     dea_label_axis(edge->axis, &edge->scale, label);
-    fprintf(script, "set %clabel ", letter);
+    fprintf(script, "set %slabel ", letter);
     dea_gnuplot_text(script, label);
-    fprintf(script, "\nset %crange [", letter);
-    dea_gnuplot_number(script, edge->from * edge->scale.factor);
+    fprintf(script, "\nset %srange [", letter);
+    dea_gnuplot_number(script, side_place(edge, edge->from));
     fputc(':', script);
-    dea_gnuplot_number(script, edge->to * edge->scale.factor);
+    dea_gnuplot_number(script, side_place(edge, edge->to));
     fputs("]\n", script);
+    if (!edge->logarithmic) {
+        dea_span_steps(script, letter, &span, length / (*letter == 'x' ? 50.0 : 36.0));
+    } else {
+        dea_span_tics(script, letter, &span, length, dea_name_plain, true);
+    }
 }
 
 /* What hatches and grey mean, below the map. */
@@ -185,10 +199,53 @@ static void write_legend(const chart *map, FILE *script)
              map->hatched[1] ? hatches[1].legend : "", map->hatched[1] ? "      " : "",
              map->gaps ? "grey: no equilibrium (pull-in)" : "");
     if (*label) {
-        fputs("set label 2 ", script);
+        fputs("set label 3 ", script);
         dea_gnuplot_text(script, label);
-        fputs(" at graph 0.5, screen 0.03 center textcolor '#202020'\n", script);
+        fputs(" at graph 0.5, screen ", script);
+        dea_gnuplot_number(script, LEGEND / 2.0 / map->height);
+        fputs(" center textcolor '#202020'\n", script);
     }
+}
+
+/* Lines of equal displacement as a table: gnuplot draws no contours over an image. */
+static void write_levels(FILE *script)
+{
+    fputs("set contour base\nset cntrparam levels auto 8\nunset surface\n"
+          "set table $levels\nsplot $grid using 1:2:3 with lines nosurface\nunset table\nunset contour\nset surface\n",
+          script);
+}
+
+/* Condition that a share of a side is away from its ends. */
+static void write_within(FILE *script, const side *edge, const char *letter)
+{
+    const double from = side_place(edge, edge->from), width = side_place(edge, edge->to) - from;
+    fprintf(script, "abs(%s - (", letter);
+    dea_gnuplot_number(script, from + 0.5 * width);
+    fputs(")) < ", script);
+    dea_gnuplot_number(script, 0.47 * fabs(width));
+}
+
+/* Levels are black on white with their value, hatches white with black dots: seen on light and dark, in colour and in grey. */
+static void write_layers(const chart *map, FILE *script)
+{
+    fputs("inside(x, y) = ", script);
+    write_within(script, &map->x, "x");
+    fputs(" && ", script);
+    write_within(script, &map->y, "y");
+    fputs("\nplot $grid using 1:2:3 with image notitle", script);
+    for (int i = 0; i < HATCHES; i++) {
+        if (map->hatched[i]) {
+            fprintf(script,
+                    ", \\\n $hatch%d using 1:2 with lines linewidth 1.4 linecolor '#ffffff' notitle"
+                    ", \\\n $hatch%d using 1:2 with lines linewidth 1 dashtype (0.5, 4) linecolor '#000000' notitle",
+                    i, i);
+        }
+    }
+    fputs(", \\\n $levels using 1:2 with lines linewidth 2.6 linecolor '#ffffff' notitle"
+          ", \\\n $levels using 1:2 with lines linewidth 1.1 linecolor '#000000' notitle"
+          ", \\\n $levels using (int(column(0)) % 100 == 50 && inside($1, $2) ? $1 : NaN):2:(sprintf('%g', $3)) "
+          "with labels boxed font ',9' textcolor '#000000' notitle\n",
+          script);
 }
 
 static void write_chart(chart *map, FILE *script)
@@ -198,46 +255,65 @@ static void write_chart(chart *map, FILE *script)
     for (int i = 0; i < HATCHES; i++) {
         write_hatch(map, script, i);
     }
+    write_levels(script);
     dea_plot_style(script);
-    fputs("unset grid\nset tics out scale 0.6\nunset key\nset bmargin at screen 0.17\nset rmargin at screen 0.82\n"
-          "set tmargin at screen 0.92\nset lmargin at screen 0.11\n",
-          script);
-    write_palette(script);
-    write_side(script, &map->x, 'x');
-    write_side(script, &map->y, 'y');
+    dea_plot_title(script, map->plot->scene->title, map->canvas.width, map->height);
+    dea_plot_place(script, map->canvas.width, map->height, map->box);
+    fputs("unset grid\nset tics out scale 0.6\nset style textbox opaque margins 0.4, 0.4 fillcolor '#ffffff' noborder\n", script);
+    dea_plot_palette(script, 1.0);
+    write_side(script, &map->x, "x", map->box.width);
+    write_side(script, &map->y, "y", map->box.height);
     snprintf(label, sizeof label, "Displacement u [%s]", map->colour.unit);
     fputs("set cblabel offset 1,0 textcolor '#202020' ", script);
     dea_gnuplot_text(script, label);
-    fputs("\nset title ", script);
-    dea_gnuplot_text(script, map->plot->scene->title);
-    fputs("\nset object 1 rectangle from graph 0,0 to graph 1,1 behind fillstyle solid 1.0 noborder fillcolor '#d4d4d4'\n"
-          "set contour base\nset cntrparam levels auto 8\nunset surface\n"
-          "set table $levels\nsplot $grid using 1:2:3 with lines nosurface\nunset table\nunset contour\nset surface\n",
-          script);
+    fputs("\nset object 1 rectangle from graph 0,0 to graph 1,1 behind fillstyle solid 1.0 noborder fillcolor '#d4d4d4'\n", script);
     write_legend(map, script);
-    fputs("plot $grid using 1:2:3 with image notitle, $levels using 1:2 with lines linewidth 0.7 linecolor '#ffffff' notitle",
-          script);
-    for (int i = 0; i < HATCHES; i++) {
-        if (map->hatched[i]) {
-            fprintf(script, ", $hatch%d using 1:2 with lines linewidth 0.6 linecolor '#ffffff' notitle", i);
-        }
+    write_layers(map, script);
+    fputs("unset multiplot\nunset output\n", script);
+}
+
+/* Puts the map on its canvas. */
+static dea_status place_chart(chart *map, dea_canvas *canvas, dea_error *error)
+{
+    const double top = dea_plot_top(map->plot->scene->title);
+    canvas->width = canvas->height > 0 ? canvas->width : WIDTH;
+    map->canvas = *canvas;
+    map->height = canvas->height > 0 ? canvas->height : (int)top + PLAIN_HEIGHT + LABELS + LEGEND;
+    map->box = (dea_box){LEFT, top, canvas->width - LEFT - RIGHT, map->height - top - LABELS - LEGEND};
+    return map->box.width < LEAST || map->box.height < LEAST ? dea_plot_cramped(*canvas, error) : DEA_OK;
+}
+
+static bool has_room(const side *edge)
+{
+    return edge->to > edge->from && (edge->from > 0.0 || !edge->logarithmic);
+}
+
+static dea_status draw_chart(chart *map, dea_gnuplot *picture, dea_error *error)
+{
+    const dea_plot *plot = map->plot;
+    double largest = 0.0;
+    if ((map->x.logarithmic && !has_room(&map->x)) || (map->y.logarithmic && !has_room(&map->y))) {
+        return dea_fail(error, DEA_ERROR_USAGE, "nothing to draw: nothing is above zero along a logarithmic axis");
     }
-    fputs("\nunset output\n", script);
+    for (size_t i = 0; i < plot->curves * plot->across.kept; i++) {
+        largest = isfinite(plot->dots[i].displacement) ? fmax(largest, fabs(plot->dots[i].displacement)) : largest;
+    }
+    map->colour = dea_scale_choose(largest, "m");
+    const dea_status status = place_chart(map, &picture->canvas, error);
+    if (status == DEA_OK) {
+        dea_gnuplot_size(picture, map->height);
+        write_chart(map, picture->script);
+    }
+    return status;
 }
 
 dea_status dea_plot_draw_map(dea_plot *plot, dea_error *error)
 {
     chart map = {.plot = plot};
-    const bool begun = side_begin(&map.x, &plot->scene->axes[plot->x], &plot->across);
+    const bool begun = side_begin(&map.x, &plot->scene->axes[plot->x], &plot->across, plot->picture.log_x);
     dea_status status = DEA_OK;
-    if (begun && side_begin(&map.y, &plot->scene->axes[plot->y], &plot->up)) {
-        double largest = 0.0;
-        for (size_t i = 0; i < plot->curves * plot->across.kept; i++) {
-            largest = isfinite(plot->dots[i].displacement) ? fmax(largest, fabs(plot->dots[i].displacement)) : largest;
-        }
-        map.colour = dea_scale_choose(largest, "m");
-        dea_gnuplot_size(&plot->picture, WIDTH, HEIGHT);
-        write_chart(&map, plot->picture.script);
+    if (begun && side_begin(&map.y, &plot->scene->axes[plot->y], &plot->up, plot->picture.log_y)) {
+        status = draw_chart(&map, &plot->picture, error);
     } else {
         status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }

@@ -7,29 +7,33 @@
 #include <string.h>
 
 enum {
-    WIDTH = 960,
-    LEFT = 82,
-    RIGHT = 86,      /* behind a panel with a second axis */
-    MAIN = 270,      /* height of the first panel */
-    SMALL = 84,      /* of those below it */
-    GAP = 18,        /* between panels */
-    LABELS = 58,     /* below the last panel */
-    HALF_LEFT = 578, /* of a panel in the right half */
-    HALF_WIDTH = 358
+    LEFT = 86,
+    RIGHT = 86,   /* behind a panel with a second axis */
+    CLOSE = 24,   /* behind one without */
+    MAIN = 270,   /* height of the first panel */
+    SMALL = 84,   /* of those below it */
+    CURRENTS = 130, /* of one with the currents of several runs */
+    GAP = 18,     /* between panels */
+    LABELS = 58,  /* below the last panel of a column */
+    LEAST = 24,   /* height of a panel that can be read */
+    HALVES = 620  /* width that two columns need */
 };
 
 typedef struct panel {
     size_t quantity;
     dea_box box;
-    bool bottom;      /* carries the labels along x */
-    bool single;      /* every run has the same curve */
-    bool logarithmic; /* along y */
-    bool zero;        /* shows zero */
-    int intervals;    /* of its tics, about */
-    double factor;    /* from SI to what is drawn */
-    double second;    /* second axis: its numbers over the drawn ones, 0: none */
+    bool bottom;   /* carries the labels along x */
+    bool single;   /* every run has the same curve */
+    bool peaks;    /* curves are told apart at their peaks, the smaller ones lie above the larger */
+    bool absolute; /* is drawn without its sign */
+    bool zero;     /* shows zero */
+    int intervals; /* of its tics, at most */
+    double factor; /* from SI to what is drawn */
+    double second; /* second axis: its numbers over the drawn ones, 0: none */
     char label[DEA_LABEL_LENGTH], second_label[DEA_LABEL_LENGTH];
     double step; /* of its tics, 0: as it comes */
+    dea_span span;
+    dea_name *name; /* of logarithmic tics */
 } panel;
 
 typedef struct sheet {
@@ -37,8 +41,12 @@ typedef struct sheet {
     dea_series series;
     panel panels[DEA_RUNS_QUANTITIES];
     size_t count;
+    size_t second; /* number of the first panel of the second column, count: there is one column */
     bool response; /* frequency response, else transient */
-    double across; /* factor along x */
+    dea_scale time;
+    dea_span along; /* as drawn */
+    dea_canvas canvas;
+    double top;
     int height;
     bool seen[DEA_MARKS];
 } sheet;
@@ -73,7 +81,11 @@ static panel *panel_add(sheet *page, size_t offset)
         return NULL;
     }
     panel *added = &page->panels[page->count++];
-    *added = (panel){.quantity = quantity, .factor = 1.0, .intervals = 6};
+    *added = (panel){.quantity = quantity,
+                     .factor = 1.0,
+                     .intervals = 6,
+                     .span = {INFINITY, -INFINITY, false},
+                     .name = dea_name_plain};
     return added;
 }
 
@@ -98,69 +110,151 @@ static void compose_strain(sheet *page)
     snprintf(strain->second_label, sizeof strain->second_label, "Displacement u [%s]", scale.unit);
 }
 
-static void compose_small(sheet *page, size_t offset, const char *words, const char *unit, bool single, bool zero)
+static panel *compose_small(sheet *page, size_t offset, const char *words, const char *unit, bool zero)
 {
     panel *small = panel_add(page, offset);
     if (small) {
         const dea_scale scale = dea_scale_choose(dea_runs_largest(page->runs, small->quantity), unit);
         small->factor = scale.factor;
-        small->single = single;
         small->zero = zero;
-        small->intervals = 3;
+        small->intervals = 4;
         snprintf(small->label, sizeof small->label, "%s [%s]", words, scale.unit);
     }
+    return small;
 }
 
-static void compose_transient(sheet *page)
+/* Draws a panel on a logarithmic axis, without the sign of its numbers where some are negative. */
+static void make_logarithmic(const sheet *page, panel *part)
+{
+    part->span.logarithmic = true;
+    for (size_t run = 0; run < page->runs->count; run++) {
+        const dea_plot_trace *trace = &page->runs->runs[run].traces[part->quantity];
+        for (size_t i = 0; i < trace->count; i++) {
+            part->absolute = part->absolute || trace->y[i] < 0.0;
+        }
+    }
+}
+
+static void compose_transient(sheet *page, bool logarithmic)
 {
     const dea_scene *scene = page->series.scene;
-    const bool same = !axis_moves(scene, offsetof(dea_scene, drive.waveform), sizeof scene->drive.waveform);
     compose_strain(page);
-    compose_small(page, offsetof(dea_sample, voltage), "U", "V", same, true);
-    compose_small(page, offsetof(dea_sample, current), "i", "A", false, true);
-    compose_small(page, offsetof(dea_sample, focal_length), "f", "m", false, false);
-    double top = *scene->title ? DEA_TITLE : DEA_NO_TITLE;
-    for (size_t i = 0; i < page->count; i++) {
-        const double height = i == 0 ? MAIN : SMALL;
-        page->panels[i].box = (dea_box){LEFT, top, WIDTH - LEFT - RIGHT, height};
-        page->panels[i].bottom = i + 1 == page->count;
-        top += height + GAP;
+    panel *voltage = compose_small(page, offsetof(dea_sample, voltage), "U", "V", true);
+    if (voltage) {
+        voltage->single = !axis_moves(scene, offsetof(dea_scene, drive.waveform), sizeof scene->drive.waveform);
     }
-    page->height = (int)top - GAP + LABELS;
+    panel *current = compose_small(page, offsetof(dea_sample, current), "i", "A", true);
+    if (current) {
+        current->peaks = true;
+    }
+    compose_small(page, offsetof(dea_sample, focal_length), "f", "m", false);
+    for (size_t i = 0; logarithmic && i < page->count; i++) {
+        if (i == 0 || page->panels[i].peaks) {
+            make_logarithmic(page, &page->panels[i]);
+        }
+    }
 }
 
-/* A magnitude and the phase below it; false where there is nothing to show. */
-static bool compose_pair(sheet *page, size_t magnitude, size_t phase, const char *words, const char *unit)
+/* A magnitude and the phase below it. */
+static void compose_pair(sheet *page, size_t magnitude, size_t phase, const char *words, const char *unit, const char *per)
 {
     panel *upper = panel_add(page, magnitude);
     if (!upper) {
-        return false;
+        return;
     }
-    upper->logarithmic = dea_runs_largest(page->runs, upper->quantity) > 0.0; /* without a bias nothing moves */
-    snprintf(upper->label, sizeof upper->label, "%s [%s]", words, unit);
+    const double largest = dea_runs_largest(page->runs, upper->quantity);
+    const dea_scale scale = dea_scale_choose(*per ? largest : 1.0, unit);
+    upper->span.logarithmic = largest > 0.0; /* without a bias nothing moves */
+    upper->factor = scale.factor;
+    upper->name = *per ? dea_name_plain : dea_name_prefixed;
+    snprintf(upper->label, sizeof upper->label, "%s [%s%s]", words, scale.unit, per);
     panel *lower = panel_add(page, phase);
     if (lower) {
         lower->step = 45.0;
         snprintf(lower->label, sizeof lower->label, "Phase [°]");
     }
-    (lower ? lower : upper)->bottom = true;
-    return true;
 }
 
-static void compose_response(sheet *page)
+static double natural_height(const sheet *page, size_t number)
 {
-    const double top = *page->series.scene->title ? DEA_TITLE : DEA_NO_TITLE;
-    compose_pair(page, offsetof(dea_response, displacement), offsetof(dea_response, displacement_phase), "Displacement per volt",
-                 "m/V");
-    const size_t left = page->count;
-    compose_pair(page, offsetof(dea_response, impedance), offsetof(dea_response, impedance_phase), "Impedance", "Ω");
-    const bool halves = left > 0 && page->count > left;
-    for (size_t i = 0; i < page->count; i++) {
-        const bool right = halves && i >= left, lower = i != 0 && i != left;
-        page->panels[i].box = (dea_box){right ? HALF_LEFT : LEFT, lower ? top + MAIN + GAP : top,
-                                        halves ? HALF_WIDTH : WIDTH - LEFT - RIGHT, lower ? MAIN * 2.0 / 3.0 : MAIN};
+    if (page->response) {
+        return page->panels[number].step > 0.0 ? MAIN * 2.0 / 3.0 : MAIN;
     }
-    page->height = (int)top + MAIN + GAP + MAIN * 2 / 3 + LABELS;
+    return number == 0 ? MAIN : page->panels[number].peaks && page->runs->count > 1 ? CURRENTS : SMALL;
+}
+
+/* The panels of one column, from its first to the one before @p end, and how high they are; @p stretch times their natural
+ * heights. */
+static double lay_column(sheet *page, size_t first, size_t end, double left, double width, double top, double stretch)
+{
+    double panels = 0.0;
+    for (size_t i = first; i < end; i++) {
+        const double natural = natural_height(page, i);
+        page->panels[i].box = (dea_box){left, top, width, stretch * natural};
+        page->panels[i].bottom = i + 1 == end;
+        top += stretch * natural + GAP;
+        panels += natural;
+    }
+    return panels;
+}
+
+/* Puts the panels in place, @p stretch times their natural height; sets the height of the picture without its legend. */
+static double lay_out(sheet *page, double stretch)
+{
+    const double width = page->canvas.width - (page->series.bar == SIZE_MAX ? 0 : DEA_BAR);
+    const size_t second = page->second;
+    const bool halves = second < page->count && width >= HALVES;
+    const double inside = (halves ? width / 2.0 : width) - LEFT - (page->panels[0].second > 0.0 ? RIGHT : CLOSE);
+    double panels = lay_column(page, 0, halves ? second : page->count, LEFT, inside, page->top, stretch);
+    size_t rows = halves ? second : page->count;
+    if (halves) {
+        panels = fmax(panels, lay_column(page, second, page->count, width / 2.0 + LEFT, inside, page->top, stretch));
+        rows = rows > page->count - second ? rows : page->count - second;
+    }
+    page->height = (int)lround(page->top + stretch * panels + (double)(rows - 1) * GAP) + LABELS;
+    return panels;
+}
+
+/* Fills the canvas, or takes the height that it needs. */
+static dea_status fill_canvas(sheet *page, int legend, dea_error *error)
+{
+    const double panels = lay_out(page, 1.0);
+    if (page->canvas.height > 0) {
+        const double stretch = 1.0 + (page->canvas.height - legend - page->height) / panels;
+        if (stretch * SMALL < LEAST || page->panels[0].box.width < 2.0 * LEAST) {
+            return dea_plot_cramped(page->canvas, error);
+        }
+        lay_out(page, stretch);
+        page->height = page->canvas.height - legend;
+    }
+    page->height += legend;
+    return DEA_OK;
+}
+
+/* A number of a panel as drawn, NAN where it cannot be. */
+static double value_drawn(const panel *part, double value)
+{
+    const double drawn = part->factor * (part->absolute ? fabs(value) : value);
+    return part->span.logarithmic && !(drawn > 0.0) ? (double)NAN : drawn;
+}
+
+static bool is_along(const sheet *page, double x)
+{
+    return x > 0.0 || !page->along.logarithmic;
+}
+
+static double share_along(const sheet *page, double x)
+{
+    const dea_span *span = &page->along;
+    return span->logarithmic ? log(x / span->low) / log(span->high / span->low) : (x - span->low) / (span->high - span->low);
+}
+
+static void write_point(FILE *script, double x, double y)
+{
+    dea_gnuplot_number(script, x);
+    fputc(' ', script);
+    dea_gnuplot_number(script, y);
+    fputc('\n', script);
 }
 
 static void write_trace(const sheet *page, FILE *script, size_t run, size_t number)
@@ -169,10 +263,43 @@ static void write_trace(const sheet *page, FILE *script, size_t run, size_t numb
     const dea_plot_trace *trace = &page->runs->runs[run].traces[part->quantity];
     fprintf(script, "$run%zu_%zu << END\n", run, number);
     for (size_t i = 0; i < trace->count; i++) {
-        dea_gnuplot_number(script, trace->x[i] * page->across);
-        fputc(' ', script);
-        dea_gnuplot_number(script, part->logarithmic && !(trace->y[i] > 0.0) ? (double)NAN : trace->y[i] * part->factor);
-        fputc('\n', script);
+        if (is_along(page, trace->x[i])) {
+            write_point(script, trace->x[i] * page->time.factor, value_drawn(part, trace->y[i]));
+        }
+    }
+    fputs("END\n", script);
+}
+
+/* Place of the largest magnitude of a curve. */
+static size_t peak_of(const dea_plot_trace *trace)
+{
+    size_t peak = 0;
+    for (size_t i = 0; i < trace->count; i++) {
+        peak = fabs(trace->y[i]) > fabs(trace->y[peak]) || isnan(trace->y[peak]) ? i : peak;
+    }
+    return peak;
+}
+
+/* Marks of the group of a run, in a block that is never empty. */
+static void write_symbols(const sheet *page, FILE *script, size_t run, size_t number)
+{
+    const panel *part = &page->panels[number];
+    const dea_plot_trace *trace = &page->runs->runs[run].traces[part->quantity];
+    const size_t peak = peak_of(trace);
+    int before = 0;
+    bool begun = false;
+    fprintf(script, "$marks%zu_%zu << END\nNaN NaN\n", run, number);
+    for (size_t i = 0; i < trace->count; i++) {
+        const double x = trace->x[i] * page->time.factor;
+        if (!is_along(page, x) || !isfinite(trace->y[i])) {
+            continue;
+        }
+        const int place = dea_series_mark(&page->series, run % page->series.groups, share_along(page, x));
+        if (part->peaks ? i == peak : begun && place != before) {
+            write_point(script, x, value_drawn(part, trace->y[i]));
+        }
+        before = place;
+        begun = true;
     }
     fputs("END\n", script);
 }
@@ -184,11 +311,8 @@ static void write_spots(const sheet *page, FILE *script, size_t run, size_t mark
     fprintf(script, "$spots%zu_%zu << END\nNaN NaN\n", run, mark);
     for (size_t i = 0; i < marked->spot_count; i++) {
         const dea_spot *spot = &marked->spots[i];
-        if (spot->mark == mark) {
-            dea_gnuplot_number(script, spot->x * page->across);
-            fputc(' ', script);
-            dea_gnuplot_number(script, spot->y * page->panels[0].factor);
-            fputc('\n', script);
+        if (spot->mark == mark && is_along(page, spot->x)) {
+            write_point(script, spot->x * page->time.factor, value_drawn(&page->panels[0], spot->y));
         }
     }
     fputs("END\n", script);
@@ -199,6 +323,7 @@ static void write_data(const sheet *page, FILE *script)
     for (size_t run = 0; run < page->runs->count; run++) {
         for (size_t i = 0; i < page->count; i++) {
             write_trace(page, script, run, i);
+            write_symbols(page, script, run, i);
         }
         for (size_t mark = 0; mark < DEA_MARKS; mark++) {
             write_spots(page, script, run, mark);
@@ -206,159 +331,227 @@ static void write_data(const sheet *page, FILE *script)
     }
 }
 
+static dea_look look_of(const sheet *page, const panel *part, size_t run)
+{
+    dea_look look = dea_series_look(&page->series, run / page->series.groups, run % page->series.groups);
+    if (part->single) {
+        look = (dea_look){.colour = "#404040", .dash = 1};
+    }
+    return look;
+}
+
+/* Runs in the order in which a panel draws them: as they come, or the larger peaks first. */
+static void order_runs(const sheet *page, const panel *part, size_t order[DEA_CURVES_MAX])
+{
+    double peaks[DEA_CURVES_MAX];
+    for (size_t i = 0; i < page->runs->count; i++) {
+        const dea_plot_trace *trace = &page->runs->runs[i].traces[part->quantity];
+        const double peak = part->peaks && trace->count > 0 ? fabs(trace->y[peak_of(trace)]) : 0.0;
+        size_t place = i;
+        for (; place > 0 && peak > peaks[place - 1]; place--) {
+            peaks[place] = peaks[place - 1];
+            order[place] = order[place - 1];
+        }
+        peaks[place] = peak;
+        order[place] = i;
+    }
+}
+
+static void write_limits(const sheet *page, FILE *script, size_t run)
+{
+    const dea_look look = look_of(page, &page->panels[0], run);
+    for (size_t mark = 0; mark < DEA_MARKS; mark++) {
+        if (page->seen[mark]) {
+            fprintf(script, ", \\\n $spots%zu_%zu using 1:2 with points pointtype %d pointsize 0.8*ps linecolor '#ffffff' notitle",
+                    run, mark, dea_marks[mark].inside);
+            fprintf(script, ", \\\n $spots%zu_%zu using 1:2 with points pointtype %d pointsize 0.7*ps linewidth 1.3 ", run, mark,
+                    dea_marks[mark].symbol);
+            dea_look_colour(script, &look);
+            fputs(" notitle", script);
+        }
+    }
+}
+
 static void write_curves(const sheet *page, FILE *script, size_t number)
 {
     const panel *part = &page->panels[number];
-    const size_t groups = page->series.groups;
-    char colour[8] = "#404040";
-    for (size_t run = 0; run < (part->single ? 1 : page->runs->count); run++) {
-        if (!part->single) {
-            dea_series_colour(&page->series, run / groups, run % groups, colour);
+    size_t order[DEA_CURVES_MAX];
+    order_runs(page, part, order);
+    for (size_t i = 0; i < (part->single ? 1 : page->runs->count); i++) {
+        const dea_look look = look_of(page, part, order[i]);
+        fprintf(script, "%s$run%zu_%zu using 1:2 with lines ", i > 0 ? ", \\\n " : "plot ", order[i], number);
+        dea_plot_dash(script, look.dash);
+        fprintf(script, " linewidth %s ", part->single ? "1.2" : "1.6");
+        dea_look_colour(script, &look);
+        fputs(" notitle", script);
+        if (look.symbol) {
+            fprintf(script, ", \\\n $marks%zu_%zu using 1:2 with points pointtype %d pointsize 0.75*ps linewidth 1.3 ", order[i],
+                    number, look.symbol);
+            dea_look_colour(script, &look);
+            fputs(" notitle", script);
         }
-        fprintf(script, "%s$run%zu_%zu using 1:2 with lines ", run > 0 ? ", \\\n " : "plot ", run, number);
-        dea_plot_dash(script, part->single ? 1 : run / groups + 1);
-        fprintf(script, " linewidth %s linecolor '%s' notitle", part->single ? "1.2" : "1.6", colour);
     }
-    for (size_t i = 0; number == 0 && i < page->runs->count * DEA_MARKS; i++) {
-        const size_t run = i / DEA_MARKS, mark = i % DEA_MARKS;
-        if (page->seen[mark]) {
-            dea_series_colour(&page->series, run / groups, run % groups, colour);
-            fprintf(script, ", \\\n $spots%zu_%zu using 1:2 with points pointtype %d pointsize 0.8 linecolor '#ffffff' notitle",
-                    run, mark, dea_marks[mark].inside);
-            fprintf(script,
-                    ", \\\n $spots%zu_%zu using 1:2 with points pointtype %d pointsize 0.7 linewidth 1.3 linecolor '%s' notitle",
-                    run, mark, dea_marks[mark].symbol, colour);
-        }
+    for (size_t run = 0; number == 0 && run < page->runs->count; run++) {
+        write_limits(page, script, run);
     }
     fputc('\n', script);
 }
 
-/* Smallest of 1, 2, 5 times a power of ten that is not below @p least. */
-static double step_choose(double least)
+/* What the panels show, with room beyond it: a flat drive does not lie on the frame. */
+static void measure_panels(sheet *page)
 {
-    const double power = pow(10.0, floor(log10(least)));
-    const double rest = least / power;
-    return power * (rest <= 1.0 ? 1.0 : rest <= 2.0 ? 2.0 : rest <= 5.0 ? 5.0 : 10.0);
-}
-
-/* What a linear panel shows, from and to, a flat curve in its middle. */
-static void panel_range(const sheet *page, const panel *part, double *low, double *high)
-{
-    *low = part->zero ? 0.0 : (double)INFINITY;
-    *high = -*low;
-    for (size_t run = 0; run < page->runs->count; run++) {
-        const dea_plot_trace *trace = &page->runs->runs[run].traces[part->quantity];
-        for (size_t i = 0; i < trace->count; i++) {
-            *low = isfinite(trace->y[i]) ? fmin(*low, trace->y[i] * part->factor) : *low;
-            *high = isfinite(trace->y[i]) ? fmax(*high, trace->y[i] * part->factor) : *high;
+    for (size_t number = 0; number < page->count; number++) {
+        panel *part = &page->panels[number];
+        for (size_t run = 0; run < page->runs->count; run++) {
+            const dea_plot_trace *trace = &page->runs->runs[run].traces[part->quantity];
+            for (size_t i = 0; i < trace->count; i++) {
+                dea_span_take(&part->span, value_drawn(part, trace->y[i]));
+            }
         }
-    }
-    if (!(*high > *low)) {
-        const double pad = fabs(*low) > 0.0 ? 0.1 * fabs(*low) : 1.0;
-        *low -= pad;
-        *high += pad;
+        if (part->zero) {
+            dea_span_take(&part->span, 0.0);
+        }
+        if (!page->response) {
+            dea_span_limit(&part->span);
+        }
+        dea_span_pad(&part->span, true);
     }
 }
 
-static void write_second_axis(FILE *script, const panel *part, double span)
+/* The displacement on the other side, for the same edge. */
+static void write_second_axis(FILE *script, const panel *part)
 {
-    fputs("set ytics nomirror\nset link y2 via y*(", script);
-    dea_gnuplot_number(script, part->second);
-    fputs(") inverse y/(", script);
-    dea_gnuplot_number(script, part->second);
-    fputs(")\nset y2tics nomirror ", script);
-    dea_gnuplot_number(script, step_choose(span * part->second / part->intervals));
-    fputs("\nset y2label ", script);
+    dea_span span = part->span;
+    span.low *= part->second;
+    span.high *= part->second;
+    dea_span_write(script, "y2", &span, part->box.height, part->name);
+    if (!span.logarithmic) {
+        dea_span_steps(script, "y2", &span, part->intervals);
+    }
+    fputs("set y2label ", script);
     dea_gnuplot_text(script, part->second_label);
     fputc('\n', script);
 }
 
-/* Ranges of a linear panel, in whole steps of its tics: gnuplot's own would crowd a small panel. */
-static void write_ranges(const sheet *page, FILE *script, const panel *part)
+/* Tics of a linear panel: gnuplot's own would crowd a small one. */
+static void write_upward(FILE *script, const panel *part)
 {
-    double low, high;
-    panel_range(page, part, &low, &high);
-    const double step = part->step > 0.0 ? part->step : step_choose((high - low) / part->intervals);
-    fputs("\nset format y '%h'\nunset logscale y\nset yrange [", script);
-    dea_gnuplot_number(script, step * floor(low / step + 1e-9));
-    fputc(':', script);
-    dea_gnuplot_number(script, step * ceil(high / step - 1e-9));
-    fputs("]\nset ytics ", script);
-    dea_gnuplot_number(script, step);
-    fputc('\n', script);
-    if (part->second > 0.0) {
-        write_second_axis(script, part, high - low);
+    dea_span_write(script, "y", &part->span, part->box.height, part->name);
+    if (part->step > 0.0) {
+        fprintf(script, "set ytics %g\n", part->step);
+    } else if (!part->span.logarithmic) {
+        dea_span_steps(script, "y", &part->span, part->intervals);
     }
+    if (part->second > 0.0) {
+        write_second_axis(script, part);
+    }
+}
+
+/* A label that tells of magnitudes: "Strain |s| [%]". */
+static void write_label(FILE *script, const panel *part)
+{
+    char label[DEA_LABEL_LENGTH + 2];
+    const char *unit = strstr(part->label, " [");
+    if (part->absolute && unit && unit > part->label) {
+        const int before = (int)(unit - part->label) - 1;
+        snprintf(label, sizeof label, "%.*s|%c|%s", before, part->label, part->label[before], unit);
+    } else {
+        snprintf(label, sizeof label, "%s", part->label);
+    }
+    fputs("set ylabel ", script);
+    dea_gnuplot_text(script, label);
+    fputc('\n', script);
 }
 
 static void write_panel(const sheet *page, FILE *script, size_t number, const char *across)
 {
     const panel *part = &page->panels[number];
-    const bool second = part->second > 0.0;
-    dea_plot_place(script, WIDTH, page->height, part->box);
-    fputs("set ylabel ", script);
-    dea_gnuplot_text(script, part->label);
-    if (part->logarithmic) {
-        fputs("\nset format y '%.0s%c'\nset logscale y\nset yrange [*:*]\nset ytics autofreq\n", script);
-    } else {
-        write_ranges(page, script, part);
-    }
-    fprintf(script, "set format x '%s'\nset xlabel ", !part->bottom ? "" : page->response ? "%.0s%c" : "%h");
+    dea_name *name = !part->bottom ? dea_name_none : page->response ? dea_name_prefixed : dea_name_plain;
+    dea_plot_place(script, page->canvas.width, page->height, part->box);
+    write_label(script, part);
+    write_upward(script, part);
+    dea_span_write(script, "x", &page->along, part->box.width, name);
+    fprintf(script, "%sset xlabel ", part->bottom ? "" : "set format x ''\n");
     dea_gnuplot_text(script, part->bottom ? across : "");
     fputc('\n', script);
+    if (number == 0 && page->series.bar != SIZE_MAX) {
+        dea_series_bar(&page->series, script, page->canvas, page->height, part->box);
+    }
     write_curves(page, script, number);
-    fputs(second ? "unset link y2\nunset y2tics\nunset y2label\nunset label 2\n" : "unset label 2\n", script);
+    fputs(part->second > 0.0 ? "unset y2tics\nunset y2label\n" : "", script);
+    fputs("unset label 2\nunset colorbox\n", script);
 }
 
 static void write_frame(const sheet *page, FILE *script, const dea_legend *legend)
 {
     const dea_scene *scene = page->series.scene;
-    const double last = dea_layout_place(scene, page->runs->layout.rows - 1);
     char label[DEA_LABEL_LENGTH] = "Frequency [Hz]";
     if (!page->response) {
-        snprintf(label, sizeof label, "Time [%s]", dea_scale_choose(last, "s").unit);
+        snprintf(label, sizeof label, "Time [%s]", page->time.unit);
     }
     dea_plot_style(script);
-    dea_plot_title(script, scene->title, page->height);
-    fputs(page->response ? "set logscale x\nset xrange [" : "set xrange [", script);
-    dea_gnuplot_number(script, page->across * dea_layout_place(scene, 0));
-    fputc(':', script);
-    dea_gnuplot_number(script, page->across * last);
-    fputs("]\n", script);
+    dea_plot_title(script, scene->title, page->canvas.width, page->height);
     for (size_t i = 0; i < page->count; i++) {
         write_panel(page, script, i, label);
     }
     if (legend->count > 0) {
-        dea_legend_draw(legend, script, WIDTH, page->height);
+        dea_legend_draw(legend, script, page->canvas.width, page->height);
     }
     fputs("unset multiplot\nunset output\n", script);
+}
+
+/* What lies along x: frequency, or time, from the first row after zero where it is logarithmic. */
+static void measure_along(sheet *page, bool logarithmic)
+{
+    const dea_scene *scene = page->series.scene;
+    const size_t rows = page->runs->layout.rows;
+    const double first = dea_layout_place(scene, 0);
+    page->along = (dea_span){INFINITY, -INFINITY, logarithmic || page->response};
+    page->time = page->response ? (dea_scale){.factor = 1.0} : dea_scale_choose(dea_layout_place(scene, rows - 1), "s");
+    dea_span_take(&page->along, page->time.factor * (logarithmic && !(first > 0.0) ? dea_layout_place(scene, 1) : first));
+    dea_span_take(&page->along, page->time.factor * dea_layout_place(scene, rows - 1));
+}
+
+/* Legend of the runs and of the limits that they pass; its height. */
+static int list_runs(sheet *page, dea_legend *legend)
+{
+    for (size_t i = 0; i < page->runs->count; i++) {
+        for (size_t k = 0; k < page->runs->runs[i].spot_count; k++) {
+            page->seen[page->runs->runs[i].spots[k].mark] = true;
+        }
+    }
+    return dea_series_legend(&page->series, page->seen, page->canvas.width, legend);
 }
 
 dea_status dea_plot_draw_runs(dea_plot *plot, dea_error *error)
 {
     const dea_scene *scene = plot->scene;
+    dea_gnuplot *picture = &plot->picture;
     sheet page = {.runs = &plot->runs,
-                  .series = {scene, SIZE_MAX, plot->runs.count / scene->model_count},
+                  .series = dea_series_of(scene, SIZE_MAX, plot->runs.count / scene->model_count),
                   .response = scene->study == DEA_STUDY_AC,
-                  .across = 1.0};
+                  .top = dea_plot_top(scene->title),
+                  .canvas = picture->canvas};
+    dea_legend legend = {.count = 0};
+    measure_along(&page, picture->log_x);
     if (page.response) {
-        compose_response(&page);
+        compose_pair(&page, offsetof(dea_response, displacement), offsetof(dea_response, displacement_phase),
+                     "Displacement per volt", "m", "/V");
+        page.second = page.count;
+        compose_pair(&page, offsetof(dea_response, impedance), offsetof(dea_response, impedance_phase), "Impedance", "Ohm", "");
     } else {
-        page.across = dea_scale_choose(dea_layout_place(scene, plot->runs.layout.rows - 1), "s").factor;
-        compose_transient(&page);
+        compose_transient(&page, picture->log_y);
+        page.second = page.count;
     }
     if (page.count == 0 || page.panels[0].quantity != 0) {
         return dea_fail(error, DEA_ERROR_USAGE, "nothing to draw: no run has an equilibrium");
     }
-    dea_legend legend = {.count = 0};
-    for (size_t i = 0; i < page.runs->count; i++) {
-        for (size_t k = 0; k < page.runs->runs[i].spot_count; k++) {
-            page.seen[page.runs->runs[i].spots[k].mark] = true;
-        }
+    measure_panels(&page);
+    const dea_status status = fill_canvas(&page, list_runs(&page, &legend), error);
+    if (status == DEA_OK) {
+        dea_gnuplot_size(picture, page.height);
+        write_data(&page, picture->script);
+        write_frame(&page, picture->script, &legend);
     }
-    page.height += dea_series_legend(&page.series, page.seen, WIDTH, &legend);
-    dea_gnuplot_size(&plot->picture, WIDTH, page.height);
-    write_data(&page, plot->picture.script);
-    write_frame(&page, plot->picture.script, &legend);
-    return DEA_OK;
+    return status;
 }

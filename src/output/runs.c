@@ -1,11 +1,14 @@
 #include "output/runs.h"
 
+#include <complex.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { SPOT_PLACES = 20 };
+enum { SPOT_PLACES = 20, STEP_DEGREES = 3 /* that a response turns between points that are drawn */ };
+
+static const double degree = 0.017453292519943295; /* [rad] */
 
 static double value_at(const dea_runs *runs, const void *point, size_t row, size_t column)
 {
@@ -42,7 +45,8 @@ dea_status dea_runs_open(const dea_scene *scene, dea_runs *runs, dea_error *erro
         return dea_fail(error, DEA_ERROR_USAGE, "nothing to draw: each run is a single point");
     }
     quantities_choose(scene, runs);
-    const size_t most = runs->layout.rows < DEA_RUNS_POINTS ? runs->layout.rows : DEA_RUNS_POINTS;
+    const bool filled = scene->study == DEA_STUDY_AC || runs->layout.rows > DEA_RUNS_POINTS;
+    const size_t most = filled ? DEA_RUNS_POINTS : runs->layout.rows;
     runs->runs = calloc(runs->count, sizeof *runs->runs);
     runs->room = malloc(runs->count * runs->quantity_count * 2 * most * sizeof *runs->room);
     if (!runs->runs || !runs->room) {
@@ -91,6 +95,95 @@ static void trace_take(const dea_runs *runs, dea_plot_trace *trace, const void *
     }
 }
 
+static double complex response_at(const dea_runs *runs, const void *point, size_t row, size_t quantity)
+{
+    const double size = value_at(runs, point, row, runs->quantities[quantity]);
+    return size * cexp(I * degree * value_at(runs, point, row, runs->quantities[quantity + 1]));
+}
+
+/* Four samples about a gap. */
+typedef struct stencil {
+    double at[4];
+    double complex values[4];
+} stencil;
+
+/* Cubic through the inverse of four values, inverted: for one mode 1/H = k - (2 pi f)^2 m + 2 pi i f r. */
+static double complex between_inverse(const stencil *samples, double f)
+{
+    double complex sum = 0.0;
+    for (size_t i = 0; i < 4; i++) {
+        double complex weight = 1.0 / samples->values[i];
+        for (size_t k = 0; k < 4; k++) {
+            weight *= k == i ? 1.0 : (f - samples->at[k]) / (samples->at[i] - samples->at[k]);
+        }
+        sum += weight;
+    }
+    return 1.0 / sum;
+}
+
+/* Thiele's continued fraction through four values: a resonance beside an antiresonance, as an impedance has them. */
+static double complex between_fraction(const stencil *samples, double f)
+{
+    const double *at = samples->at;
+    double complex terms[4];
+    memcpy(terms, samples->values, sizeof terms);
+    for (size_t level = 1; level < 4; level++) {
+        for (size_t i = level; i < 4; i++) {
+            terms[i] = (at[i] - at[level - 1]) / (terms[i] - terms[level - 1]);
+        }
+    }
+    double complex value = terms[3];
+    for (size_t i = 3; i-- > 0;) {
+        value = terms[i] + (f - at[i]) / value;
+    }
+    return value;
+}
+
+/* Response between the samples number first + 1 and first + 2 of four; the first pair is the one with the single mode. */
+static double complex response_between(const dea_runs *runs, const void *point, size_t first, size_t quantity, double f)
+{
+    stencil samples;
+    for (size_t i = 0; i < 4; i++) {
+        samples.values[i] = response_at(runs, point, first + i, quantity);
+        samples.at[i] = value_at(runs, point, first + i, 0);
+    }
+    return quantity == 0 ? between_inverse(&samples, f) : between_fraction(&samples, f);
+}
+
+/* Steps in which the response goes from a sample to the next: as its phase turns. */
+static size_t response_steps(const dea_runs *runs, const void *point, size_t row, size_t quantity)
+{
+    const double turn = carg(response_at(runs, point, row + 1, quantity) / response_at(runs, point, row, quantity));
+    return isfinite(turn) ? 1 + (size_t)(fabs(turn) / (STEP_DEGREES * degree)) : 1;
+}
+
+/* Keeps magnitude and phase of a response with points between its samples where it turns fast. */
+static void pair_take(const dea_runs *runs, dea_run *run, const void *point, size_t quantity)
+{
+    const size_t rows = runs->layout.rows;
+    dea_plot_trace *size = &run->traces[quantity], *phase = &run->traces[quantity + 1];
+    const dea_plot_trace coarse = *phase;
+    double phases[DEA_RUNS_POINTS];
+    memcpy(phases, coarse.y, rows * sizeof *phases); /* without leaps */
+    size->count = phase->count = 0;
+    for (size_t row = 0; row < rows; row++) {
+        const double f = value_at(runs, point, row, 0);
+        trace_add(size, f, value_at(runs, point, row, runs->quantities[quantity]));
+        trace_add(phase, f, phases[row]);
+        const size_t first = row == 0 ? 0 : row + 3 < rows ? row - 1 : rows - 4;
+        const size_t steps = row + 1 < rows ? response_steps(runs, point, row, quantity) : 1;
+        for (size_t k = 1; k < steps && size->count + rows - row < DEA_RUNS_POINTS; k++) { /* the samples left have room too */
+            const double next = value_at(runs, point, row + 1, 0), at = f * pow(next / f, (double)k / (double)steps);
+            const double complex h = response_between(runs, point, first, quantity, at);
+            const double angle = carg(h) / degree, before = phase->y[phase->count - 1];
+            if (isfinite(angle) && isfinite(before)) { /* a neighbour may have no number */
+                trace_add(size, at, cabs(h));
+                trace_add(phase, at, angle + 360.0 * round((before - angle) / 360.0));
+            }
+        }
+    }
+}
+
 static void spot_add(const dea_runs *runs, dea_run *run, const void *point, size_t row, dea_state state)
 {
     for (size_t mark = 0; mark < DEA_MARKS; mark++) {
@@ -126,10 +219,15 @@ static void spots_take(const dea_runs *runs, dea_run *run, const void *point)
 void dea_runs_take(dea_runs *runs, size_t number, const void *point)
 {
     dea_run *run = &runs->runs[number];
+    bool response = runs->layout.rows >= 4 && runs->layout.rows <= DEA_RUNS_POINTS / 2;
     for (size_t i = 0; i < runs->quantity_count; i++) {
         const size_t column = runs->quantities[i];
         const bool angle = strcmp(runs->layout.columns[column].unit, "degree") == 0;
         trace_take(runs, &run->traces[i], point, column, angle ? 360.0 : 0.0);
+        response = response && angle == (i % 2 == 1);
+    }
+    for (size_t i = 0; response && i + 1 < runs->quantity_count; i += 2) {
+        pair_take(runs, run, point, i);
     }
     spots_take(runs, run, point);
 }

@@ -1,6 +1,6 @@
 /* What a picture keeps of transients and frequency responses: a curve for each run and each quantity that is drawn, thinned to
  * what can be seen. Of every run of samples that share a column of pixels the least and the largest stay, so that no peak is
- * lost. */
+ * lost. Between the samples of a response with few of them lies its interpolant, so that a resonance is as round as it is. */
 #ifndef DEASPICE_OUTPUT_RUNS_H
 #define DEASPICE_OUTPUT_RUNS_H
 
@@ -29,7 +29,8 @@ typedef struct dea_run {
 
 typedef struct dea_runs {
     dea_layout layout;
-    size_t quantities[DEA_RUNS_QUANTITIES]; /* their columns in the layout, quantity_count of them */
+    size_t quantities[DEA_RUNS_QUANTITIES]; /* their columns in the layout, quantity_count of them; of a response in pairs of
+                                               magnitude and phase */
     size_t quantity_count;
     dea_run *runs; /* count of them, owned */
     size_t count;

@@ -50,34 +50,36 @@ static FILE *averages_stream(const dea_arguments *arguments)
     return !is_straight(arguments) ? stdout : arguments->quiet ? NULL : stderr;
 }
 
-static dea_status open_outputs(const dea_arguments *arguments, const dea_scene *scene, const dea_engine *engine,
+static dea_status open_outputs(const dea_arguments *arguments, const dea_scene *scene,
                                dea_audience *audience, dea_error *error)
 {
     const char *output = arguments->output ? arguments->output : arguments->plot ? NULL : "-";
     dea_status status = DEA_OK;
     if (output) {
-        status = dea_writer_open(scene, engine->name, output, arguments->format, &audience->writer, error);
+        char names[512];
+        dea_crew_names(scene, NULL, names, sizeof names);
+        status = dea_writer_open(scene, names, output, arguments->format, &audience->writer, error);
     }
     if (status == DEA_OK && arguments->plot) {
-        status = dea_plot_begin(scene, arguments->plot, &audience->plot, error);
+        status = dea_plot_begin(scene, arguments->plot, &arguments->picture, &audience->plot, error);
     }
     return status;
 }
 
-dea_status dea_audience_open(const dea_arguments *arguments, const dea_scene *scene, const dea_engine *engine,
+dea_status dea_audience_open(const dea_arguments *arguments, const dea_scene *scene,
                              dea_audience *audience, dea_error *error)
 {
-    const dea_status status = open_outputs(arguments, scene, engine, audience, error);
+    const dea_status status = open_outputs(arguments, scene, audience, error);
     if (status == DEA_OK) {
         audience->findings = dea_findings_begin(scene, averages_stream(arguments));
     }
     return status;
 }
 
-dea_status dea_audience_try(const dea_arguments *arguments, const dea_scene *scene, const dea_engine *engine, dea_error *error)
+dea_status dea_audience_try(const dea_arguments *arguments, const dea_scene *scene, dea_error *error)
 {
     dea_audience audience = {0};
-    const dea_status status = open_outputs(arguments, scene, engine, &audience, error);
+    const dea_status status = open_outputs(arguments, scene, &audience, error);
     dea_writer_finish(audience.writer, false, NULL);
     dea_plot_finish(audience.plot, false, NULL);
     return status;
@@ -102,11 +104,11 @@ void dea_audience_interrupted(const dea_audience *audience, const dea_arguments 
     }
 }
 
-dea_exit dea_audience_tell(const dea_arguments *arguments, const dea_engine *engine, const dea_findings *findings, double seconds)
+dea_exit dea_audience_tell(const dea_arguments *arguments, const dea_findings *findings, double seconds)
 {
     const size_t failed = findings->states[DEA_STATE_FAILED];
     if (!arguments->quiet && (arguments->output || arguments->plot || isatty(STDERR_FILENO))) {
-        dea_findings_print(findings, engine, seconds);
+        dea_findings_print(findings, seconds);
     }
     if (!arguments->quiet) {
         dea_covered_warn(&findings->covered, findings->scene);

@@ -21,10 +21,10 @@ typedef struct dea_audience {
 
 /** Opens what the arguments ask for; fails before any work where a target cannot be written. The caller ends it with
  * dea_audience_close(), also after a failure. */
-dea_status dea_audience_open(const dea_arguments *arguments, const dea_scene *scene, const dea_engine *engine,
+dea_status dea_audience_open(const dea_arguments *arguments, const dea_scene *scene,
                              dea_audience *audience, dea_error *error);
 /** Tells whether dea_audience_open() would do, without leaving anything. */
-dea_status dea_audience_try(const dea_arguments *arguments, const dea_scene *scene, const dea_engine *engine, dea_error *error);
+dea_status dea_audience_try(const dea_arguments *arguments, const dea_scene *scene, dea_error *error);
 /** Callbacks of a run whose user is the audience. */
 dea_status dea_audience_points(void *user, size_t first, const void *points, size_t count, dea_error *error);
 void dea_audience_lost(void *user, size_t count);
@@ -35,7 +35,7 @@ dea_status dea_audience_close(dea_audience *audience, dea_status status, dea_err
 /** Tells on standard error that a signal ended the run. */
 void dea_audience_interrupted(const dea_audience *audience, const dea_arguments *arguments);
 /** Prints the summary; returns the exit status. */
-dea_exit dea_audience_tell(const dea_arguments *arguments, const dea_engine *engine, const dea_findings *findings,
+dea_exit dea_audience_tell(const dea_arguments *arguments, const dea_findings *findings,
                            double seconds);
 
 #endif

@@ -90,7 +90,7 @@ dea_bounds dea_check_omissions(const dea_arguments *arguments, const dea_scene *
     unsigned done = 0; /* parts of engines that were checked: another one with the same leaves out the same */
     for (size_t e = 0; e < dea_engine_count() && scene->study == DEA_STUDY_TRANSIENT; e++) {
         const dea_engine *engine = dea_engine_at(e);
-        const bool wanted = !arguments->engine || strcmp(arguments->engine, engine->name) == 0;
+        const bool wanted = dea_engine_named(scene, engine);
         if (!wanted || engine->omits == 0 || engine->omits == done || dea_engine_refuses(engine, scene, scene->models[0])) {
             continue;
         }

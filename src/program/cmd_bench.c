@@ -203,10 +203,10 @@ static bool has_table(const dea_arguments *arguments)
     return !arguments->quiet && !(arguments->output && strcmp(arguments->output, "-") == 0);
 }
 
-static dea_bench_options options_of(const dea_arguments *arguments, dea_progress *progress)
+static dea_bench_options options_of(const dea_arguments *arguments, const dea_scene *scene, dea_progress *progress)
 {
     dea_bench_options options = dea_bench_options_default();
-    options.engine = arguments->engine ? dea_engine_find(arguments->engine) : NULL;
+    options.engine = arguments->engine && scene->engine_count > 0 ? scene->engines[0] : NULL;
     options.jobs = arguments->jobs ? arguments->jobs : options.jobs;
     options.runs = arguments->runs ? arguments->runs : options.runs;
     options.budget = isnan(arguments->budget) ? options.budget : arguments->budget;
@@ -223,10 +223,10 @@ static dea_exit bench_scene(const dea_arguments *arguments, const char *path, co
     dea_bench bench = {0};
     dea_bench_output *output;
     dea_signals_catch();
-    dea_status status = dea_bench_output_open(arguments->output, arguments->plot, &output, &error);
+    dea_status status = dea_bench_output_open(arguments->output, arguments->plot, &arguments->picture, &output, &error);
     if (status == DEA_OK) {
         dea_progress *progress = arguments->quiet ? NULL : dea_progress_begin();
-        const dea_bench_options options = options_of(arguments, progress);
+        const dea_bench_options options = options_of(arguments, scene, progress);
         status = dea_bench_run(scene, &options, &bench, &error);
         dea_progress_end(progress);
     }
@@ -249,6 +249,11 @@ static dea_exit run(const dea_arguments *arguments)
     const char *path = arguments->operands[0].path;
     if (!dea_scene_open(arguments, path, &scene, &outcome)) {
         return outcome;
+    }
+    if (arguments->engine && scene.engine_count > 1) {
+        dea_complain("bench measures all engines, or one of them: --engine %s names %zu", arguments->engine, scene.engine_count);
+        dea_scene_free(&scene);
+        return DEA_EXIT_USAGE;
     }
     if (!arguments->model || scene.automatic) {
         dea_bench_all_models(&scene);
@@ -282,7 +287,8 @@ const dea_command dea_command_bench = {
             "one. In statics, the error of the model is that of its strain against field.\n"
             "\n"
             "  -o, --output FILE     write a row a setting to FILE as CSV, - is standard output\n"
-            "      --plot FILE       draw error over time, FILE ends in .svg or .png\n"
+            "      --plot FILE       draw error over time, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)\n"
+            "      --size WxH        of the picture, for example 17x9cm (mm, cm, in, pt)\n"
             "      --engine E        measure only this engine\n"
             "      --model M         only these models, with commas between; default: all that fit\n"
             "      --set KEY=VALUE   change a value of the scene; may be repeated\n"
@@ -292,8 +298,8 @@ const dea_command dea_command_bench = {
             "                        short, fewer where the budget ends\n"
             "      --budget SECONDS  time that all may take, roughly; default 60. What it does\n"
             "                        not reach is listed as skipped\n"
-            "      --force               a target may overwrite a file that was read\n"
-            "      --no-files            refuse a scene that names other files (material, waveform)\n"
+            "      --force           a target may overwrite a file that was read\n"
+            "      --no-files        refuse a scene that names other files (material, waveform)\n"
             "  -q, --quiet           no table and no progress\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"
@@ -307,5 +313,6 @@ const dea_command dea_command_bench = {
              DEA_TAKES_BENCH,
     .least = 1,
     .most = 1,
+    .files = ".yaml",
     .run = run,
 };

@@ -129,17 +129,13 @@ static bool check_engine(const dea_arguments *arguments, const dea_engine *engin
     return true;
 }
 
-static bool takes_part(const dea_arguments *arguments, const dea_engine *engine, size_t index)
-{
-    return index == 0 || !arguments->engine || strcmp(arguments->engine, engine->name) == 0;
-}
 
 static void check_engines(const dea_arguments *arguments, dea_comparison *comparison, double tolerance, dea_tally *tally)
 {
     const dea_scene *scene = comparison->scene;
     for (size_t i = 0; i < dea_engine_count() && dea_signals_caught() == 0; i++) {
         const dea_engine *engine = dea_engine_at(i);
-        if (!takes_part(arguments, engine, i)) {
+        if (i > 0 && !dea_engine_named(scene, engine)) {
             continue;
         }
         const char *why = dea_engine_refuses(engine, scene, scene->models[0]);
@@ -202,11 +198,14 @@ static void check_scene(const dea_arguments *arguments, const char *path, dea_ta
     }
     double bound;
     const bool automatic = scene.automatic;
+    const size_t named = arguments->engine ? scene.engine_count : 0; /* a check runs all but those that the command line leaves out */
+    scene.engine_count = 0;
     if (!dea_model_settle(&scene, NULL, arguments->quiet, &bound, &outcome)) {
         tally->unusable++;
         dea_scene_free(&scene);
         return;
     }
+    scene.engine_count = named;
     const double both = scene.study == DEA_STUDY_TRANSIENT ? 2.0 : 1.0; /* each engine may be off by the accuracy */
     const double tolerance = isnan(arguments->tolerance) ? both * scene.accuracy : arguments->tolerance;
     for (size_t i = 0; i < scene.model_count && dea_signals_caught() == 0; i++) {
@@ -267,7 +266,8 @@ const dea_command dea_command_check = {
             "      --set KEY=VALUE   change a value of the scene; may be repeated\n"
             "  -j, --jobs N          worker processes, auto: one per core; default 1, so that\n"
             "                        the times of the engines compare\n"
-            "      --no-files            refuse a scene that names other files (material, waveform)\n"
+            "      --force           a target may overwrite a file that was read\n"
+            "      --no-files        refuse a scene that names other files (material, waveform)\n"
             "  -q, --quiet           no table\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"
@@ -280,5 +280,6 @@ const dea_command dea_command_check = {
     .takes = DEA_TAKES_ENGINE | DEA_TAKES_SCENE | DEA_TAKES_JOBS | DEA_TAKES_QUIET | DEA_TAKES_TOLERANCE | DEA_TAKES_FULL,
     .least = 1,
     .most = SIZE_MAX,
+    .files = ".yaml",
     .run = run,
 };

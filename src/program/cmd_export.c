@@ -73,6 +73,12 @@ static const kind kinds[] = {
 
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
+const char *dea_export_word(size_t index, char room[DEA_NAME_LENGTH])
+{
+    (void)room;
+    return index < KINDS ? kinds[index].name : NULL;
+}
+
 /* A file in memory on its way to its target. */
 typedef struct sheet {
     dea_atomic file;
@@ -220,6 +226,15 @@ static bool complain_mismatch(const dea_arguments *arguments, const kind *as)
     return false;
 }
 
+/* Name of a part: what the user gave, else that of the file that it goes to, else of the scene, so that the parts of several
+ * scenes go into one circuit; NULL where both are standard streams: that of the library. */
+static const char *choose_name(const dea_arguments *arguments, char own[DEA_PART_NAME_LENGTH + 1])
+{
+    const bool named = (arguments->output && dea_part_name_after(arguments->output, own)) ||
+                       dea_part_name_after(arguments->operands[0].path, own);
+    return arguments->name ? arguments->name : named ? own : NULL;
+}
+
 static bool is_one_model(const dea_scene *scene)
 {
     if (scene->model_count > 1) {
@@ -246,6 +261,7 @@ static dea_exit write_scene(const dea_arguments *arguments, const kind *as, dea_
 static dea_exit run(const dea_arguments *arguments)
 {
     dea_scene scene;
+    char own[DEA_PART_NAME_LENGTH + 1];
     dea_exit outcome = DEA_EXIT_USAGE;
     if (!arguments->as) {
         dea_complain("export needs --as netlist, subckt, kicad or ltspice; see deaspice export --help");
@@ -258,7 +274,7 @@ static dea_exit run(const dea_arguments *arguments)
         .dialect = as ? choose_dialect(dialect) : NULL,
         .analogy = as ? choose_analogy(arguments->analogy ? arguments->analogy : "mobility") : NULL,
         .analogy_given = arguments->analogy != NULL,
-        .name = arguments->name,
+        .name = choose_name(arguments, own),
     };
     if (!as || !export.dialect || !export.analogy || complain_mismatch(arguments, as) ||
         !dea_scene_open(arguments, arguments->operands[0].path, &scene, &outcome)) {
@@ -288,14 +304,15 @@ const dea_command dea_command_export = {
             "      --dialect D       ngspice (default), ltspice, xyce or pspice\n"
             "      --analogy A       mobility (default): velocity is a voltage, force a current;\n"
             "                        impedance: force is a voltage, velocity a current\n"
-            "      --name NAME       name of the part and of its helpers, NAME_spring and NAME_lever,\n"
-            "                        for several parts in one circuit; else that of the library\n"
+            "      --name NAME       name of the part and of its helpers, NAME_spring and NAME_lever;\n"
+            "                        else that of FILE, or of SCENE, without its ending: several\n"
+            "                        parts in one circuit need different names\n"
             "  -o, --output FILE     write to FILE, - is standard output (default)\n"
             "      --model M         model instead of the scene's\n"
             "      --set KEY=VALUE   change a value of the scene, e.g. actuator.prestretch=1.3;\n"
             "                        may be repeated\n"
-            "      --force               a target may overwrite a file that was read\n"
-            "      --no-files            refuse a scene that names other files (material, waveform)\n"
+            "      --force           a target may overwrite a file that was read\n"
+            "      --no-files        refuse a scene that names other files (material, waveform)\n"
             "  -q, --quiet           no notes\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"
@@ -312,5 +329,6 @@ const dea_command dea_command_export = {
     .takes = DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_QUIET | DEA_TAKES_EXPORT,
     .least = 1,
     .most = 1,
+    .files = ".yaml",
     .run = run,
 };

@@ -41,11 +41,21 @@ static bool complain_mismatch(const dea_arguments *arguments)
     return true;
 }
 
+/* What the columns of a table were taken for; nothing where it was refused. */
+static void tell_columns(const dea_arguments *arguments, const char *path, const char *columns)
+{
+    if (!arguments->quiet && columns[0]) {
+        dea_complain("note: %s: %s", path, columns);
+    }
+}
+
 static dea_status fit_stretch(const dea_arguments *arguments, work *w, dea_error *error)
 {
     dea_status status = DEA_OK;
+    w->stretch.specimen = arguments->specimen;
     for (size_t i = 0; i < arguments->operand_count && status == DEA_OK; i++) {
         status = dea_fit_read(arguments->operands[i].path, load_of(arguments->operands[i].mode), &w->stretch, error);
+        tell_columns(arguments, arguments->operands[i].path, w->stretch.columns);
     }
     if (status == DEA_OK) {
         status = dea_fit_yeoh(&w->stretch, (int)arguments->terms, arguments->relative, &w->yeoh, error);
@@ -57,24 +67,14 @@ static dea_status fit_stretch(const dea_arguments *arguments, work *w, dea_error
 static dea_status fit_relaxation(const dea_arguments *arguments, work *w, dea_error *error)
 {
     w->relaxation.ramp = isnan(arguments->ramp) ? 0.0 : arguments->ramp;
+    w->relaxation.specimen = arguments->specimen;
     dea_status status = dea_relaxation_read(arguments->relaxation, &w->relaxation, error);
+    tell_columns(arguments, arguments->relaxation, w->relaxation.columns);
     if (status == DEA_OK) {
         status = dea_fit_relaxation(&w->relaxation, arguments->branches, arguments->relative, &w->prony, error);
         w->prony_given = &w->prony;
     }
     return status;
-}
-
-static dea_status write_text(const char *path, const char *text, size_t length, dea_error *error)
-{
-    dea_atomic file;
-    dea_status status = dea_atomic_open(&file, path, error);
-    if (status != DEA_OK) {
-        return status;
-    }
-    status = dea_atomic_write(&file, text, length, error);
-    dea_status closed = dea_atomic_close(&file, status == DEA_OK, status == DEA_OK ? error : NULL);
-    return status != DEA_OK ? status : closed;
 }
 
 static dea_status write_fit(const work *w, const dea_arguments *arguments, const char *path, dea_error *error)
@@ -94,7 +94,7 @@ static dea_status write_fit(const work *w, const dea_arguments *arguments, const
         status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
     if (status == DEA_OK) {
-        status = write_text(path, text, length, error);
+        status = dea_atomic_put(path, text, length, error);
     }
     free(text);
     return status;
@@ -155,7 +155,8 @@ static dea_status work_out(const dea_arguments *arguments, work *w, dea_error *e
         status = write_fit(w, arguments, arguments->output ? arguments->output : "-", error);
     }
     if (status == DEA_OK && arguments->plot) {
-        status = dea_plot_fit(w->yeoh_given, &w->stretch, w->prony_given, &w->relaxation, arguments->plot, error);
+        status = dea_plot_fit(w->yeoh_given, &w->stretch, w->prony_given, &w->relaxation, arguments->plot,
+                              &arguments->picture, error);
     }
     return status;
 }
@@ -198,18 +199,22 @@ const dea_command dea_command_fit = {
             "\n"
             "Fits Yeoh constants to measured stress over stretch, Prony branches to measured\n"
             "stress over time at a held stretch, or both, and prints them as a material for a\n"
-            "scene. DATA is a CSV file with the columns stretch, stress_Pa (or stress_kPa,\n"
-            "stress_MPa; nominal stress) and mode (uniaxial or equibiaxial), - is standard input.\n"
-            "Files without the column mode are given by --uniaxial or --equibiaxial.\n"
+            "scene. DATA is a table (comma, semicolon, tab or blanks between the fields, decimal\n"
+            "point or comma) whose header names columns with their units, others are left alone:\n"
+            "stretch, strain or displacement; nominal stress or force; mode (uniaxial or\n"
+            "equibiaxial); - is standard input. Files without the column mode are given by\n"
+            "--uniaxial or --equibiaxial.\n"
             "\n"
             "      --uniaxial FILE     data of a uniaxial test; may be repeated\n"
             "      --equibiaxial FILE  data of an equi-biaxial test; may be repeated\n"
             "      --terms N           1 (neo-Hookean), 2 or 3 constants; default: as many as an F\n"
             "                          test finds significant at 5 %\n"
-            "      --relaxation FILE   data of a relaxation test: columns time_s (or time_ms,\n"
-            "                          time_min; since the end of the ramp) and stress_Pa (...)\n"
+            "      --length LENGTH     of the specimen at rest, for a displacement, e.g. \"80 mm\"\n"
+            "      --area AREA         its cross-section at rest, for a force, e.g. \"22 mm^2\"\n"
+            "      --relaxation FILE   data of a relaxation test: time (since the end of the ramp, or\n"
+            "                          with a displacement that shows the ramp) and stress or force\n"
             "      --ramp TIME         duration of the ramp before the hold, e.g. \"2 s\"; default:\n"
-            "                          an ideal step\n"
+            "                          what the displacement shows, else an ideal step\n"
             "      --branches N        Prony branches, 1 to 10; default: as many as an F test\n"
             "                          finds significant at 5 %\n"
             "      --permittivity NUMBER, --density \"1080 kg/m^3\", --breakdown \"80 V/um\"\n"
@@ -217,7 +222,8 @@ const dea_command dea_command_fit = {
             "                          name the file as it is\n"
             "      --relative          relative instead of absolute errors count\n"
             "  -o, --output FILE       write the material to FILE, - is standard output\n"
-            "      --plot FILE         draw data and fit, FILE ends in .svg or .png\n"
+            "      --plot FILE         draw data and fit, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)\n"
+            "      --size WxH          of the picture, for example 8.5x6cm (mm, cm, in, pt)\n"
             "      --force             a target may overwrite a file that was read\n"
             "  -q, --quiet             no summary\n"
             "  -h, --help              this text\n"
@@ -229,5 +235,6 @@ const dea_command dea_command_fit = {
     .takes = DEA_TAKES_OUTPUT | DEA_TAKES_PLOT | DEA_TAKES_QUIET | DEA_TAKES_FIT,
     .least = 0,
     .most = SIZE_MAX,
+    .files = ".csv",
     .run = run,
 };

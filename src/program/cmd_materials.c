@@ -12,6 +12,13 @@ enum { CURVE_POINTS = 101, MOST_MATERIALS = 64, CURVE_COLUMNS = 4 };
 
 static const double usual_end = 2; /* stretch of curves and tables */
 
+static const char *material_word(size_t index, char room[DEA_NAME_LENGTH])
+{
+    (void)room;
+    const dea_material *material = dea_material_builtin(index);
+    return material ? material->name : NULL;
+}
+
 static void print_list(void)
 {
     int width = 0;
@@ -46,16 +53,20 @@ static void print_relaxation(const dea_material *material)
         printf("prony %zu                g = %.9g, tau = %.9g s\n", i + 1, material->prony[i].g, material->prony[i].tau);
 }
 
-/* The law and its constants, those of a list entry after entry. */
+/* Constants of the law; those of a list by their paths. */
 static void print_law(const dea_material *material)
 {
     const dea_law *law = material->law;
-    printf("%-22s %s: %s\n", "law", law->name, law->energy_text);
-    for (size_t i = 0; i < material->entry_count * law->constant_count; i++) {
+    printf("%-22s %s, %s\n", "law", law->title, law->energy_text);
+    for (size_t i = 0; i < law->constant_count * material->entry_count; i++) {
         const dea_constant *constant = &law->constants[i % law->constant_count];
-        char name[DEA_NAME_LENGTH];
-        snprintf(name, sizeof name, law->entries > 1 ? "%s %zu" : "%s", constant->name, i / law->constant_count + 1);
-        printf("%-22s %.9g%s%s\n", name, material->constants[i], constant->modulus ? " " : "", constant->modulus ? constant->unit : "");
+        const size_t entry = i / law->constant_count;
+        char label[DEA_NAME_LENGTH];
+        if (law->entries > 1)
+            snprintf(label, sizeof label, "%s.%zu.%s", law->name, entry, constant->name);
+        else
+            snprintf(label, sizeof label, "%s", constant->name);
+        print_number(label, material->constants[i], constant->modulus ? " Pa" : "");
     }
 }
 
@@ -164,7 +175,7 @@ static dea_status show(const dea_material *material, const dea_arguments *argume
     if (arguments->output)
         status = write_curves(material, to, arguments->output, error);
     if (arguments->plot && status == DEA_OK)
-        status = dea_plot_material(material, to, arguments->plot, error);
+        status = dea_plot_material(material, to, arguments->plot, &arguments->picture, error);
     return status;
 }
 
@@ -206,7 +217,8 @@ const dea_command dea_command_materials = {
             "\n"
             "  -o, --output FILE     write stress and modulus over stretch as CSV, - is standard\n"
             "                        output\n"
-            "      --plot FILE       draw them, FILE ends in .svg or .png\n"
+            "      --plot FILE       draw them, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)\n"
+            "      --size WxH        of the picture, for example 17x8cm (mm, cm, in, pt)\n"
             "      --to STRETCH      largest stretch of table and curves, default 2\n"
             "      --force           a target may overwrite a file that was read\n"
             "  -h, --help            this text\n"
@@ -219,5 +231,7 @@ const dea_command dea_command_materials = {
     .takes = DEA_TAKES_OUTPUT | DEA_TAKES_PLOT | DEA_TAKES_CURVES,
     .least = 0,
     .most = 1,
+    .words = material_word,
+    .files = ".yaml",
     .run = run,
 };

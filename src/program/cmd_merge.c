@@ -46,16 +46,16 @@ static dea_status merge_parts(const dea_arguments *arguments, const dea_journal_
     return status;
 }
 
-static dea_exit merge_scene(const dea_arguments *arguments, const dea_scene *scene, const dea_engine *engine)
+static dea_exit merge_scene(const dea_arguments *arguments, const dea_scene *scene)
 {
     dea_error error = {0};
     dea_journal_study study = {0};
     merging merge = {0};
     dea_signals_catch();
     const double start = dea_seconds();
-    dea_status status = dea_journal_study_make(scene, engine, &study, &error);
+    dea_status status = dea_journal_study_make(scene, NULL, &study, &error);
     if (status == DEA_OK) {
-        status = dea_audience_open(arguments, scene, engine, &merge.audience, &error);
+        status = dea_audience_open(arguments, scene, &merge.audience, &error);
     }
     if (status == DEA_OK) {
         merge.audience.progress = arguments->quiet ? NULL : dea_progress_begin();
@@ -70,20 +70,19 @@ static dea_exit merge_scene(const dea_arguments *arguments, const dea_scene *sce
     if (status != DEA_OK) {
         return dea_complain_error(&error);
     }
-    return dea_audience_tell(arguments, engine, &merge.audience.findings, dea_seconds() - start);
+    return dea_audience_tell(arguments, &merge.audience.findings, dea_seconds() - start);
 }
 
 static dea_exit merge(const dea_arguments *arguments)
 {
-    const dea_engine *engine = dea_engine_choose(arguments->engine ? arguments->engine : "ngspice");
     dea_scene scene;
     dea_exit outcome = DEA_EXIT_USAGE;
-    if (!engine || !dea_scene_open(arguments, arguments->operands[0].path, &scene, &outcome)) {
+    if (!dea_scene_open(arguments, arguments->operands[0].path, &scene, &outcome)) {
         return outcome;
     }
     double bound;
-    if (dea_model_settle(&scene, engine, arguments->quiet, &bound, &outcome) && !dea_engine_unfit(engine, &scene)) {
-        outcome = merge_scene(arguments, &scene, engine);
+    if (dea_model_settle(&scene, NULL, arguments->quiet, &bound, &outcome) && !dea_engines_unfit(&scene)) {
+        outcome = merge_scene(arguments, &scene);
     }
     dea_scene_free(&scene);
     return outcome;
@@ -100,13 +99,15 @@ const dea_command dea_command_merge = {
             "\n"
             "  -o, --output FILE     write the result to FILE, - is standard output\n"
             "      --format F        csv, nc or raw; default: from the ending of FILE\n"
-            "      --plot FILE       draw the result, FILE ends in .svg or .png\n"
-            "      --engine E        as in the runs: direct, ngspice (default) or ida\n"
+            "      --plot FILE       draw the result, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)\n"
+            "      --size WxH        of the picture, for example 8.5x6cm (mm, cm, in, pt)\n"
+            "      --log x|y|xy      draw these axes logarithmic\n"
+            "      --engine E        as in the runs\n"
             "      --model M         as in the runs\n"
             "      --set KEY=VALUE   as in the runs\n"
             "      --full            as in the runs\n"
-            "      --force               a target may overwrite a file that was read\n"
-            "      --no-files            refuse a scene that names other files (material, waveform)\n"
+            "      --force           a target may overwrite a file that was read\n"
+            "      --no-files        refuse a scene that names other files (material, waveform)\n"
             "  -q, --quiet           no summary and no progress\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"
@@ -119,9 +120,10 @@ const dea_command dea_command_merge = {
             "Examples:\n"
             "  for i in 1 2 3 4; do deaspice run dot.yaml --shard $i/4 -o part-$i.dea; done\n"
             "  deaspice merge dot.yaml part-*.dea -o dot.nc\n",
-    .takes = DEA_TAKES_ENGINE | DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_FORMAT | DEA_TAKES_PLOT | DEA_TAKES_QUIET |
+    .takes = DEA_TAKES_ENGINE | DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_FORMAT | DEA_TAKES_PLOT | DEA_TAKES_LOG | DEA_TAKES_QUIET |
              DEA_TAKES_FULL,
     .least = 2,
     .most = SIZE_MAX,
+    .files = "",
     .run = merge,
 };

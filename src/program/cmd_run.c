@@ -3,12 +3,12 @@
 #include "program/audience.h"
 #include "program/journaled.h"
 
-static dea_exit run_scene(const dea_arguments *arguments, const dea_scene *scene, const dea_engine *engine)
+static dea_exit run_scene(const dea_arguments *arguments, const dea_scene *scene)
 {
     dea_error error = {0};
     dea_audience audience = {0};
     dea_signals_catch();
-    dea_status status = dea_audience_open(arguments, scene, engine, &audience, &error);
+    dea_status status = dea_audience_open(arguments, scene, &audience, &error);
     audience.progress = arguments->quiet ? NULL : dea_progress_begin();
     const dea_run_options options = {.jobs = arguments->jobs ? arguments->jobs : dea_core_count(),
                                      .points = dea_audience_points,
@@ -19,7 +19,7 @@ static dea_exit run_scene(const dea_arguments *arguments, const dea_scene *scene
                                      .user = &audience};
     const double start = dea_seconds();
     if (status == DEA_OK) {
-        status = dea_study_run(scene, engine, &options, &error);
+        status = dea_study_run(scene, NULL, &options, &error);
     }
     const double seconds = dea_seconds() - start;
     if (status != DEA_OK && dea_signals_caught()) {
@@ -31,7 +31,7 @@ static dea_exit run_scene(const dea_arguments *arguments, const dea_scene *scene
                      scene->study == DEA_STUDY_SWEEP ? "points" : "runs");
     }
     if (status == DEA_OK) {
-        return dea_audience_tell(arguments, engine, &audience.findings, seconds);
+        return dea_audience_tell(arguments, &audience.findings, seconds);
     }
     const dea_exit outcome = dea_complain_error(&error);
     return audience.findings.states[DEA_STATE_FAILED] > 0 ? DEA_EXIT_FAILED : outcome; /* why there is nothing to draw */
@@ -39,19 +39,18 @@ static dea_exit run_scene(const dea_arguments *arguments, const dea_scene *scene
 
 static dea_exit run(const dea_arguments *arguments)
 {
-    const dea_engine *engine = dea_engine_choose(arguments->engine ? arguments->engine : "ngspice");
     dea_scene scene;
     dea_exit outcome = DEA_EXIT_USAGE;
     if (!dea_journaled_fits(arguments)) {
         return DEA_EXIT_USAGE;
     }
-    if (!engine || !dea_scene_open(arguments, arguments->operands[0].path, &scene, &outcome)) {
+    if (!dea_scene_open(arguments, arguments->operands[0].path, &scene, &outcome)) {
         return outcome;
     }
     double bound;
-    if (dea_model_settle(&scene, engine, arguments->quiet, &bound, &outcome) && !dea_engine_unfit(engine, &scene)) {
+    if (dea_model_settle(&scene, NULL, arguments->quiet, &bound, &outcome) && !dea_engines_unfit(&scene)) {
         const bool journaled = arguments->resume || arguments->shard > 0;
-        outcome = journaled ? dea_run_journaled(arguments, &scene, engine) : run_scene(arguments, &scene, engine);
+        outcome = journaled ? dea_run_journaled(arguments, &scene) : run_scene(arguments, &scene);
     }
     dea_scene_free(&scene);
     return outcome;
@@ -67,10 +66,15 @@ const dea_command dea_command_run = {
             "\n"
             "  -o, --output FILE     write the result to FILE, - is standard output\n"
             "      --format F        csv, nc or raw; default: from the ending of FILE\n"
-            "      --plot FILE       draw the result, FILE ends in .svg or .png\n"
-            "      --engine E        direct, ngspice (default) or ida\n"
+            "      --plot FILE       draw the result, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)\n"
+            "      --size WxH        of the picture, for example 8.5x6cm (mm, cm, in, pt)\n"
+            "      --log x|y|xy      draw these axes logarithmic\n"
+            "      --engine E        auto (default): for each model the cheapest that can do it;\n"
+            "                        direct, ngspice, ida, or several with commas between, in the\n"
+            "                        order in which they are asked\n"
             "      --model M         model instead of the scene's; several with commas between;\n"
-            "                        auto: the cheapest that is within the accuracy of the finest\n"
+            "                        auto: the cheapest that is within the model error of the\n"
+            "                        finest\n"
             "      --set KEY=VALUE   change a value of the scene, e.g. actuator.prestretch=1.3;\n"
             "                        may be repeated\n"
             "      --full            a transient leaves out nothing, whatever its accuracy\n"
@@ -79,8 +83,8 @@ const dea_command dea_command_run = {
             "                        merge joins with the others\n"
             "      --resume          go on where a run with --resume stopped, however it ended;\n"
             "                        what is solved is kept in FILE.journal until FILE is there\n"
-            "      --force               a target may overwrite a file that was read\n"
-            "      --no-files            refuse a scene that names other files (material, waveform)\n"
+            "      --force           a target may overwrite a file that was read\n"
+            "      --no-files        refuse a scene that names other files (material, waveform)\n"
             "  -q, --quiet           no summary and no progress\n"
             "  -h, --help            this text\n"
             "  -V, --version         the version\n"
@@ -96,9 +100,10 @@ const dea_command dea_command_run = {
             "  deaspice run dot.yaml --engine direct --model lumped,field --set drive.voltage='3 kV'\n"
             "  deaspice run dot.yaml -o dot.nc --resume\n"
             "  deaspice run dot.yaml --shard 3/10 -o part-3.dea\n",
-    .takes = DEA_TAKES_ENGINE | DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_FORMAT | DEA_TAKES_PLOT | DEA_TAKES_JOBS |
+    .takes = DEA_TAKES_ENGINE | DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_FORMAT | DEA_TAKES_PLOT | DEA_TAKES_LOG | DEA_TAKES_JOBS |
              DEA_TAKES_QUIET | DEA_TAKES_FULL | DEA_TAKES_JOURNAL,
     .least = 1,
     .most = 1,
+    .files = ".yaml",
     .run = run,
 };

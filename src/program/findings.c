@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "deaspice/model.h"
-#include "output/label.h"
 #include "program/omissions.h"
 #include "support/number.h"
 
@@ -22,9 +21,8 @@ static void print_number(FILE *stream, double value)
 /* "1.23 ms" */
 static void print_digits(double value, const char *unit, int digits)
 {
-    char text[DEA_NUMBER_LENGTH];
-    const dea_scale scale = dea_scale_choose(fabs(value), unit);
-    fprintf(stderr, "%s %s", dea_number_text(text, value * scale.factor, digits), scale.unit);
+    char text[64];
+    fputs(dea_quantity_digits(value, unit, digits, text), stderr);
 }
 
 static void print_quantity(double value, const char *unit)
@@ -45,6 +43,9 @@ dea_findings dea_findings_begin(const dea_scene *scene, FILE *averages)
                              .residual = none,
                              .pull_in = none,
                              .resonance = {none, none}};
+    for (size_t i = 0; i < scene->model_count; i++) {
+        findings.answers[i] = dea_answer_begin();
+    }
     if (findings.averages) {
         fputs(scene->model_count > 1 ? "model," : "", averages);
         for (size_t i = 0; i < scene->axis_count; i++) {
@@ -121,6 +122,8 @@ void dea_findings_take(dea_findings *findings, size_t first, const void *points,
     const dea_layout *layout = &findings->layout;
     for (size_t i = 0; i < count; i++) {
         const char *point = (const char *)points + i * layout->point_size;
+        const size_t each = dea_scene_point_count(findings->scene), number = first + i;
+        dea_answer_take(&findings->answers[number / each], layout, number % each, point);
         dea_covered_take(&findings->covered, findings->scene, layout, first + i, point);
         for (size_t k = 0; k < layout->rows; k++) {
             findings->states[dea_layout_state(layout, point + k * layout->row_size)]++;
@@ -256,7 +259,7 @@ static void print_edges(const dea_findings *findings)
 }
 
 /* What was left out, found anew for a single run. */
-static void print_omissions(const dea_findings *findings, const dea_engine *engine)
+static void print_omissions(const dea_findings *findings)
 {
     char text[DEA_OMISSION_LENGTH];
     dea_needs needs;
@@ -269,7 +272,8 @@ static void print_omissions(const dea_findings *findings, const dea_engine *engi
         return;
     }
     const dea_scene placed = dea_scene_of_run(findings->scene, 0);
-    if (dea_needs_find(&placed, placed.models[0], engine, &needs, NULL) == DEA_OK && needs.count > 0) {
+    const dea_crew crew = dea_crew_of(&placed, NULL, placed.models[0]);
+    if (crew.count > 0 && dea_needs_find(&placed, placed.models[0], crew.engines[0], &needs, NULL) == DEA_OK && needs.count > 0) {
         for (size_t i = 0; i < needs.count; i++) {
             fprintf(stderr, "%s%s", i == 0 ? "left out: " : ", ", dea_omission_text(&needs.omissions[i], &placed, text));
         }
@@ -289,7 +293,7 @@ static void print_rates(const dea_findings *findings)
     }
 }
 
-static void print_transients(const dea_findings *findings, const dea_engine *engine)
+static void print_errors(const dea_findings *findings)
 {
     const char *worst = findings->points > 1 ? "worst " : "";
     if (!isnan(findings->error)) {
@@ -300,7 +304,12 @@ static void print_transients(const dea_findings *findings, const dea_engine *eng
     if (!isnan(findings->residual)) {
         fprintf(stderr, "%senergy balance off by %.2g\n", worst, findings->residual);
     }
-    print_omissions(findings, engine);
+    print_omissions(findings);
+}
+
+/* What films did in time. */
+static void print_motions(const dea_findings *findings)
+{
     if (findings->points == 1 && !isnan(findings->summary.resonance)) {
         fputs("first resonance ", stderr);
         print_quantity(findings->summary.resonance, "Hz");
@@ -348,14 +357,22 @@ static void print_responses(const dea_findings *findings)
     }
 }
 
-void dea_findings_print(const dea_findings *findings, const dea_engine *engine, double seconds)
+void dea_findings_print(const dea_findings *findings, double seconds)
 {
-    print_amount(findings);
-    fprintf(stderr, " in %.3g s (%s)", seconds, engine->name);
-    print_states(findings);
+    char names[512];
+    dea_crew_names(findings->scene, NULL, names, sizeof names);
+    for (size_t i = 0; i < findings->scene->model_count && findings->points > 0; i++) {
+        dea_answer_print(&findings->answers[i], findings->scene, i);
+    }
     if (findings->scene->study == DEA_STUDY_TRANSIENT) {
-        print_transients(findings, engine);
+        print_motions(findings);
     } else if (findings->scene->study == DEA_STUDY_AC) {
         print_responses(findings);
+    }
+    print_amount(findings);
+    fprintf(stderr, " in %.3g s (%s)", seconds, names);
+    print_states(findings);
+    if (findings->scene->study == DEA_STUDY_TRANSIENT) {
+        print_errors(findings);
     }
 }

@@ -8,6 +8,7 @@
 
 #include "deaspice/engine.h"
 #include "deaspice/measures.h"
+#include "program/answer.h"
 #include "program/covered.h"
 
 typedef struct dea_findings {
@@ -26,6 +27,7 @@ typedef struct dea_findings {
     dea_summary summary;            /**< of the last transient, as the edges */
     dea_edge_answer edges[DEA_EDGES];
     size_t edge_count;
+    dea_answer answers[DEA_SCENE_MODELS]; /**< of each model */
     dea_covered covered; /**< of stretches, against the data of the material */
     dea_band band; /**< of the last frequency response */
 } dea_findings;
@@ -35,6 +37,6 @@ dea_findings dea_findings_begin(const dea_scene *scene, FILE *averages);
 /** Takes points as a run hands them over; prints their averages. */
 void dea_findings_take(dea_findings *findings, size_t first, const void *points, size_t count);
 /** Prints the summary of the run on standard error. */
-void dea_findings_print(const dea_findings *findings, const dea_engine *engine, double seconds);
+void dea_findings_print(const dea_findings *findings, double seconds);
 
 #endif

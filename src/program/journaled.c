@@ -156,7 +156,7 @@ static void tell_taken(const recorder *run)
 }
 
 /* Computes what is not in the journal. */
-static dea_status compute(recorder *run, const dea_engine *engine, dea_error *error)
+static dea_status compute(recorder *run, dea_error *error)
 {
     run->taken = dea_journal_points(run->journal);
     run->total = dea_shard_points(&run->study, run->shard).count;
@@ -173,11 +173,11 @@ static dea_status compute(recorder *run, const dea_engine *engine, dea_error *er
                                      .log = recorder_log,
                                      .stop = recorder_stop,
                                      .user = run};
-    return dea_study_run(run->study.scene, engine, &options, error);
+    return dea_study_run(run->study.scene, NULL, &options, error);
 }
 
 /* Hands the whole journal to the audience; a shard has only findings. */
-static dea_status replay(recorder *run, const dea_engine *engine, dea_error *error)
+static dea_status replay(recorder *run, dea_error *error)
 {
     const dea_run_options options = {.points = recorder_replay, .stop = dea_signals_stop, .user = run};
     dea_status status = DEA_OK;
@@ -185,7 +185,7 @@ static dea_status replay(recorder *run, const dea_engine *engine, dea_error *err
     if (run->arguments->shard > 0) {
         run->audience.findings = dea_findings_begin(run->study.scene, NULL);
     } else {
-        status = dea_audience_open(run->arguments, run->study.scene, engine, &run->audience, error);
+        status = dea_audience_open(run->arguments, run->study.scene, &run->audience, error);
     }
     return status == DEA_OK ? dea_journal_replay(run->journal, &options, error) : status;
 }
@@ -235,7 +235,7 @@ static void tell_share(const recorder *run)
     }
 }
 
-dea_exit dea_run_journaled(const dea_arguments *arguments, const dea_scene *scene, const dea_engine *engine)
+dea_exit dea_run_journaled(const dea_arguments *arguments, const dea_scene *scene)
 {
     dea_error error = {0};
     recorder run = {.arguments = arguments, .shard = {1, 1}};
@@ -244,18 +244,18 @@ dea_exit dea_run_journaled(const dea_arguments *arguments, const dea_scene *scen
     }
     dea_signals_catch();
     const double start = dea_seconds();
-    dea_status status = dea_journal_study_make(scene, engine, &run.study, &error);
+    dea_status status = dea_journal_study_make(scene, NULL, &run.study, &error);
     if (status == DEA_OK && arguments->shard == 0) {
-        status = dea_audience_try(arguments, scene, engine, &error);
+        status = dea_audience_try(arguments, scene, &error);
     }
     if (status == DEA_OK) {
         status = open_journal(&run, &error);
     }
     if (status == DEA_OK) {
-        status = compute(&run, engine, &error);
+        status = compute(&run, &error);
     }
     if (status == DEA_OK) {
-        status = replay(&run, engine, &error);
+        status = replay(&run, &error);
     }
     status = dea_audience_close(&run.audience, status, &error);
     if (status != DEA_OK) {
@@ -268,7 +268,7 @@ dea_exit dea_run_journaled(const dea_arguments *arguments, const dea_scene *scen
         tell_lost(&run, lost);
     }
     const dea_exit outcome = status == DEA_OK
-                                 ? dea_audience_tell(arguments, engine, &run.audience.findings, dea_seconds() - start)
+                                 ? dea_audience_tell(arguments, &run.audience.findings, dea_seconds() - start)
                                  : dea_complain_error(&error);
     dea_journal_study_free(&run.study);
     free(run.path);

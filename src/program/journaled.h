@@ -9,6 +9,6 @@
 /** False, with a complaint, where --shard or --resume are given and other arguments do not go with them. */
 bool dea_journaled_fits(const dea_arguments *arguments);
 /** Runs a scene with --shard or --resume. */
-dea_exit dea_run_journaled(const dea_arguments *arguments, const dea_scene *scene, const dea_engine *engine);
+dea_exit dea_run_journaled(const dea_arguments *arguments, const dea_scene *scene);
 
 #endif

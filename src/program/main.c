@@ -12,10 +12,16 @@
 #define DEA_VERSION "unknown"
 #endif
 
-static const dea_command *const commands[] = {&dea_command_run,    &dea_command_merge, &dea_command_check,    &dea_command_bench,
-                                              &dea_command_export, &dea_command_fit,   &dea_command_materials};
+static const dea_command *const commands[] = {&dea_command_run,       &dea_command_merge,  &dea_command_check,
+                                              &dea_command_bench,     &dea_command_export, &dea_command_fit,
+                                              &dea_command_materials, &dea_command_init,   &dea_command_completion};
 
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
+
+const dea_command *dea_command_at(size_t index)
+{
+    return index < COMMANDS ? commands[index] : NULL;
+}
 
 static void print_usage(FILE *out)
 {

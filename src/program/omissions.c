@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "engine/line.h"
 #include "output/label.h"
@@ -14,12 +15,35 @@ const char *dea_bound_text(double bound, char text[32])
     return text;
 }
 
-const char *dea_quantity_text(double value, const char *unit, char text[64])
+/* Long times in minutes and hours. */
+static dea_scale scale_of(double value, const char *unit)
+{
+    static const double minute = 60.0, hour = 3600.0;
+    const bool time = strcmp(unit, "s") == 0;
+    if (time && value >= 2.0 * minute) {
+        const bool hours = value >= 2.0 * hour;
+        dea_scale scale = {.factor = 1.0 / (hours ? hour : minute)};
+        snprintf(scale.unit, sizeof scale.unit, "%s", hours ? "h" : "min");
+        return scale;
+    }
+    return dea_scale_choose(value, unit);
+}
+
+const char *dea_quantity_digits(double value, const char *unit, int digits, char text[64])
 {
     char number[DEA_NUMBER_LENGTH];
-    const dea_scale scale = dea_scale_choose(fabs(value), unit);
-    snprintf(text, 64, "%s %s", dea_number_text(number, value * scale.factor, 3), scale.unit);
+    if (strcmp(unit, "1") == 0) {
+        snprintf(text, 64, "%s", dea_number_text(number, value, digits));
+        return text;
+    }
+    const dea_scale scale = scale_of(fabs(value), unit);
+    snprintf(text, 64, "%s %s", dea_number_text(number, value * scale.factor, digits), scale.unit);
     return text;
+}
+
+const char *dea_quantity_text(double value, const char *unit, char text[64])
+{
+    return dea_quantity_digits(value, unit, 3, text);
 }
 
 const char *dea_omission_text(const dea_omission *omission, const dea_scene *scene, char text[DEA_OMISSION_LENGTH])

@@ -8,27 +8,15 @@
 #include <string.h>
 
 #include "deaspice/fit.h"
-#include "program/program.h"
-#include "scene/quantity.h"
+#include "deaspice/model.h"
+#include "netlist/dialect.h"
+#include "netlist/export.h"
+#include "program/options.h"
+#include "scene/keys.h"
+#include "support/quantity.h"
 #include "support/text.h"
 
 _Static_assert(DEA_RELAXATION_MOST == 10 && DEA_YEOH_TERMS == 3, "the messages of --branches and --terms name them");
-
-typedef struct option_entry option_entry;
-
-/* An option of any command: what takes it, how its value is read, and where that goes. */
-struct option_entry {
-    const char *name;
-    char letter;       /* 0: none */
-    const char *value; /* what its value is called, NULL: takes none */
-    unsigned group;    /* dea_takes; 0: every command */
-    bool (*take)(const option_entry *entry, const char *value, dea_arguments *arguments); /* false, with a complaint */
-    size_t offset;                                                                        /* of its place in dea_arguments */
-    const char *unit;                                                                     /* of a quantity, "1": a number */
-    double low, high;                                                                     /* range of a number */
-    bool closed;                                                                          /* its low end is part of it */
-    const char *needs;                                                                    /* for messages: what is accepted */
-};
 
 size_t dea_core_count(void)
 {
@@ -37,13 +25,13 @@ size_t dea_core_count(void)
     return count > 0 ? (size_t)count : 1;
 }
 
-static void *place_of(const option_entry *entry, dea_arguments *arguments)
+static void *place_of(const dea_option *entry, dea_arguments *arguments)
 {
     return (char *)arguments + entry->offset;
 }
 
 /* "--runs 0: needs a whole number ..."; @p why stands between, NULL: nothing does. */
-static bool complain_value(const option_entry *entry, const char *value, const char *why)
+static bool complain_value(const dea_option *entry, const char *value, const char *why)
 {
     char shown[DEA_TEXT_ROOM];
     dea_text_clip(value, DEA_TEXT_SHOWN, shown, sizeof shown);
@@ -51,14 +39,14 @@ static bool complain_value(const option_entry *entry, const char *value, const c
     return false;
 }
 
-static bool take_flag(const option_entry *entry, const char *value, dea_arguments *arguments)
+static bool take_flag(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
     (void)value;
     *(bool *)place_of(entry, arguments) = true;
     return true;
 }
 
-static bool take_text(const option_entry *entry, const char *value, dea_arguments *arguments)
+static bool take_text(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
     const char **place = place_of(entry, arguments);
     if (*place || *value == '\0') {
@@ -69,16 +57,51 @@ static bool take_text(const option_entry *entry, const char *value, dea_argument
     return true;
 }
 
-static bool take_engine(const option_entry *entry, const char *value, dea_arguments *arguments)
-{
-    return take_text(entry, value, arguments) && dea_engine_choose(value) != NULL;
-}
-
-static bool take_setting(const option_entry *entry, const char *value, dea_arguments *arguments)
+static bool take_setting(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
     (void)entry;
     arguments->settings[arguments->setting_count++].text = value;
     return true;
+}
+
+/* Metres of a unit of --size, NAN for a word that is none. */
+static double size_unit(const char *name)
+{
+    static const struct {
+        const char *name;
+        double length; /* [m] */
+    } units[] = {{"mm", 1e-3}, {"cm", 1e-2}, {"in", 0.0254}, {"pt", 0.0254 / 72.0}};
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        if (strcmp(name, units[i].name) == 0) {
+            return units[i].length;
+        }
+    }
+    return NAN;
+}
+
+static bool take_size(const dea_option *entry, const char *value, dea_arguments *arguments)
+{
+    dea_plot_options *picture = &arguments->picture;
+    char first[3] = "", second[3] = "", more;
+    bool read = sscanf(value, "%lf %2[a-z] x %lf %2[a-z] %c", &picture->width, first, &picture->height, second, &more) == 4;
+    if (!read) { /* one unit for both */
+        read = sscanf(value, "%lf x %lf %2[a-z] %c", &picture->width, &picture->height, second, &more) == 3;
+        strcpy(first, second);
+    }
+    picture->width *= size_unit(first);
+    picture->height *= size_unit(second);
+    if (!read || !(picture->width >= DEA_PLOT_SIDE_LEAST && picture->width <= DEA_PLOT_SIDE_MOST) ||
+        !(picture->height >= DEA_PLOT_SIDE_LEAST && picture->height <= DEA_PLOT_SIDE_MOST)) {
+        return complain_value(entry, value, NULL);
+    }
+    return true;
+}
+
+static bool take_log(const dea_option *entry, const char *value, dea_arguments *arguments)
+{
+    arguments->picture.log_x = strcmp(value, "x") == 0 || strcmp(value, "xy") == 0;
+    arguments->picture.log_y = strcmp(value, "y") == 0 || strcmp(value, "xy") == 0;
+    return arguments->picture.log_x || arguments->picture.log_y || complain_value(entry, value, NULL);
 }
 
 /* Whole number of at most @p most, -1 where it is none. */
@@ -91,7 +114,7 @@ static long whole_number(const char *text, long most)
     return digits && *end == '\0' && errno == 0 && value <= most ? value : -1;
 }
 
-static bool take_count(const option_entry *entry, const char *value, dea_arguments *arguments)
+static bool take_count(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
     const long count = whole_number(value, (long)entry->high);
     if (count < 1) {
@@ -101,7 +124,7 @@ static bool take_count(const option_entry *entry, const char *value, dea_argumen
     return true;
 }
 
-static bool take_jobs(const option_entry *entry, const char *value, dea_arguments *arguments)
+static bool take_jobs(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
     if (strcmp(value, "auto") == 0 || strcmp(value, "0") == 0) {
         arguments->jobs = dea_core_count();
@@ -110,12 +133,12 @@ static bool take_jobs(const option_entry *entry, const char *value, dea_argument
     return take_count(entry, value, arguments);
 }
 
-static bool in_range(const option_entry *entry, double value)
+static bool in_range(const dea_option *entry, double value)
 {
     return (entry->closed ? value >= entry->low : value > entry->low) && value < entry->high;
 }
 
-static bool take_number(const option_entry *entry, const char *value, dea_arguments *arguments)
+static bool take_number(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
     char reason[DEA_REASON_LENGTH] = "out of memory";
     double *place = place_of(entry, arguments);
@@ -125,7 +148,7 @@ static bool take_number(const option_entry *entry, const char *value, dea_argume
     return read && in_range(entry, *place) ? true : complain_value(entry, value, read ? "out of range" : reason);
 }
 
-static bool take_shard(const option_entry *entry, const char *value, dea_arguments *arguments)
+static bool take_shard(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
     char number[16];
     const size_t digits = strcspn(value, "/");
@@ -150,84 +173,154 @@ static bool add_operand(dea_arguments *arguments, const char *path, dea_given_mo
     return true;
 }
 
-static bool take_uniaxial(const option_entry *entry, const char *value, dea_arguments *arguments)
+static bool take_uniaxial(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
     (void)entry;
     return add_operand(arguments, value, DEA_GIVEN_UNIAXIAL);
 }
 
-static bool take_equibiaxial(const option_entry *entry, const char *value, dea_arguments *arguments)
+static bool take_equibiaxial(const dea_option *entry, const char *value, dea_arguments *arguments)
 {
     (void)entry;
     return add_operand(arguments, value, DEA_GIVEN_EQUIBIAXIAL);
 }
 
-#define FLAG(long_name, short_name, groups, member)                                                                              \
-    {                                                                                                                            \
-        .name = long_name, .letter = short_name, .group = groups, .take = take_flag, .offset = offsetof(dea_arguments, member)   \
-    }
-#define TEXT(long_name, short_name, shown, groups, reader, member)                                                               \
-    {                                                                                                                            \
-        .name = long_name, .letter = short_name, .value = shown, .group = groups, .take = reader,                                \
-        .offset = offsetof(dea_arguments, member)                                                                                \
-    }
-#define COUNT(long_name, short_name, shown, groups, reader, member, most, accepted)                                              \
-    {                                                                                                                            \
-        .name = long_name, .letter = short_name, .value = shown, .group = groups, .take = reader,                                \
-        .offset = offsetof(dea_arguments, member), .high = most, .needs = accepted                                               \
-    }
+static const char *engine_word(size_t index, char room[DEA_NAME_LENGTH])
+{
+    (void)room;
+    const dea_engine *engine = dea_engine_at(index);
+    return engine ? engine->name : index == dea_engine_count() ? "auto" : NULL;
+}
 
-#define NUMBER(long_name, shown, groups, member, si, from, ends, to, accepted)                                                   \
+static const char *model_word(size_t index, char room[DEA_NAME_LENGTH])
+{
+    (void)room;
+    const dea_model *model = dea_model_at(index);
+    return model ? model->name : index == dea_model_count() ? "auto" : NULL;
+}
+
+/* Scalars of a scene by their paths. */
+static const char *key_word(size_t index, char room[DEA_NAME_LENGTH])
+{
+    dea_key key;
+    for (size_t i = 0; dea_key_at(i, &key); i++) {
+        if (key.offset != DEA_KEY_NOWHERE && !strchr(key.path, '#') && index-- == 0) {
+            memcpy(room, key.path, DEA_NAME_LENGTH);
+            return room;
+        }
+    }
+    return NULL;
+}
+
+static const char *format_word(size_t index, char room[DEA_NAME_LENGTH])
+{
+    (void)room;
+    static const char *const words[] = {"csv", "nc", "raw"};
+    return index < sizeof words / sizeof *words ? words[index] : NULL;
+}
+
+static const char *dialect_word(size_t index, char room[DEA_NAME_LENGTH])
+{
+    (void)room;
+    const dea_dialect *dialect = dea_dialect_at(index);
+    return dialect ? dialect->name : NULL;
+}
+
+static const char *analogy_word(size_t index, char room[DEA_NAME_LENGTH])
+{
+    (void)room;
+    const dea_analogy *analogy = dea_analogy_at(index);
+    return analogy ? analogy->name : NULL;
+}
+
+#define FLAG(long_name, short_name, groups, member, help)                                                                        \
+    {                                                                                                                            \
+        .name = long_name, .letter = short_name, .group = groups, .take = take_flag, .offset = offsetof(dea_arguments, member),  \
+        .about = help                                                                                                            \
+    }
+#define TEXT(long_name, short_name, shown, accepted, groups, reader, member, help)                                               \
+    {                                                                                                                            \
+        .name = long_name, .letter = short_name, .value = shown, .words = accepted, .group = groups, .take = reader,             \
+        .offset = offsetof(dea_arguments, member), .about = help                                                                 \
+    }
+#define COUNT(long_name, short_name, shown, groups, reader, member, most, accepted, help)                                        \
+    {                                                                                                                            \
+        .name = long_name, .letter = short_name, .value = shown, .group = groups, .take = reader,                                \
+        .offset = offsetof(dea_arguments, member), .high = most, .needs = accepted, .about = help                                \
+    }
+#define NUMBER(long_name, shown, groups, member, si, from, ends, to, accepted, help)                                             \
     {                                                                                                                            \
         .name = long_name, .value = shown, .group = groups, .take = take_number, .offset = offsetof(dea_arguments, member),      \
-        .unit = si, .low = from, .closed = ends, .high = to, .needs = accepted                                                   \
+        .unit = si, .low = from, .closed = ends, .high = to, .needs = accepted, .about = help                                    \
     }
 
-static const option_entry entries[] = {
-    TEXT("engine", 0, "ENGINE", DEA_TAKES_ENGINE, take_engine, engine),
-    TEXT("model", 0, "MODEL", DEA_TAKES_SCENE, take_text, model),
-    TEXT("set", 0, "KEY=VALUE", DEA_TAKES_SCENE, take_setting, settings),
-    FLAG("no-files", 0, DEA_TAKES_SCENE, no_files),
-    TEXT("output", 'o', "FILE", DEA_TAKES_OUTPUT, take_text, output),
-    TEXT("format", 0, "FORMAT", DEA_TAKES_FORMAT, take_text, format),
-    TEXT("plot", 0, "FILE", DEA_TAKES_PLOT, take_text, plot),
-    FLAG("force", 0, DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_PLOT, force),
-    COUNT("jobs", 'j', "N", DEA_TAKES_JOBS, take_jobs, jobs, 1024, "a whole number up to 1024, or auto"),
-    FLAG("quiet", 'q', DEA_TAKES_QUIET, quiet),
-    FLAG("full", 0, DEA_TAKES_FULL, full),
-    NUMBER("tolerance", "T", DEA_TAKES_TOLERANCE, tolerance, "1", 0, false, 1, "a number between 0 and 1, for example 1e-6"),
-    TEXT("uniaxial", 0, "FILE", DEA_TAKES_FIT, take_uniaxial, operands),
-    TEXT("equibiaxial", 0, "FILE", DEA_TAKES_FIT, take_equibiaxial, operands),
-    COUNT("terms", 0, "N", DEA_TAKES_FIT, take_count, terms, DEA_YEOH_TERMS, "1, 2 or 3"),
-    TEXT("relaxation", 0, "FILE", DEA_TAKES_FIT, take_text, relaxation),
+static const dea_option entries[] = {
+    TEXT("engine", 0, "ENGINE", engine_word, DEA_TAKES_ENGINE, take_text, engine, "engine that solves"),
+    TEXT("model", 0, "MODEL", model_word, DEA_TAKES_SCENE, take_text, model, "model instead of that of the scene"),
+    TEXT("set", 0, "KEY=VALUE", key_word, DEA_TAKES_SCENE, take_setting, settings, "change a value of the scene"),
+    FLAG("no-files", 0, DEA_TAKES_SCENE, no_files, "refuse a scene that names other files"),
+    TEXT("output", 'o', "FILE", NULL, DEA_TAKES_OUTPUT, take_text, output, "write the result to a file"),
+    TEXT("format", 0, "FORMAT", format_word, DEA_TAKES_FORMAT, take_text, format, "format of the result"),
+    TEXT("plot", 0, "FILE", NULL, DEA_TAKES_PLOT, take_text, plot, "draw the result"),
+    COUNT("size", 0, "WxH", DEA_TAKES_PLOT, take_size, picture, 0,
+          "width x height in mm, cm, in or pt, each from 4 cm to 2 m, for example 8.5x6cm", "size of the picture"),
+    COUNT("log", 0, "AXES", DEA_TAKES_LOG, take_log, picture, 0, "x, y or xy", "axes drawn logarithmic"),
+    FLAG("force", 0, DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_PLOT, force, "overwrite also what is kept otherwise"),
+    COUNT("jobs", 'j', "N", DEA_TAKES_JOBS, take_jobs, jobs, 1024, "a whole number up to 1024, or auto", "worker processes"),
+    FLAG("quiet", 'q', DEA_TAKES_QUIET, quiet, "no summary and no progress"),
+    FLAG("full", 0, DEA_TAKES_FULL, full, "leave out nothing"),
+    NUMBER("tolerance", "T", DEA_TAKES_TOLERANCE, tolerance, "1", 0, false, 1, "a number between 0 and 1, for example 1e-6",
+           "difference that still agrees"),
+    TEXT("uniaxial", 0, "FILE", NULL, DEA_TAKES_FIT, take_uniaxial, operands, "data of a uniaxial test"),
+    TEXT("equibiaxial", 0, "FILE", NULL, DEA_TAKES_FIT, take_equibiaxial, operands, "data of an equi-biaxial test"),
+    COUNT("terms", 0, "N", DEA_TAKES_FIT, take_count, terms, DEA_YEOH_TERMS, "1, 2 or 3", "Yeoh constants"),
+    TEXT("relaxation", 0, "FILE", NULL, DEA_TAKES_FIT, take_text, relaxation, "data of a relaxation test"),
     NUMBER("ramp", "TIME", DEA_TAKES_FIT, ramp, "s", 0, true, INFINITY,
-           "a time, for example \"2 s\", or \"0 s\" for an ideal step"),
-    COUNT("branches", 0, "N", DEA_TAKES_FIT, take_count, branches, DEA_RELAXATION_MOST, "a whole number from 1 to 10"),
-    FLAG("relative", 0, DEA_TAKES_FIT, relative),
-    TEXT("as", 0, "KIND", DEA_TAKES_EXPORT, take_text, as),
-    TEXT("dialect", 0, "DIALECT", DEA_TAKES_EXPORT, take_text, dialect),
-    TEXT("analogy", 0, "ANALOGY", DEA_TAKES_EXPORT, take_text, analogy),
-    TEXT("name", 0, "NAME", DEA_TAKES_EXPORT, take_text, name),
-    COUNT("runs", 0, "N", DEA_TAKES_BENCH, take_count, runs, 1000, "a whole number from 1 to 1000"),
-    NUMBER("budget", "SECONDS", DEA_TAKES_BENCH, budget, "1", 0, false, INFINITY, "a number of seconds above 0, for example 60"),
-    COUNT("shard", 0, "I/N", DEA_TAKES_JOURNAL, take_shard, shard, 1000000,
-          "I/N with whole numbers 1 <= I <= N <= 1000000, for example 3/10"),
-    FLAG("resume", 0, DEA_TAKES_JOURNAL, resume),
-    NUMBER("to", "STRETCH", DEA_TAKES_CURVES, to, "1", 1, false, 100, "a stretch above 1 and below 100, for example 4"),
+           "a time, for example \"2 s\", or \"0 s\" for an ideal step", "duration of the ramp before the hold"),
+    NUMBER("length", "LENGTH", DEA_TAKES_FIT, specimen.length, "m", 0, false, INFINITY,
+           "the length of the specimen at rest, for example \"80 mm\"", "length of the specimen, for a displacement"),
+    NUMBER("area", "AREA", DEA_TAKES_FIT, specimen.area, "m^2", 0, false, INFINITY,
+           "the cross-section of the specimen at rest, for example \"22 mm^2\"", "cross-section of the specimen, for a force"),
+    COUNT("branches", 0, "N", DEA_TAKES_FIT, take_count, branches, DEA_RELAXATION_MOST, "a whole number from 1 to 10",
+          "Prony branches"),
+    FLAG("relative", 0, DEA_TAKES_FIT, relative, "relative errors count"),
     NUMBER("permittivity", "NUMBER", DEA_TAKES_FIT, permittivity, "1", 0, false, INFINITY,
-           "a relative permittivity above 0, for example 2.8"),
+           "a relative permittivity above 0, for example 2.8", "relative permittivity of the film"),
     NUMBER("density", "DENSITY", DEA_TAKES_FIT, density, "kg/m^3", 0, false, INFINITY,
-           "a density above 0, for example \"1080 kg/m^3\""),
-    NUMBER("breakdown", "FIELD", DEA_TAKES_FIT, breakdown, "V/m", 0, false, INFINITY, "a field above 0, for example \"80 V/um\""),
-    {.name = "help", .letter = 'h'},
-    {.name = "version", .letter = 'V'},
+           "a density above 0, for example \"1080 kg/m^3\"", "density of the film"),
+    NUMBER("breakdown", "FIELD", DEA_TAKES_FIT, breakdown, "V/m", 0, false, INFINITY, "a field above 0, for example \"80 V/um\"",
+           "breakdown strength of the film"),
+    TEXT("as", 0, "KIND", dea_export_word, DEA_TAKES_EXPORT, take_text, as, "kind of export"),
+    TEXT("dialect", 0, "DIALECT", dialect_word, DEA_TAKES_EXPORT, take_text, dialect, "simulator that reads it"),
+    TEXT("analogy", 0, "ANALOGY", analogy_word, DEA_TAKES_EXPORT, take_text, analogy, "what voltage and current stand for"),
+    TEXT("name", 0, "NAME", NULL, DEA_TAKES_EXPORT, take_text, name, "name of the part"),
+    COUNT("runs", 0, "N", DEA_TAKES_BENCH, take_count, runs, 1000, "a whole number from 1 to 1000", "timed runs of a setting"),
+    NUMBER("budget", "SECONDS", DEA_TAKES_BENCH, budget, "1", 0, false, INFINITY, "a number of seconds above 0, for example 60",
+           "time that all may take"),
+    COUNT("shard", 0, "I/N", DEA_TAKES_JOURNAL, take_shard, shard, 1000000,
+          "I/N with whole numbers 1 <= I <= N <= 1000000, for example 3/10", "solve only part I of N"),
+    FLAG("resume", 0, DEA_TAKES_JOURNAL, resume, "go on where a run stopped"),
+    NUMBER("to", "STRETCH", DEA_TAKES_CURVES, to, "1", 1, false, 100, "a stretch above 1 and below 100, for example 4",
+           "largest stretch of curves"),
+    {.name = "help", .letter = 'h', .about = "tell what the command does"},
+    {.name = "version", .letter = 'V', .about = "tell the version"},
 };
 
 enum { ENTRIES = sizeof entries / sizeof entries[0], FIRST_CODE = 256 };
 
-static bool takes(const dea_command *command, const option_entry *entry)
+static bool takes(const dea_command *command, const dea_option *entry)
 {
     return entry->group == 0 || (command->takes & entry->group) != 0;
+}
+
+const dea_option *dea_option_at(const dea_command *command, size_t index)
+{
+    for (int i = 0; i < ENTRIES; i++) {
+        if (takes(command, &entries[i]) && index-- == 0) {
+            return &entries[i];
+        }
+    }
+    return NULL;
 }
 
 static void complain_option(const dea_command *command, const char *given)
@@ -254,7 +347,7 @@ static void fill_getopt(const dea_command *command, struct option *longs, char *
 {
     *letters++ = ':';
     for (int i = 0; i < ENTRIES; i++) {
-        const option_entry *entry = &entries[i];
+        const dea_option *entry = &entries[i];
         if (!takes(command, entry))
             continue;
         *longs++ = (struct option){entry->name, entry->value ? required_argument : no_argument, NULL, FIRST_CODE + i};
@@ -268,7 +361,7 @@ static void fill_getopt(const dea_command *command, struct option *longs, char *
     *letters = '\0';
 }
 
-static const option_entry *entry_of(int code)
+static const dea_option *entry_of(int code)
 {
     for (int i = 0; i < ENTRIES; i++) {
         if (code == FIRST_CODE + i || (entries[i].letter && code == entries[i].letter))
@@ -279,11 +372,11 @@ static const option_entry *entry_of(int code)
 
 static dea_parsed take_option(const dea_command *command, int code, char **argv, dea_arguments *arguments)
 {
-    const option_entry *entry = entry_of(code);
+    const dea_option *entry = entry_of(code);
     const char *word = argv[optind - 1];
     char letter[3] = {'-', (char)optopt, '\0'};
     if (code == ':') {
-        const option_entry *lacking = entry_of(optopt);
+        const dea_option *lacking = entry_of(optopt);
         dea_complain("--%s needs a value", lacking ? lacking->name : letter);
         return DEA_PARSED_WRONG;
     }
@@ -304,7 +397,10 @@ static dea_parsed count_operands(const dea_command *command, const dea_arguments
 {
     if (arguments->operand_count < command->least)
         dea_complain("%s needs %s; see deaspice %s --help", command->name,
-                     command->least > 1 ? "a scene and its parts" : "a file", command->name);
+                     command->least > 1 ? "a scene and its parts"
+                     : command->files   ? "a file"
+                                        : "an operand",
+                     command->name);
     else if (arguments->operand_count > command->most)
         dea_complain("%s takes one operand, \"%s\" is one too many", command->name, arguments->operands[command->most].path);
     else

@@ -5,6 +5,8 @@
 #define DEA_PROGRAM_PROGRAM_H
 
 #include "deaspice/engine.h"
+#include "deaspice/fit.h"
+#include "deaspice/plot.h"
 #include "deaspice/scene.h"
 #include "support/files.h"
 
@@ -31,7 +33,8 @@ typedef enum dea_takes {
     DEA_TAKES_JOURNAL = 1 << 10, /**< --shard, --resume */
     DEA_TAKES_FULL = 1 << 11,    /**< --full */
     DEA_TAKES_BENCH = 1 << 12,   /**< --runs, --budget */
-    DEA_TAKES_CURVES = 1 << 13   /**< --to */
+    DEA_TAKES_CURVES = 1 << 13,  /**< --to */
+    DEA_TAKES_LOG = 1 << 14      /**< --log */
 } dea_takes;
 
 /** Mode of a data file as the command line gives it. */
@@ -45,13 +48,14 @@ typedef struct dea_operand {
 
 /** Arguments of a command; strings belong to argv, arrays to this. */
 typedef struct dea_arguments {
-    const char *engine; /**< NULL: not given */
+    const char *engine; /**< NULL: the scene's */
     const char *model;  /**< NULL: the scene's */
     dea_setting *settings;
     size_t setting_count;
     const char *output;
     const char *format;
     const char *plot;
+    dea_plot_options picture; /**< --size, --log; zeroed: not given */
     size_t jobs; /**< 0: not given; "auto" is already the number of cores */
     bool quiet;
     bool full;
@@ -62,6 +66,7 @@ typedef struct dea_arguments {
     bool relative;
     const char *relaxation; /**< NULL: not given */
     double ramp;            /**< [s], NAN: not given */
+    dea_specimen specimen;  /* of the fit's tables, 0: not given */
     size_t branches;        /**< 0: not given */
     const char *as;         /**< NULL: not given */
     const char *dialect;    /**< NULL: not given */
@@ -79,6 +84,9 @@ typedef struct dea_arguments {
     size_t operand_count;
 } dea_arguments;
 
+/** Word number @p index of a list, NULL past its end; @p room is for one that has to be made. */
+typedef const char *dea_word(size_t index, char room[DEA_NAME_LENGTH]);
+
 /** A command. */
 typedef struct dea_command {
     const char *name;
@@ -86,8 +94,15 @@ typedef struct dea_command {
     const char *help;    /**< text of --help */
     unsigned takes;      /**< dea_takes */
     size_t least, most;  /**< operands */
+    dea_word *words;     /**< that an operand may be, NULL: none */
+    const char *files;   /**< what a file that an operand may be ends in, "": anything, NULL: no file */
     dea_exit (*run)(const dea_arguments *arguments);
 } dea_command;
+
+/** Command number @p index, NULL past the end. */
+const dea_command *dea_command_at(size_t index);
+/** Kinds of export. */
+dea_word dea_export_word;
 
 extern const dea_command dea_command_run;
 extern const dea_command dea_command_merge;
@@ -96,6 +111,8 @@ extern const dea_command dea_command_bench;
 extern const dea_command dea_command_export;
 extern const dea_command dea_command_fit;
 extern const dea_command dea_command_materials;
+extern const dea_command dea_command_init;
+extern const dea_command dea_command_completion;
 
 /** How parsing ended. */
 typedef enum dea_parsed { DEA_PARSED_FINE, DEA_PARSED_HELP, DEA_PARSED_VERSION, DEA_PARSED_WRONG } dea_parsed;
@@ -113,8 +130,8 @@ void dea_complain(const char *format, ...) DEA_PRINTF(1, 2);
 dea_exit dea_complain_error(const dea_error *error);
 /** Complains about an unknown @p what, with a guess among @p count names. */
 void dea_complain_unknown(const char *what, const char *given, const char *const *names, size_t count);
-/** Engine of that name, complaining with a guess when there is none. */
-const dea_engine *dea_engine_choose(const char *name);
+/** True where the scene names the engine, or none. */
+bool dea_engine_named(const dea_scene *scene, const dea_engine *engine);
 /** Notes the files of the command line as read; false, with a complaint, without memory. */
 bool dea_inputs_note(const dea_arguments *arguments, dea_files *files);
 /** False, with a complaint, where a target of the arguments is one of the files that were read, or another target; see
@@ -123,11 +140,11 @@ bool dea_targets_free(const dea_arguments *arguments, dea_files *files);
 /** Reads a scene with the settings of the command line, and sees to it that no target is one of its files; on failure says so
  * and sets @p outcome. */
 bool dea_scene_open(const dea_arguments *arguments, const char *path, dea_scene *scene, dea_exit *outcome);
-/** Complains about an engine that refuses a model and names those that can do it; true where it does. */
-bool dea_engine_unfit(const dea_engine *engine, const dea_scene *scene);
-/** Settles `model: auto`: sets the first model and takes its error bound off the accuracy; says which unless @p quiet. False,
- * with a complaint and @p outcome, where no model that the engine (NULL: any) can do is good enough. @p bound: of the model
- * error, 0 where the scene names its models. */
+/** Complains where all engines of the scene refuse a model and names those that can do it; true where they do. */
+bool dea_engines_unfit(const dea_scene *scene);
+/** Settles `model: auto`: sets the first model; says which unless @p quiet. False, with a complaint and @p outcome, where no
+ * model that the engine (NULL: those of the scene) can do is good enough. @p bound: of the model error, 0 where the scene names its
+ * models. */
 bool dea_model_settle(dea_scene *scene, const dea_engine *engine, bool quiet, double *bound, dea_exit *outcome);
 /** Seconds since some moment. */
 double dea_seconds(void);

@@ -6,21 +6,13 @@
 #include "program/omissions.h"
 #include "program/program.h"
 
-enum { MOST_ENGINES = 16 };
-
-const dea_engine *dea_engine_choose(const char *name)
+bool dea_engine_named(const dea_scene *scene, const dea_engine *engine)
 {
-    const char *names[MOST_ENGINES];
-    size_t count = 0;
-    const dea_engine *engine = dea_engine_find(name);
-    while (count < MOST_ENGINES && dea_engine_at(count)) {
-        names[count] = dea_engine_at(count)->name;
-        count++;
+    bool named = scene->engine_count == 0;
+    for (size_t i = 0; i < scene->engine_count; i++) {
+        named = named || scene->engines[i] == engine;
     }
-    if (!engine) {
-        dea_complain_unknown("engine", name, names, count);
-    }
-    return engine;
+    return named;
 }
 
 bool dea_inputs_note(const dea_arguments *arguments, dea_files *files)
@@ -56,12 +48,16 @@ bool dea_scene_open(const dea_arguments *arguments, const char *path, dea_scene 
     const dea_reading how = {.settings = arguments->settings,
                              .setting_count = arguments->setting_count,
                              .model = arguments->model,
+                             .engine = arguments->engine,
                              .no_files = arguments->no_files};
     const dea_status status = dea_scene_read_as(path, &how, scene, &error);
     if (status == DEA_OK) {
         scene->full = arguments->full;
         *outcome = DEA_EXIT_USAGE;
         if (dea_inputs_note(arguments, scene->files) && dea_targets_free(arguments, scene->files)) {
+            if (scene->drive.waveform.columns[0] && !arguments->quiet) {
+                dea_complain("note: waveform file: %s", scene->drive.waveform.columns);
+            }
             return true;
         }
         dea_scene_free(scene);
@@ -77,22 +73,26 @@ bool dea_scene_open(const dea_arguments *arguments, const char *path, dea_scene 
 static bool can_do_all(const dea_engine *engine, const dea_scene *scene)
 {
     for (size_t i = 0; i < scene->model_count; i++) {
-        if (dea_engine_refuses(engine, scene, scene->models[i])) {
+        if (dea_crew_of(scene, engine, scene->models[i]).count == 0) {
             return false;
         }
     }
     return true;
 }
 
-bool dea_engine_unfit(const dea_engine *engine, const dea_scene *scene)
+bool dea_engines_unfit(const dea_scene *scene)
 {
-    if (can_do_all(engine, scene)) {
+    if (can_do_all(NULL, scene)) {
         return false;
     }
     for (size_t i = 0; i < scene->model_count; i++) {
-        const char *why = dea_engine_refuses(engine, scene, scene->models[i]);
-        if (why) {
-            dea_complain("engine %s cannot do model %s: %s", engine->name, scene->models[i]->name, why);
+        const bool unfit = dea_crew_of(scene, NULL, scene->models[i]).count == 0;
+        for (size_t k = 0; unfit && k < dea_engine_count(); k++) {
+            const dea_engine *engine = dea_engine_at(k);
+            const char *why = dea_engine_refuses(engine, scene, scene->models[i]);
+            if (why && dea_engine_named(scene, engine)) {
+                dea_complain("engine %s cannot do model %s: %s", engine->name, scene->models[i]->name, why);
+            }
         }
     }
     for (size_t i = 0; i < dea_engine_count(); i++) {
@@ -114,8 +114,8 @@ static void complain_choice(const dea_scene *scene, const dea_engine *engine, co
         dea_complain("model auto: %s can do no model that could be held against %s, its states included; name one with --model",
                      name, truth);
     } else {
-        dea_complain("model auto: %s can do no model that is within half the accuracy, %g, of %s; the best, %s, is within %s",
-                     name, scene->accuracy, truth, choice->next->name, dea_bound_text(choice->bound, bound));
+        dea_complain("model auto: %s can do no model that is within the model error, %g, of %s; the best, %s, is within %s",
+                     name, scene->model_error, truth, choice->next->name, dea_bound_text(choice->bound, bound));
     }
     for (size_t i = 0; i < dea_engine_count(); i++) {
         if (!dea_engine_refuses(dea_engine_at(i), scene, choice->truth)) {
@@ -144,7 +144,6 @@ bool dea_model_settle(dea_scene *scene, const dea_engine *engine, bool quiet, do
     }
     scene->models[0] = choice.model;
     scene->automatic = false;
-    scene->accuracy -= choice.bound;
     *bound = choice.bound;
     if (!quiet && choice.model == choice.truth) {
         fprintf(stderr, "model auto: %s, nothing cheaper is good enough\n", choice.model->name);

@@ -1,6 +1,7 @@
 /* What only the whole scene shows. */
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "deaspice/model.h"
@@ -26,14 +27,14 @@ static dea_status material_missing(dea_reader *reader, const char *path)
     return dea_place_fail(
         &base->place, reader->error, path,
         "missing: %s gives none; write one there (%s: 2.8), or here, material: {base: %s, %s: 2.8}; accepted: %s", shown, name,
-        shown, name, ref.key->accepted);
+        shown, name, ref.key.accepted);
 }
 
 static dea_status needs_check(dea_reader *reader)
 {
     static const need needs[] = {
         {"actuator", "actuator.frame_radius"}, {"actuator", "actuator.film_thickness"}, {"actuator", "actuator.prestretch"},
-        {"material", "material.yeoh.C1"},      {"material", "material.permittivity"},   {"drive", "drive.voltage"},
+        {"material", "material.permittivity"}, {"drive", "drive.voltage"},
     };
     if (!reader->kind_known) {
         return dea_reader_missing(reader, "actuator", "actuator.kind");
@@ -64,6 +65,52 @@ static dea_status needs_check(dea_reader *reader)
 static bool swept(dea_reader *reader, size_t offset)
 {
     return dea_reader_given(reader, offset)->swept;
+}
+
+static size_t constant_offset(size_t index)
+{
+    return offsetof(dea_scene, material.constants) + index * sizeof(double);
+}
+
+/* Every constant of the law is there, and they fit together: what is swept is judged point by point. */
+static dea_status law_check(dea_reader *reader)
+{
+    const dea_material *material = &reader->scene->material;
+    const dea_law *law = material->law;
+    char path[DEA_NAME_LENGTH];
+    bool varies = false;
+    for (size_t i = 0; i < material->entry_count * law->constant_count; i++) {
+        varies = varies || swept(reader, constant_offset(i));
+        snprintf(path, sizeof path, "material.%s.%s", law->name, law->constants[i % law->constant_count].name);
+        if (isnan(material->constants[i])) {
+            return dea_reader_missing(reader, "material", path);
+        }
+    }
+    const char *fault = law->fault && !varies ? law->fault(material->constants) : NULL;
+    snprintf(path, sizeof path, "material.%s", law->name);
+    return fault ? dea_place_fail(dea_reader_place(reader, constant_offset(0), "material"), reader->error, path, "%s", fault) : DEA_OK;
+}
+
+/* Chains that are straight before the pre-stretch hold no film; the last constant of such a law says where. */
+static dea_status locking_check(dea_reader *reader)
+{
+    const dea_scene *scene = reader->scene;
+    const dea_law *law = scene->material.law;
+    const size_t last = law->constant_count - 1;
+    if (!law->locking || swept(reader, constant_offset(last)) || swept(reader, offsetof(dea_scene, actuator.prestretch))) {
+        return DEA_OK;
+    }
+    const dea_film film = dea_law_film(law, scene->material.constants, scene->actuator.prestretch);
+    const double locking = law->locking(scene->material.constants);
+    if (film.j < locking) {
+        return DEA_OK;
+    }
+    char path[DEA_NAME_LENGTH];
+    snprintf(path, sizeof path, "material.%s.%s", law->name, law->constants[last].name);
+    return dea_place_fail(dea_reader_place(reader, constant_offset(last), "material"), reader->error, path,
+                          "too small (%g) for the pre-stretch %g, where I1 - 3 is %.6g: the chains are straight at %.6g; accepted: "
+                          "a larger %s, or less pre-stretch",
+                          scene->material.constants[last], film.prestretch, film.j, locking, law->constants[last].name);
 }
 
 static dea_status radius_check(dea_reader *reader)
@@ -139,6 +186,8 @@ static dea_status optics_check(dea_reader *reader)
 dea_status dea_reader_finish(dea_reader *reader)
 {
     dea_status status = needs_check(reader);
+    status = status ? status : law_check(reader);
+    status = status ? status : locking_check(reader);
     status = status ? status : radius_check(reader);
     status = status ? status : thickness_check(reader);
     status = status ? status : permittivity_check(reader);

@@ -37,7 +37,7 @@
 #define AVERAGE "study.transient.average"
 #define AC "study.ac"
 
-static const dea_key keys[] = {
+static const dea_key keys_before[] = {
     OTHER("title", dea_read_title, "one line of text, at most 1000 bytes"),
     OTHER("actuator", dea_read_mapping, "a mapping with kind, frame_radius, coverage, ..."),
     OTHER("actuator.kind", dea_read_kind, "dot, lens"),
@@ -62,13 +62,11 @@ static const dea_key keys[] = {
     OTHER("material.base", dea_read_later, "a built-in name or the path of a material file"),
     OTHER("material.source", dea_read_source, "one line of text, at most 255 bytes"),
     OTHER("material.stretches", dea_read_stretches, "the stretches that the data cover, e.g. [1, 2]"),
-    OTHER("material.yeoh", dea_read_mapping, "a mapping with C1, C2, C3, e.g. {C1: 178426 Pa}"),
-    SCALAR("material.yeoh.C1", material.constants[0], "Pa", "_Pa", 0, INFINITY, true, DEA_KEY_BOTH, 1,
-           "a modulus > 0, e.g. 178426 Pa"),
-    SCALAR("material.yeoh.C2", material.constants[1], "Pa", "_Pa", -INFINITY, INFINITY, true, DEA_KEY_BOTH, 1,
-           "a modulus, e.g. -6023 Pa"),
-    SCALAR("material.yeoh.C3", material.constants[2], "Pa", "_Pa", -INFINITY, INFINITY, true, DEA_KEY_BOTH, 1,
-           "a modulus, e.g. 4234 Pa"),
+};
+
+/* Here stand the keys of the laws, one mapping or list each with its constants. */
+
+static const dea_key keys_behind[] = {
     {.path = "material.permittivity",
      .read = dea_read_permittivity,
      .offset = AT(material.permittivity),
@@ -132,6 +130,8 @@ static const dea_key keys[] = {
     PART("drive.waveform.period", drive.waveform.period, "s", "_s", 0, INFINITY, true, 1, "drive.waveform",
          "a time, at least the last one of the waveform, e.g. 20 s"),
     OTHER("model", dea_read_model, "a model name or a list of them"),
+    SCALAR("model_error", model_error, "1", "", 0, 1, true, DEA_KEY_BOTH, 0, "a relative error > 0 and < 1, e.g. 1 %"),
+    OTHER("engine", dea_read_engine, "auto, an engine, or a list of engines in the order in which they are asked"),
     OTHER("study", dea_read_mapping, "a mapping with sweep, transient or ac, e.g. {sweep: {}} for the scene as one point"),
     OTHER("study.sweep", dea_read_later, "a mapping of axes, e.g. {coverage: [0.25, 0.5]}"),
     OTHER(TRANSIENT, dea_read_mapping, "a mapping with until, every, average, start and over, e.g. {until: 25 s, every: 10 ms}"),
@@ -165,7 +165,57 @@ static const dea_key keys[] = {
     SCALAR("accuracy", accuracy, "1", "", 0, 1, true, DEA_KEY_BOTH, 0, "a relative error > 0 and < 1, e.g. 1e-6"),
 };
 
-enum { KEY_COUNT = sizeof keys / sizeof *keys };
+enum { BEFORE = sizeof keys_before / sizeof *keys_before, BEHIND = sizeof keys_behind / sizeof *keys_behind };
+
+/* Key number @p index of a law: its mapping or list, what an entry of a list is, and its constants; false past the end. */
+static bool law_key(const dea_law *law, size_t index, dea_key *key)
+{
+    const bool list = law->entries > 1;
+    *key = (dea_key){.offset = DEA_KEY_NOWHERE, .kinds = DEA_KEY_BOTH, .accepted = law->accepted, .law = law};
+    if (index <= list) {
+        snprintf(key->path, sizeof key->path, index ? "material.%s.#" : "material.%s", law->name);
+        key->read = index ? dea_read_mapping : dea_read_law;
+        return true;
+    }
+    index -= 1 + list;
+    if (index >= law->constant_count) {
+        return false;
+    }
+    const dea_constant *constant = &law->constants[index];
+    snprintf(key->path, sizeof key->path, list ? "material.%s.#.%s" : "material.%s.%s", law->name, constant->name);
+    key->read = dea_read_scalar;
+    key->offset = AT(material.constants) + index * sizeof(double);
+    key->stride = list ? law->constant_count * sizeof(double) : 0;
+    key->unit = constant->unit;
+    key->suffix = constant->modulus ? "_Pa" : "";
+    key->low = constant->low;
+    key->high = INFINITY;
+    key->open = true;
+    key->words = list ? 3 : 1;
+    key->accepted = constant->accepted;
+    return true;
+}
+
+bool dea_key_at(size_t index, dea_key *key)
+{
+    if (index < BEFORE) {
+        *key = keys_before[index];
+        return true;
+    }
+    index -= BEFORE;
+    for (size_t i = 0; dea_law_at(i); i++) {
+        const dea_law *law = dea_law_at(i);
+        const size_t count = law->constant_count + (law->entries > 1 ? 2 : 1);
+        if (index < count) {
+            return law_key(law, index, key);
+        }
+        index -= count;
+    }
+    if (index < BEHIND) {
+        *key = keys_behind[index];
+    }
+    return index < BEHIND;
+}
 
 /* Copies @p name with every component that is a number below DEA_PRONY_MAX written as "#", the last of them kept in *index. */
 static bool name_normalise(const char *name, char out[DEA_NAME_LENGTH], size_t *index)
@@ -197,18 +247,13 @@ static bool name_normalise(const char *name, char out[DEA_NAME_LENGTH], size_t *
 static void ref_set(dea_ref *ref, const dea_key *key, size_t index)
 {
     const char *mark = strchr(key->path, '#');
-    ref->key = key;
+    ref->key = *key;
     ref->index = mark ? index : 0;
     if (mark) {
         snprintf(ref->path, sizeof ref->path, "%.*s%zu%s", (int)(mark - key->path), key->path, index, mark + 1);
     } else {
         snprintf(ref->path, sizeof ref->path, "%s", key->path);
     }
-}
-
-const dea_key *dea_key_at(size_t index)
-{
-    return index < KEY_COUNT ? &keys[index] : NULL;
 }
 
 bool dea_key_find(const char *path, dea_ref *ref)
@@ -218,9 +263,10 @@ bool dea_key_find(const char *path, dea_ref *ref)
     if (!name_normalise(path, name, &index)) {
         return false;
     }
-    for (size_t i = 0; i < KEY_COUNT; i++) {
-        if (strcmp(keys[i].path, name) == 0) {
-            ref_set(ref, &keys[i], index);
+    dea_key key;
+    for (size_t i = 0; dea_key_at(i, &key); i++) {
+        if (strcmp(key.path, name) == 0) {
+            ref_set(ref, &key, index);
             return true;
         }
     }
@@ -236,8 +282,25 @@ static bool ends_with(const char *path, const char *name)
     return part > 0 && part < whole && indexed && path[whole - part - 1] == '.' && strcmp(path + whole - part, name) == 0;
 }
 
+/* Law of the material in the tree, NULL where only a file, or nothing, tells. */
+static const dea_law *law_in(const dea_node *root)
+{
+    const dea_node *material = dea_tree_child(root, "material");
+    const dea_node *base = material && material->kind == DEA_NODE_MAPPING ? dea_tree_child(material, "base") : material;
+    for (size_t i = 0; material && dea_law_at(i); i++) {
+        if (dea_tree_child(material, dea_law_at(i)->name)) {
+            return dea_law_at(i);
+        }
+    }
+    const dea_material *builtin = base && base->kind == DEA_NODE_SCALAR ? dea_material_find(base->text) : NULL;
+    return builtin ? builtin->law : NULL;
+}
+
 bool dea_key_has_place(const dea_key *key, const dea_node *root)
 {
+    if (key->law) {
+        return law_in(root) == key->law;
+    }
     return (!key->within || dea_tree_find(root, key->within)) && !(key->instead && dea_tree_find(root, key->instead));
 }
 
@@ -245,7 +308,8 @@ bool dea_key_resolve(const char *name, const dea_node *root, dea_ref *ref)
 {
     char wanted[DEA_NAME_LENGTH];
     size_t index = 0;
-    const dea_key *placed = NULL;
+    dea_key key;
+    dea_key placed;
     size_t found = 0;
     size_t found_placed = 0;
     if (dea_key_find(name, ref)) {
@@ -254,16 +318,16 @@ bool dea_key_resolve(const char *name, const dea_node *root, dea_ref *ref)
     if (!name_normalise(name, wanted, &index)) {
         return false;
     }
-    for (size_t i = 0; i < KEY_COUNT; i++) {
-        if (ends_with(keys[i].path, wanted)) {
-            const bool here = dea_key_has_place(&keys[i], root);
-            placed = here || found == 0 ? &keys[i] : placed;
+    for (size_t i = 0; dea_key_at(i, &key); i++) {
+        if (ends_with(key.path, wanted)) {
+            const bool here = dea_key_has_place(&key, root);
+            placed = here || found == 0 ? key : placed;
             found_placed += here;
             found++;
         }
     }
     if (found == 1 || found_placed == 1) {
-        ref_set(ref, placed, index);
+        ref_set(ref, &placed, index);
         return true;
     }
     return false;
@@ -271,7 +335,7 @@ bool dea_key_resolve(const char *name, const dea_node *root, dea_ref *ref)
 
 size_t dea_ref_offset(const dea_ref *ref)
 {
-    return ref->key->offset + ref->index * ref->key->stride;
+    return ref->key.offset + ref->index * ref->key.stride;
 }
 
 static const char *last_component(const char *path)
@@ -300,21 +364,21 @@ static bool is_anywhere(const dea_key *key, const char *parent)
     return strchr(key->path, '#') == NULL;
 }
 
-/* The key that @p name is most likely a slip of, among those that @p among holds for. */
-static const dea_key *nearest(bool (*among)(const dea_key *key, const char *parent), const char *parent, const char *name)
+/* The key that @p name is most likely a slip of, among those that @p among holds for; false: none. */
+static bool nearest(bool (*among)(const dea_key *key, const char *parent), const char *parent, const char *name, dea_key *best)
 {
-    const dea_key *best = NULL;
+    dea_key key;
     size_t least = SIZE_MAX;
-    for (size_t i = 0; i < KEY_COUNT; i++) {
-        const char *word = last_component(keys[i].path);
-        const bool apart = !among(&keys[i], parent) || word[0] == '#';
+    for (size_t i = 0; dea_key_at(i, &key); i++) {
+        const char *word = last_component(key.path);
+        const bool apart = !among(&key, parent) || word[0] == '#';
         const size_t distance = apart ? SIZE_MAX : dea_text_distance(word, name);
         if (distance < least && dea_text_likely(word, distance)) {
-            best = &keys[i];
+            *best = key;
             least = distance;
         }
     }
-    return best;
+    return least < SIZE_MAX;
 }
 
 static size_t depth_of(const char *path)
@@ -326,21 +390,21 @@ static size_t depth_of(const char *path)
     return depth;
 }
 
-/* The key whose last component is @p name, the least deep of several; NULL where there is none, or that is not one alone. */
-static const dea_key *namesake(const char *name)
+/* The key whose last component is @p name, the least deep of several; false where there is none, or that is not one alone. */
+static bool namesake(const char *name, dea_key *found)
 {
-    const dea_key *found = NULL;
+    dea_key key;
     size_t least = SIZE_MAX;
     size_t count = 0;
-    for (size_t i = 0; i < KEY_COUNT; i++) {
-        const size_t depth = depth_of(keys[i].path);
-        if (is_anywhere(&keys[i], NULL) && depth <= least && strcmp(last_component(keys[i].path), name) == 0) {
+    for (size_t i = 0; dea_key_at(i, &key); i++) {
+        const size_t depth = depth_of(key.path);
+        if (is_anywhere(&key, NULL) && depth <= least && strcmp(last_component(key.path), name) == 0) {
             count = depth < least ? 1 : count + 1;
             least = depth;
-            found = &keys[i];
+            *found = key;
         }
     }
-    return count == 1 ? found : NULL;
+    return count == 1;
 }
 
 static size_t append(char out[DEA_KEY_ROOM], size_t used, const char *between, const char *word)
@@ -359,9 +423,10 @@ bool dea_key_ambiguous(const char *name, char out[DEA_KEY_ROOM])
     if (!name_normalise(name, wanted, &index)) {
         return false;
     }
-    for (size_t i = 0; i < KEY_COUNT; i++) {
-        if (ends_with(keys[i].path, wanted)) {
-            used = append(out, used, found ? ", " : "", keys[i].path);
+    dea_key key;
+    for (size_t i = 0; dea_key_at(i, &key); i++) {
+        if (ends_with(key.path, wanted)) {
+            used = append(out, used, found ? ", " : "", key.path);
             found++;
         }
     }
@@ -394,18 +459,19 @@ void dea_key_suggest(const char *parent, const char *name, char out[DEA_KEY_ROOM
     if (!name_normalise(parent, place, &index)) {
         return;
     }
-    const dea_key *sibling = nearest(is_child, place, name);
-    const dea_key *elsewhere = sibling ? NULL : namesake(name);
+    dea_key key;
+    const bool sibling = nearest(is_child, place, name, &key);
+    const bool elsewhere = !sibling && namesake(name, &key);
     if (sibling) {
-        used = append(out, used, "; did you mean ", last_component(sibling->path));
+        used = append(out, used, "; did you mean ", last_component(key.path));
         used = append(out, used, "?", "");
     } else if (elsewhere) {
-        used = place_tell(place, elsewhere, out);
+        used = place_tell(place, &key, out);
     }
     const char *between = sibling ? " accepted: " : elsewhere ? "; accepted here: " : "; accepted: ";
-    for (size_t i = 0; i < KEY_COUNT; i++) {
-        if (child_of(keys[i].path, place)) {
-            used = append(out, used, between, last_component(keys[i].path));
+    for (size_t i = 0; dea_key_at(i, &key); i++) {
+        if (child_of(key.path, place)) {
+            used = append(out, used, between, last_component(key.path));
             between = ", ";
         }
     }
@@ -426,8 +492,9 @@ void dea_key_suggest_short(const char *name, const dea_node *root, const char *a
         at = append(out, 0, "; an index, counted from 0, stands between points: ", dotted);
         return;
     }
-    const dea_key *meant = nearest(is_anywhere, NULL, last_component(name));
-    at = meant ? append(out, 0, "; did you mean ", meant->path) : 0;
+    dea_key key;
+    const bool meant = nearest(is_anywhere, NULL, last_component(name), &key);
+    at = meant ? append(out, 0, "; did you mean ", key.path) : 0;
     append(out, at, meant ? "? accepted: " : "; accepted: ", accepted);
 }
 
@@ -440,7 +507,7 @@ void dea_ref_column(const dea_ref *ref, size_t components, char column[DEA_NAME_
             break;
         }
     }
-    snprintf(column, DEA_NAME_LENGTH, "%s%s", start, ref->key->suffix);
+    snprintf(column, DEA_NAME_LENGTH, "%s%s", start, ref->key.suffix);
     for (char *c = column; *c; c++) {
         *c = *c == '.' ? '_' : *c;
     }

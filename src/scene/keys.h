@@ -18,7 +18,7 @@ enum { DEA_KEY_DOT = 1, DEA_KEY_LENS = 2, DEA_KEY_BOTH = 3, DEA_KEY_ROOM = 512 }
 #define DEA_KEY_NOWHERE ((size_t)-1)
 
 struct dea_key {
-    const char *path; /* dotted; a component "#" stands for an index */
+    char path[DEA_NAME_LENGTH]; /* dotted; a component "#" stands for an index */
     dea_status (*read)(dea_reader *reader, const dea_ref *ref, const dea_node *node);
     size_t offset;        /* of the double in dea_scene, DEA_KEY_NOWHERE for what is no scalar */
     size_t stride;        /* from one index to the next, 0 without "#" */
@@ -31,17 +31,18 @@ struct dea_key {
     const char *within;   /* key that the scene must give for this one to have a place (the inner `over`: itself), NULL: none */
     const char *instead;  /* key that takes the place of this one, NULL: none */
     const char *accepted; /* for messages: range and an example */
+    const dea_law *law;   /* whose constants it holds, or is one of, NULL: none */
 };
 
 /* One key with its index. */
 struct dea_ref {
-    const dea_key *key;
+    dea_key key;
     size_t index;               /* of "#", else 0 */
     char path[DEA_NAME_LENGTH]; /* with the index, e.g. material.prony.0.tau */
 };
 
-/* Key number @p index, NULL past the end. */
-const dea_key *dea_key_at(size_t index);
+/* Key number @p index: those of the table, with those that the table of laws tells of in between. False past the end. */
+bool dea_key_at(size_t index, dea_key *key);
 /* Finds a key by its whole path. */
 bool dea_key_find(const char *path, dea_ref *ref);
 /* Finds a key by its whole path or by the end of it ("coverage", "yeoh.C1") where only one key ends so, or only one of those that

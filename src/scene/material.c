@@ -4,10 +4,103 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/file.h"
+#include "support/file.h"
 #include "scene/reader.h"
 
 static dea_status base_read(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+
+/* Names of all laws, with commas between. */
+static void laws_list(char out[DEA_KEY_ROOM])
+{
+    size_t used = 0;
+    out[0] = '\0';
+    for (size_t i = 0; dea_law_at(i) && used < DEA_KEY_ROOM; i++) {
+        used += (size_t)snprintf(out + used, DEA_KEY_ROOM - used, "%s%s", i ? ", " : "", dea_law_at(i)->name);
+    }
+}
+
+/* The law among the keys of a material, NULL where it has none; two are refused. */
+static dea_status law_find(dea_reader *reader, const dea_node *material, const dea_node **law)
+{
+    for (const dea_node *child = material->first; child; child = child->next) {
+        if (!dea_law_find(child->key)) {
+            continue;
+        }
+        if (*law) {
+            char path[DEA_NAME_LENGTH];
+            char names[DEA_KEY_ROOM];
+            laws_list(names);
+            snprintf(path, sizeof path, "material.%s", child->key);
+            return dea_place_fail(&child->key_at, reader->error, path,
+                                  "a second law: the material has %s already; accepted: one of %s", (*law)->key, names);
+        }
+        *law = child;
+    }
+    return DEA_OK;
+}
+
+/* Makes the constants those of another law, none of them given yet but by its defaults. */
+static void law_enter(dea_reader *reader, const dea_law *law)
+{
+    dea_material *material = &reader->scene->material;
+    material->law = law;
+    material->entry_count = 1;
+    for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
+        const bool used = i < law->constant_count;
+        material->constants[i] = used ? law->constants[i].standard : 0.0;
+        dea_reader_given(reader, offsetof(dea_scene, material.constants) + i * sizeof(double))->node = NULL;
+    }
+}
+
+/* Entries of a law that is a list, each with all its constants. */
+static dea_status entries_read(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    const dea_law *law = ref->key.law;
+    dea_material *material = &reader->scene->material;
+    size_t index = 0;
+    if (node->kind != DEA_NODE_SEQUENCE || node->count == 0 || node->count > law->entries) {
+        return dea_reader_refuse(reader, ref, node, node->kind != DEA_NODE_SEQUENCE ? "not a list" : node->count ? "too long" : "empty");
+    }
+    law_enter(reader, law);
+    material->entry_count = node->count;
+    for (const dea_node *entry = node->first; entry; entry = entry->next, index++) {
+        double *constants = material->constants + index * law->constant_count;
+        char path[DEA_NAME_LENGTH];
+        dea_ref own;
+        for (size_t i = 0; i < law->constant_count; i++) {
+            constants[i] = law->constants[i].standard;
+        }
+        snprintf(path, sizeof path, "material.%s.%zu", law->name, index);
+        const dea_status status = dea_key_find(path, &own) ? dea_read_mapping(reader, &own, entry) : dea_reader_memory(reader);
+        for (size_t i = 0; i < law->constant_count && !status; i++) {
+            if (isnan(constants[i])) {
+                char what[DEA_NAME_LENGTH];
+                snprintf(what, sizeof what, "%s is missing", law->constants[i].name);
+                return dea_reader_refuse(reader, &own, entry, what);
+            }
+        }
+        if (status) {
+            return status;
+        }
+    }
+    return DEA_OK;
+}
+
+/* The constants of one law; those of the same law in the base stay where they are not given anew. */
+dea_status dea_read_law(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    const dea_law *law = ref->key.law;
+    if (law->entries > 1) {
+        return entries_read(reader, ref, node);
+    }
+    if (node->kind != DEA_NODE_MAPPING) {
+        return dea_reader_refuse(reader, ref, node, "not a mapping");
+    }
+    if (reader->scene->material.law != law) {
+        law_enter(reader, law);
+    }
+    return dea_reader_children(reader, ref->path, node);
+}
 
 /* Reads the keys of a material; what its base says goes first. */
 static dea_status mapping_read(dea_reader *reader, const dea_node *node)
@@ -25,20 +118,22 @@ static dea_status mapping_read(dea_reader *reader, const dea_node *node)
         memcpy(material->source, source, sizeof source);
     }
     snprintf(material->name, sizeof material->name, "%s", "scene");
-    if (dea_tree_child(node, "yeoh")) { /* other constants than the base has data for */
+    const dea_node *law = NULL;
+    const dea_status status = law_find(reader, node, &law);
+    if (law) { /* other constants than the base has data for */
         memset(material->stretches, 0, sizeof material->stretches);
     }
-    return dea_reader_children(reader, "material", node);
+    return status ? status : dea_reader_children(reader, "material", node);
 }
 
-/* Does a line begin as a key of a material does? */
+/* Does a line begin as a key of a material does, and hardly one of another file? */
 static bool is_material_line(const char *line)
 {
     char path[DEA_NAME_LENGTH];
     dea_ref ref;
     const size_t word = strcspn(line, ":\n.#");
     return line[word] == ':' && snprintf(path, sizeof path, "material.%.*s", (int)word, line) < (int)sizeof path &&
-           dea_key_find(path, &ref);
+           dea_key_find(path, &ref) && ref.key.read != dea_read_source && ref.key.read != dea_read_later;
 }
 
 /* Keeps a material's text to be shown with messages; of a file that has no line of a material, nothing is. */
@@ -78,7 +173,7 @@ static dea_status file_parse(dea_reader *reader, const char *path, const char *t
     }
     dea_status status = dea_tree_parse(text, length, origin, &reader->arena, &root, reader->error);
     if (!status && !is_material(root)) {
-        status = dea_place_fail(&root->place, reader->error, "material", "%s; accepted: keys such as yeoh, permittivity, density",
+        status = dea_place_fail(&root->place, reader->error, "material", "%s; accepted: keys such as yeoh, gent, permittivity, density",
                                 root->kind == DEA_NODE_MAPPING ? "no key of a material" : "not a mapping");
     }
     return status ? status : mapping_read(reader, root);
@@ -177,7 +272,7 @@ dea_status dea_read_stretches(dea_reader *reader, const dea_ref *ref, const dea_
                                     .open = true,
                                     .kinds = DEA_KEY_BOTH,
                                     .accepted = "two stretches > 0, e.g. [1, 2]"};
-    const dea_ref number = {.key = &stretch, .path = "material.stretches"};
+    const dea_ref number = {.key = stretch, .path = "material.stretches"};
     double *range = reader->scene->material.stretches;
     if (node->kind != DEA_NODE_SEQUENCE || node->count != 2) {
         return dea_reader_refuse(reader, ref, node, "not a pair of stretches");

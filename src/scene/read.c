@@ -22,7 +22,7 @@ dea_status dea_reader_refuse(dea_reader *reader, const dea_ref *ref, const dea_n
     char shown[DEA_TEXT_ROOM];
     dea_reader_show(node, shown);
     return dea_place_fail(&node->place, reader->error, ref->path, "%s%s%s%s; accepted: %s", what, shown[0] ? " (" : "", shown,
-                          shown[0] ? ")" : "", ref->key->accepted);
+                          shown[0] ? ")" : "", ref->key.accepted);
 }
 
 dea_status dea_reader_memory(dea_reader *reader)
@@ -40,7 +40,7 @@ dea_status dea_reader_missing(dea_reader *reader, const char *parent, const char
     dea_ref ref;
     const dea_node *holder = dea_tree_find(reader->root, parent);
     const dea_place *place = holder ? &holder->place : &reader->root->place;
-    return dea_place_fail(place, reader->error, path, "missing; accepted: %s", dea_key_find(path, &ref) ? ref.key->accepted : "");
+    return dea_place_fail(place, reader->error, path, "missing; accepted: %s", dea_key_find(path, &ref) ? ref.key.accepted : "");
 }
 
 const dea_place *dea_reader_place(dea_reader *reader, size_t offset, const char *parent)
@@ -52,9 +52,19 @@ const dea_place *dea_reader_place(dea_reader *reader, size_t offset, const char 
 
 dea_status dea_reader_index(dea_reader *reader, const dea_ref *ref, const dea_place *place)
 {
+    const dea_law *law = reader->scene->material.law;
+    if (ref->key.law && ref->key.law != law) {
+        return dea_place_fail(place, reader->error, ref->path,
+                              "belongs to the law %s, but that of the material is %s; accepted: constants of material.%s, or all of "
+                              "material.%s as %s",
+                              ref->key.law->name, law->name, law->name, ref->key.law->name, ref->key.law->accepted);
+    }
     const bool window = strncmp(ref->path, "study.transient.average.", 24) == 0;
-    const bool listed = strchr(ref->key->path, '#') != NULL;
-    const size_t count = window ? reader->scene->transient.average_count : reader->scene->material.prony_count;
+    const bool listed = strchr(ref->key.path, '#') != NULL;
+    const dea_material *material = &reader->scene->material;
+    const size_t count = window         ? reader->scene->transient.average_count
+                         : ref->key.law ? material->entry_count
+                                        : material->prony_count;
     if (window && !listed && count > 1) {
         return dea_place_fail(place, reader->error, ref->path,
                               "the transient has %zu windows; name one of them, e.g. study.transient.average.0.from", count);
@@ -63,7 +73,7 @@ dea_status dea_reader_index(dea_reader *reader, const dea_ref *ref, const dea_pl
         return DEA_OK;
     }
     return dea_place_fail(place, reader->error, ref->path, "the %s has %zu %s, counted from 0", window ? "transient" : "material",
-                          count, window ? "windows" : "branches");
+                          count, window ? "windows" : ref->key.law ? "terms" : "branches");
 }
 
 static dea_status fail_unknown(dea_reader *reader, const char *path, const dea_node *node)
@@ -86,7 +96,7 @@ dea_status dea_reader_children(dea_reader *reader, const char *path, const dea_n
         if (length < 0 || (size_t)length >= sizeof whole || strpbrk(child->key, ".#") || !dea_key_find(whole, &ref)) {
             return fail_unknown(reader, path, child);
         }
-        const dea_status status = ref.key->read(reader, &ref, child);
+        const dea_status status = ref.key.read(reader, &ref, child);
         if (status) {
             return status;
         }
@@ -105,7 +115,7 @@ dea_status dea_read_mapping(dea_reader *reader, const dea_ref *ref, const dea_no
 static dea_status kind_check(dea_reader *reader, const dea_ref *ref, const dea_node *node)
 {
     const bool lens = reader->scene->actuator.kind == DEA_LENS;
-    if (!reader->kind_known || ref->key->kinds & (lens ? DEA_KEY_LENS : DEA_KEY_DOT)) {
+    if (!reader->kind_known || ref->key.kinds & (lens ? DEA_KEY_LENS : DEA_KEY_DOT)) {
         return DEA_OK;
     }
     const bool divide = dea_ref_offset(ref) == offsetof(dea_scene, actuator.divide_radius);
@@ -129,13 +139,13 @@ dea_status dea_reader_number(dea_reader *reader, const dea_ref *ref, const dea_n
         return status;
     }
     if (node->kind != DEA_NODE_SCALAR) {
-        const bool axis = ref->key->words > 0 && (node->kind == DEA_NODE_SEQUENCE || dea_tree_child(node, "from"));
+        const bool axis = ref->key.words > 0 && (node->kind == DEA_NODE_SEQUENCE || dea_tree_child(node, "from"));
         return dea_reader_refuse(reader, ref, node, axis ? "several values are an axis of study.sweep" : "not a number");
     }
-    if (!dea_quantity_read(reader->units, node->text, ref->key->unit, value, reason)) {
+    if (!dea_quantity_read(reader->units, node->text, ref->key.unit, value, reason)) {
         return dea_reader_refuse(reader, ref, node, reason);
     }
-    return in_range(ref->key, *value) ? DEA_OK : dea_reader_refuse(reader, ref, node, "out of range");
+    return in_range(&ref->key, *value) ? DEA_OK : dea_reader_refuse(reader, ref, node, "out of range");
 }
 
 static dea_status fail_both(dea_reader *reader, const dea_ref *ref, const dea_node *node, const dea_given *other)
@@ -388,4 +398,60 @@ dea_status dea_read_model(dea_reader *reader, const dea_ref *ref, const dea_node
         }
     }
     return DEA_OK;
+}
+
+static dea_status engine_fail(dea_reader *reader, const dea_node *node, const char *what)
+{
+    char shown[DEA_TEXT_ROOM];
+    char names[DEA_KEY_ROOM] = "";
+    char meant[DEA_KEY_ROOM] = "";
+    size_t used = 0;
+    for (size_t i = 0; i < dea_engine_count() && used < sizeof names; i++) {
+        const char *name = dea_engine_at(i)->name;
+        const size_t distance = node->kind == DEA_NODE_SCALAR ? dea_text_distance(name, node->text) : 0;
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s, ", name);
+        if (distance > 0 && dea_text_likely(name, distance)) {
+            snprintf(meant, sizeof meant, "did you mean %s? ", name);
+        }
+    }
+    return dea_place_fail(&node->place, reader->error, "engine", "%s (%s); %saccepted: %s%s", what, dea_reader_show(node, shown),
+                          meant, names, automatic);
+}
+
+static dea_status engine_add(dea_reader *reader, const dea_node *node)
+{
+    dea_scene *scene = reader->scene;
+    const dea_engine *engine = node->kind == DEA_NODE_SCALAR ? dea_engine_find(node->text) : NULL;
+    if (!engine) {
+        const bool all = node->kind == DEA_NODE_SCALAR && strcmp(node->text, automatic) == 0;
+        return engine_fail(reader, node, all ? "auto stands alone" : "unknown engine");
+    }
+    for (size_t i = 0; i < scene->engine_count; i++) {
+        if (scene->engines[i] == engine) {
+            return engine_fail(reader, node, "named twice");
+        }
+    }
+    scene->engines[scene->engine_count++] = engine;
+    return DEA_OK;
+}
+
+dea_status dea_read_engine(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    (void)ref;
+    if (reader->engine && node->place.origin != &reader->engine_origin) {
+        return DEA_OK;
+    }
+    const dea_node *alone = node->kind == DEA_NODE_SCALAR ? node : node->count == 1 ? node->first : NULL;
+    reader->scene->engine_count = 0;
+    if (alone && alone->kind == DEA_NODE_SCALAR && strcmp(alone->text, automatic) == 0) {
+        return DEA_OK;
+    }
+    if (node->kind == DEA_NODE_MAPPING || (node->kind == DEA_NODE_SEQUENCE && node->count == 0)) {
+        return engine_fail(reader, node, "not an engine");
+    }
+    dea_status status = node->kind == DEA_NODE_SCALAR ? engine_add(reader, node) : DEA_OK;
+    for (const dea_node *name = node->kind == DEA_NODE_SEQUENCE ? node->first : NULL; name && !status; name = name->next) {
+        status = engine_add(reader, name);
+    }
+    return status;
 }

@@ -3,7 +3,7 @@
 #define DEA_SCENE_READER_H
 
 #include "scene/keys.h"
-#include "scene/quantity.h"
+#include "support/quantity.h"
 #include "support/text.h"
 
 enum { DEA_READER_SLOTS = sizeof(dea_scene) / sizeof(double) + 1, DEA_MATERIAL_DEPTH = 8, DEA_WORD_ROOM = 256 };
@@ -28,8 +28,9 @@ struct dea_reader {
     dea_arena arena;
     dea_units *units;
     dea_node *root;
-    dea_origin model_origin;
+    dea_origin model_origin, engine_origin;
     const char *model;       /* replaces the scene's model, may be NULL */
+    const char *engine;      /* the same for engines */
     dea_override *overrides; /* settings of scalars, in order */
     bool kind_known;
     bool no_files;                                 /* none may be named */
@@ -68,8 +69,10 @@ dea_status dea_read_mapping(dea_reader *reader, const dea_ref *ref, const dea_no
 dea_status dea_read_kind(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_title(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_model(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_engine(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_later(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_material(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_law(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_source(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_stretches(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_permittivity(dea_reader *reader, const dea_ref *ref, const dea_node *node);

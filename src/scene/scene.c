@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "deaspice/scene.h"
-#include "scene/file.h"
+#include "support/file.h"
 #include "scene/reader.h"
 
 static dea_status scene_clear(dea_scene *scene)
@@ -30,6 +30,7 @@ static dea_status scene_clear(dea_scene *scene)
                   .leakage_resistance = NAN},
         .transient = {.until = NAN, .every = NAN},
         .ac = {.from = NAN, .to = NAN, .points_per_decade = 50, .bias = NAN},
+        .model_error = 0.01,
         .accuracy = 1e-6,
         .files = scene->files,
     };
@@ -44,20 +45,20 @@ static dea_status kind_read(dea_reader *reader)
     return kind && dea_key_find("actuator.kind", &ref) ? dea_read_kind(reader, &ref, kind) : DEA_OK;
 }
 
-/* `--model a,b` stands in the place of the scene's model. */
-static dea_status model_override(dea_reader *reader)
+/* `--model a,b` stands in the place of the scene's model, `--engine a,b` in that of its engine. */
+static dea_status list_override(dea_reader *reader, const char *path, const char *names, const char *option, dea_origin *origin)
 {
     dea_ref ref;
-    if (!reader->model || !dea_key_find("model", &ref)) {
+    if (!names || !dea_key_find(path, &ref)) {
         return DEA_OK;
     }
-    reader->model_origin = (dea_origin){.name = "--model", .setting = true};
-    const dea_place place = {.origin = &reader->model_origin, .line = 1, .column = 1};
+    *origin = (dea_origin){.name = option, .setting = true};
+    const dea_place place = {.origin = origin, .line = 1, .column = 1};
     dea_node list = {.kind = DEA_NODE_SEQUENCE, .place = place, .key_at = place};
-    for (const char *name = reader->model; name; name = strchr(name, ',') ? strchr(name, ',') + 1 : NULL) {
+    for (const char *name = names; name; name = strchr(name, ',') ? strchr(name, ',') + 1 : NULL) {
         name += strspn(name, " ");
         const char *text = dea_arena_copy(&reader->arena, name, strcspn(name, ","));
-        dea_node *node = text ? dea_tree_scalar(&reader->arena, &reader->model_origin, text) : NULL;
+        dea_node *node = text ? dea_tree_scalar(&reader->arena, origin, text) : NULL;
         if (!node) {
             return dea_reader_memory(reader);
         }
@@ -65,7 +66,7 @@ static dea_status model_override(dea_reader *reader)
         list.last = node;
         list.count++;
     }
-    return dea_read_model(reader, &ref, &list);
+    return ref.key.read(reader, &ref, &list);
 }
 
 static dea_status reader_run(dea_reader *reader, const char *text, size_t length, const dea_origin *origin,
@@ -83,7 +84,8 @@ static dea_status reader_run(dea_reader *reader, const char *text, size_t length
     status = status ? status : kind_read(reader);
     status = status ? status : dea_reader_children(reader, "", reader->root);
     status = status ? status : dea_settings_apply(reader);
-    status = status ? status : model_override(reader);
+    status = status ? status : list_override(reader, "model", reader->model, "--model", &reader->model_origin);
+    status = status ? status : list_override(reader, "engine", reader->engine, "--engine", &reader->engine_origin);
     status = status ? status : dea_reader_study(reader);
     return status ? status : dea_reader_finish(reader);
 }
@@ -104,6 +106,7 @@ static dea_status scene_parse(const char *text, size_t length, const char *name,
         reader->error = error;
         reader->units = units;
         reader->model = how->model;
+        reader->engine = how->engine;
         reader->no_files = how->no_files;
         status = reader_run(reader, text, length, &origin, how->settings, how->setting_count);
     }

@@ -133,13 +133,27 @@ static void alternatives_remove(setting_reader *self, const char *path)
     }
 }
 
+/* A setting of one law takes the constants of another in the file away. */
+static void laws_remove(setting_reader *self, const char *path)
+{
+    const char *name = strrchr(path, '.');
+    dea_node *material = name && dea_law_find(name + 1) ? path_enter(self, "material") : NULL;
+    for (size_t i = 0; material && dea_law_at(i); i++) {
+        const char *other = dea_law_at(i)->name;
+        const dea_node *node = dea_tree_child(material, other);
+        if (node && strcmp(other, name + 1) != 0 && !node->place.origin->setting) {
+            dea_tree_remove(material, other);
+        }
+    }
+}
+
 /* Puts @p node at the place of a key that is no scalar. Where a file has no mapping on the way, reading the file will say so. */
 static dea_status graft(setting_reader *self, const dea_ref *ref, dea_node *node)
 {
     char parent[DEA_NAME_LENGTH];
     const char *dot = strrchr(ref->path, '.');
     snprintf(parent, sizeof parent, "%.*s", dot ? (int)(dot - ref->path) : 0, ref->path);
-    if (strchr(ref->key->path, '#')) {
+    if (strchr(ref->key.path, '#')) {
         return dea_place_fail(&self->place, self->reader->error, ref->path,
                               "cannot be set as a whole; accepted: all of %s, or its "
                               "scalars",
@@ -153,6 +167,7 @@ static dea_status graft(setting_reader *self, const dea_ref *ref, dea_node *node
     if (holder->kind == DEA_NODE_MAPPING) {
         dea_tree_put(holder, key, node);
         alternatives_remove(self, ref->path);
+        laws_remove(self, ref->path);
     }
     return DEA_OK;
 }
@@ -266,7 +281,7 @@ static dea_status setting_graft(dea_reader *reader, const char *text, bool last,
     }
     const char *axis = axis_name(self.name, &path);
     const bool found = dea_key_resolve(axis ? axis : self.name, reader->root, &ref);
-    const bool structure = found && (axis || ref.key->offset == DEA_KEY_NOWHERE);
+    const bool structure = found && (axis || ref.key.offset == DEA_KEY_NOWHERE);
     if (!structure && !last) {
         return DEA_OK;
     }
@@ -299,19 +314,19 @@ static dea_status part_check(dea_reader *reader, const dea_override *override)
     const dea_ref *ref = &override->ref;
     dea_ref part;
     const dea_status status = dea_reader_index(reader, ref, &override->node->place);
-    const char *within = ref->key->within;
+    const char *within = ref->key.within;
     if (status || !within || dea_tree_find(reader->root, within) || !dea_key_find(within, &part)) {
         return status;
     }
     return dea_place_fail(&override->node->place, reader->error, ref->path, "the scene has no %s; accepted for that: %s", within,
-                          part.key->accepted);
+                          part.key.accepted);
 }
 
 dea_status dea_settings_apply(dea_reader *reader)
 {
     for (const dea_override *override = reader->overrides; override; override = override->next) {
         dea_status status = part_check(reader, override);
-        status = status ? status : override->ref.key->read(reader, &override->ref, override->node);
+        status = status ? status : override->ref.key.read(reader, &override->ref, override->node);
         if (status) {
             return status;
         }

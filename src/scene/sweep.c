@@ -183,13 +183,13 @@ static dea_status axis_claim(const axis_reader *self)
 /* A key is swept where the scene has a place for it. */
 static dea_status place_check(const axis_reader *self)
 {
-    const dea_key *key = self->ref.key;
+    const dea_key *key = &self->ref.key;
     dea_reader *reader = self->reader;
     if (reader->scene->study == DEA_STUDY_AC && dea_ref_offset(&self->ref) == offsetof(dea_scene, drive.voltage)) {
         return dea_place_fail(&self->node->key_at, reader->error, self->ref.path,
                               "is not what an AC study varies; accepted: study.ac.bias, by its short name bias");
     }
-    if (dea_key_has_place(key, reader->root)) {
+    if (key->law || dea_key_has_place(key, reader->root)) {
         return DEA_OK;
     }
     if (key->within && !dea_tree_find(reader->root, key->within)) {
@@ -205,7 +205,7 @@ static dea_status place_check(const axis_reader *self)
 static dea_status key_check(const axis_reader *self)
 {
     const dea_material *material = &self->reader->scene->material;
-    if (self->ref.key->words == 0) {
+    if (self->ref.key.words == 0) {
         return dea_place_fail(&self->node->key_at, self->reader->error, self->ref.path,
                               "cannot be swept; accepted: any scalar, e.g. voltage");
     }
@@ -225,8 +225,8 @@ static void axis_describe(const axis_reader *self)
 {
     dea_axis *axis = self->axis;
     snprintf(axis->key, sizeof axis->key, "%s", self->ref.path);
-    snprintf(axis->unit, sizeof axis->unit, "%s", self->ref.key->unit);
-    dea_ref_column(&self->ref, self->ref.key->words, axis->column);
+    snprintf(axis->unit, sizeof axis->unit, "%s", self->ref.key.unit);
+    dea_ref_column(&self->ref, self->ref.key.words, axis->column);
     axis->offset = dea_ref_offset(&self->ref);
     axis->changes_film = strncmp(axis->key, "material.", 9) == 0 || axis->offset == offsetof(dea_scene, actuator.prestretch);
 }
@@ -307,7 +307,7 @@ static void columns_part(dea_scene *scene)
     for (size_t i = 0; i < scene->axis_count; i++) {
         dea_ref ref;
         for (size_t words = 1; words < 6 && column_taken(scene, i) && dea_key_find(scene->axes[i].key, &ref); words++) {
-            dea_ref_column(&ref, ref.key->words + words, scene->axes[i].column);
+            dea_ref_column(&ref, ref.key.words + words, scene->axes[i].column);
         }
     }
 }

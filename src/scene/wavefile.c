@@ -1,201 +1,170 @@
-/* A waveform from a table: two columns, time_s and voltage_V, with commas between. */
+/* A waveform from a table with columns of time and voltage. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/file.h"
 #include "scene/reader.h"
+#include "support/file.h"
+#include "support/table.h"
 
-enum { ROWS_MAX = 1000000, CELL_LENGTH = 128 };
+enum { ROWS_MAX = 1000000 };
+enum { TIME, VOLTAGE, COLUMNS };
 
-#define ACCEPTED "two columns, time_s,voltage_V, of numbers in s and V, with . as decimal point"
+static const char *const time_names[] = {"t", NULL};
+static const char *const voltage_names[] = {"volt", "volts", "u", "v", "potential", NULL};
+static const dea_wanted wanted[COLUMNS] = {
+    [TIME] = {.name = "time", .aliases = time_names, .unit = "s", .assumed = "s", .by_unit = true, .suffixes = true},
+    [VOLTAGE] = {.name = "voltage", .aliases = voltage_names, .unit = "V", .assumed = "V", .by_unit = true, .suffixes = true},
+};
 
-/* The table being read. */
-typedef struct table {
-    dea_reader *reader;
-    const char *path; /* of the key */
-    dea_origin *origin;
-    const char *next, *end; /* the rest of the text */
-    int line;
-    bool numbers; /* a row of numbers is in it: what it holds may be quoted */
-} table;
+/* Neighbouring rows of equal time are a jump; that of a clock too coarse for its rows, where more than this share of the times
+ * stand twice and the voltage rarely rests between them. */
+static const double twice_most = 0.25, resting_least = 0.5;
 
-/* Part of a line, without blanks around it. */
-typedef struct cell {
-    const char *text;
-    size_t length;
-    int column;
-} cell;
-
-typedef struct row {
-    cell cells[2];
-    size_t count; /* of the cells on the line, which can be more than two */
-} row;
-
-static dea_status table_fail(const table *self, int column, const char *what, const cell *culprit, const char *accepted)
+/* Adds a row to the points; times fall nowhere. */
+static dea_status row_add(const dea_table *table, dea_waveform *wave, double time, double voltage)
 {
-    const dea_place place = {.origin = self->origin, .line = self->line, .column = column};
-    char text[CELL_LENGTH] = "";
-    char shown[DEA_TEXT_ROOM] = "";
-    if (culprit && self->numbers) {
-        snprintf(text, sizeof text, "%.*s", (int)(culprit->length < sizeof text ? culprit->length : sizeof text - 1),
-                 culprit->text);
-        dea_text_clip(text, DEA_TEXT_SHOWN, shown, sizeof shown);
+    const size_t count = wave->point_count;
+    if (count == ROWS_MAX) {
+        return dea_table_fail(table, 1, "too many rows; accepted: at most 1000000");
     }
-    return dea_place_fail(&place, self->reader->error, self->path, "%s%s%s%s; accepted: %s", what, shown[0] ? " (" : "", shown,
-                          shown[0] ? ")" : "", accepted);
+    const double step = count > 0 ? time - wave->times[count - 1] : INFINITY;
+    if (step < 0.0) {
+        return dea_table_fail_at(table, TIME, "this time lies before that of the row above:");
+    }
+    if (step > 0.0 && step < DEA_EDGE_MIN) {
+        return dea_table_fail_at(table, TIME, "two times are closer than 1e-12 s:");
+    }
+    wave->times[count] = time;
+    wave->voltages[count] = voltage;
+    wave->point_count++;
+    return DEA_OK;
 }
 
-static cell cell_trim(const char *line, const char *from, const char *to)
+static dea_status rows_read(dea_table *table, dea_waveform *wave)
 {
-    while (from < to && (*from == ' ' || *from == '\t')) {
-        from++;
+    double values[DEA_TABLE_WANTED];
+    bool more = true;
+    wave->point_count = 0;
+    dea_status status = dea_table_row(table, values, &more);
+    while (status == DEA_OK && more) {
+        status = row_add(table, wave, values[TIME], values[VOLTAGE]);
+        status = status ? status : dea_table_row(table, values, &more);
     }
-    while (to > from && (to[-1] == ' ' || to[-1] == '\t' || to[-1] == '\r')) {
-        to--;
-    }
-    return (cell){.text = from, .length = (size_t)(to - from), .column = (int)(from - line) + 1};
+    return status;
 }
 
-/* The next line that is not blank; false at the end. */
-static bool row_next(table *self, row *out)
+/* Rows of one time from point @p first on. */
+static size_t rows_at(const dea_waveform *wave, size_t first)
 {
-    while (self->next < self->end) {
-        const char *line = self->next;
-        const char *stop = memchr(line, '\n', (size_t)(self->end - line));
-        stop = stop ? stop : self->end;
-        self->next = stop < self->end ? stop + 1 : stop;
-        self->line++;
-        if (cell_trim(line, line, stop).length == 0) {
-            continue;
+    size_t count = 1;
+    while (first + count < wave->point_count && wave->times[first + count] == wave->times[first]) {
+        count++;
+    }
+    return count;
+}
+
+/* True where equal times come from a clock that is too coarse. */
+static bool clock_is_coarse(const dea_waveform *wave)
+{
+    size_t times = 0, twice = 0, resting = 0;
+    for (size_t i = 0; i < wave->point_count;) {
+        const size_t rows = rows_at(wave, i);
+        const size_t next = i + rows;
+        times++;
+        twice += rows > 1;
+        resting += next < wave->point_count && wave->voltages[next] == wave->voltages[next - 1];
+        i = next;
+    }
+    return (double)twice > twice_most * (double)times && (double)resting < resting_least * (double)times;
+}
+
+/* Of the rows of one time stay the mean, where the clock is coarse, else the first and the last, which are a jump. */
+static void settle_times(dea_waveform *wave)
+{
+    const bool coarse = clock_is_coarse(wave);
+    size_t kept = 0;
+    for (size_t i = 0; i < wave->point_count;) {
+        const size_t rows = rows_at(wave, i);
+        double sum = 0.0;
+        for (size_t k = 0; k < rows; k++) {
+            sum += wave->voltages[i + k];
         }
-        out->count = 0;
-        for (const char *at = line; at && at <= stop; out->count++) {
-            const char *comma = memchr(at, ',', (size_t)(stop - at));
-            if (out->count < 2) {
-                out->cells[out->count] = cell_trim(line, at, comma ? comma : stop);
-            }
-            at = comma ? comma + 1 : NULL;
+        const double time = wave->times[i], last = wave->voltages[i + rows - 1];
+        wave->voltages[kept] = coarse ? sum / (double)rows : wave->voltages[i];
+        wave->times[kept++] = time;
+        if (!coarse && rows > 1 && last != wave->voltages[kept - 1]) {
+            wave->times[kept] = time;
+            wave->voltages[kept++] = last;
         }
-        return true;
+        i += rows;
     }
-    return false;
+    wave->point_count = kept;
 }
 
-static bool cell_is(const cell *self, const char *word)
+/* A run begins at time 0: what a recorder wrote before its trigger is cut off there. */
+static void cut_before_zero(dea_waveform *wave)
 {
-    return self->length == strlen(word) && memcmp(self->text, word, self->length) == 0;
+    size_t first = 0;
+    while (first < wave->point_count && wave->times[first] < 0.0) {
+        first++;
+    }
+    if (first == 0) {
+        return;
+    }
+    const size_t before = first - 1;
+    if (first == wave->point_count || wave->times[first] > 0.0) {
+        const double span = first < wave->point_count ? wave->times[first] - wave->times[before] : 1.0;
+        const double rise = first < wave->point_count ? wave->voltages[first] - wave->voltages[before] : 0.0;
+        wave->voltages[before] -= rise * wave->times[before] / span;
+        wave->times[before] = 0.0;
+        first = before;
+    }
+    wave->point_count -= first;
+    memmove(wave->times, wave->times + first, wave->point_count * sizeof *wave->times);
+    memmove(wave->voltages, wave->voltages + first, wave->point_count * sizeof *wave->voltages);
 }
 
-/* A row that does not begin with a number is a header, which names the units and so must be right. */
-static dea_status header_check(const table *self, const row *first, bool *header)
-{
-    double number = 0.0;
-    *header = !dea_number_read(self->reader->units, first->cells[0].text, first->cells[0].length, &number);
-    if (!*header || (first->count == 2 && cell_is(&first->cells[0], "time_s") && cell_is(&first->cells[1], "voltage_V"))) {
-        return DEA_OK;
-    }
-    return table_fail(self, first->cells[0].column, "neither a number nor the header", &first->cells[0], ACCEPTED);
-}
-
-static dea_status row_read(const table *self, const row *at, size_t index)
-{
-    dea_waveform *waveform = &self->reader->scene->drive.waveform;
-    double *const numbers[] = {&waveform->times[index], &waveform->voltages[index]};
-    if (at->count != 2) {
-        return table_fail(self, 1, at->count < 2 ? "one column" : "more than two columns", NULL, ACCEPTED);
-    }
-    for (size_t i = 0; i < 2; i++) {
-        if (!dea_number_read(self->reader->units, at->cells[i].text, at->cells[i].length, numbers[i])) {
-            return table_fail(self, at->cells[i].column, "not a number of double precision", &at->cells[i], ACCEPTED);
-        }
-    }
-    const char *fault = dea_points_fault(waveform, index);
-    return fault ? table_fail(self, at->cells[0].column, fault, &at->cells[0], "times >= 0 that increase strictly") : DEA_OK;
-}
-
-/* A line of numbers with something between them, in whatever format. */
-static bool is_of_numbers(const char *line, const char *stop)
-{
-    bool digit = false, apart = false;
-    for (const char *at = line; at < stop; at++) {
-        digit = digit || (*at >= '0' && *at <= '9');
-        apart = apart || (digit && strchr(",; \t", *at));
-        if (!*at || !strchr("0123456789+-.eE,; \t\r", *at)) {
-            return false;
-        }
-    }
-    return apart;
-}
-
-/* Is the file a table at all? What else it may be, a message is no place for. */
-static bool has_numbers(const table *self)
-{
-    const char *stop;
-    for (const char *line = self->next; line < self->end; line = stop + 1) {
-        stop = memchr(line, '\n', (size_t)(self->end - line));
-        stop = stop ? stop : self->end;
-        if (is_of_numbers(line, stop)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static size_t lines_of(const table *self)
+static size_t lines_of(const char *text, size_t length)
 {
     size_t lines = 1;
-    for (const char *at = self->next; (at = memchr(at, '\n', (size_t)(self->end - at))); at++) {
+    for (const char *at = text; (at = memchr(at, '\n', (size_t)(text + length - at))); at++) {
         lines++;
     }
     return lines;
 }
 
-static dea_status rows_read(table *self)
+static dea_status table_read(dea_reader *reader, dea_table *table, const char *text, size_t length)
 {
-    row at;
-    bool header = true;
-    size_t count = 0;
-    const size_t lines = lines_of(self);
-    dea_status status = dea_points_new(self->reader, lines < ROWS_MAX ? lines : ROWS_MAX);
-    for (bool first = true; !status && row_next(self, &at); first = false) {
-        header = false;
-        status = first ? header_check(self, &at, &header) : DEA_OK;
-        if (!status && !header && count == ROWS_MAX) {
-            return table_fail(self, 1, "too many rows", NULL, "at most 1000000");
-        }
-        if (!status && !header) {
-            status = row_read(self, &at, count++);
+    dea_waveform *wave = &reader->scene->drive.waveform;
+    const size_t lines = lines_of(text, length);
+    dea_status status = dea_table_begin(table, text, length);
+    for (size_t i = 0; i < COLUMNS && status == DEA_OK; i++) {
+        if (!table->seen[i]) {
+            status = dea_table_missing(table, i, i == TIME ? "name it e.g. time_s" : "name it e.g. voltage_V");
         }
     }
-    self->reader->scene->drive.waveform.point_count = count;
-    self->line += self->line == 0;
-    return status || count > 0 ? status : table_fail(self, 1, "no row of numbers", NULL, ACCEPTED);
-}
-
-static dea_status table_read(table *self, const char *text, size_t length)
-{
-    int column = 1;
-    if (!dea_tree_text_clean(text, length, &self->line, &column)) {
-        return table_fail(self, column, "not a text: a control character, or bytes that are not UTF-8", NULL, ACCEPTED);
+    status = status ? status : dea_points_new(reader, lines < ROWS_MAX ? lines : ROWS_MAX);
+    status = status ? status : rows_read(table, wave);
+    if (status == DEA_OK && wave->point_count == 0) {
+        status = dea_table_fail(table, 1, "no row of numbers below the header");
     }
-    const size_t mark = length >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
-    self->next = text + mark;
-    self->end = text + length;
-    self->line = 0;
-    self->numbers = has_numbers(self);
-    if (self->numbers) {
-        self->origin->text = text;
-        self->origin->length = length;
+    if (status == DEA_OK) {
+        settle_times(wave);
+        const bool cut = wave->times[0] < 0.0;
+        cut_before_zero(wave);
+        snprintf(wave->columns, sizeof wave->columns, "%.200s%s", table->told, cut ? "; what lies before time 0 is cut off" : "");
     }
-    return rows_read(self);
+    return status;
 }
 
 dea_status dea_read_wave_file(dea_reader *reader, const dea_ref *ref, const dea_node *node)
 {
     char shown[DEA_TEXT_ROOM];
+    char subject[DEA_NAME_LENGTH + 2];
     char *text = NULL;
-    size_t length = 0;
+    size_t length = 0, failed = 1;
     const char *refused = NULL;
     if (node->kind != DEA_NODE_SCALAR || !node->text[0]) {
         return dea_reader_refuse(reader, ref, node, node->kind == DEA_NODE_SCALAR ? "has no value" : "not a file name");
@@ -215,8 +184,24 @@ dea_status dea_read_wave_file(dea_reader *reader, const dea_ref *ref, const dea_
         return dea_place_fail(&node->place, reader->error, ref->path, "cannot read the file %s: %s", dea_reader_show(node, shown),
                               refused);
     }
-    table self = {.reader = reader, .path = ref->path, .origin = origin};
-    const dea_status status = table_read(&self, text, length);
+    snprintf(subject, sizeof subject, "%.*s: ", DEA_NAME_LENGTH - 1, ref->path);
+    dea_table table = {.name = origin->name,
+                       .subject = subject,
+                       .wanted = wanted,
+                       .wanted_count = COLUMNS,
+                       .headless = true,
+                       .guarded = true,
+                       .units = reader->units,
+                       .error = reader->error,
+                       .failed = &failed};
+    const dea_status status = table_read(reader, &table, text, length);
+    if (status == DEA_ERROR_SCENE && reader->error && !table.guarded) {
+        *origin = (dea_origin){.name = origin->name, .folder = origin->folder, .text = text, .length = length};
+        const dea_place place = {.origin = origin, .line = (int)table.line, .column = (int)failed};
+        dea_place_excerpt(&place, reader->error->excerpt, sizeof reader->error->excerpt);
+        origin->text = NULL; /* it ends here */
+    }
+    dea_table_end(&table);
     free(text);
     return status;
 }

@@ -52,8 +52,11 @@ const char *dea_points_fault(const dea_waveform *waveform, size_t index)
         return NULL;
     }
     const double before = waveform->times[index - 1];
-    if (!(time > before)) {
-        return "the times do not increase strictly";
+    if (!(time >= before)) {
+        return "the times decrease";
+    }
+    if (time == before) { /* a jump */
+        return index > 1 && waveform->times[index - 2] == time ? "more than two points of one time" : NULL;
     }
     return time - before >= DEA_EDGE_MIN ? NULL : "two times are closer than 1e-12 s";
 }
@@ -78,8 +81,8 @@ static dea_status times_read(dea_reader *reader, const dea_node *node)
                                  .unit = "s",
                                  .high = INFINITY,
                                  .kinds = DEA_KEY_BOTH,
-                                 .accepted = "times >= 0 that increase strictly, e.g. [[0 s, 0 V], [5 s, 4500 V]]"};
-    const dea_ref ref = {.key = &time, .path = "drive.waveform.points"};
+                                 .accepted = "times >= 0 that do not decrease, two of one time for a jump, e.g. [[0 s, 0 V], [5 s, 4500 V]]"};
+    const dea_ref ref = {.key = time, .path = "drive.waveform.points"};
     const dea_waveform *waveform = &reader->scene->drive.waveform;
     size_t i = 0;
     for (const dea_node *pair = node->first; pair; pair = pair->next, i++) {
@@ -100,7 +103,7 @@ static dea_status voltages_read(dea_reader *reader, const dea_node *node)
                                     .high = INFINITY,
                                     .kinds = DEA_KEY_BOTH,
                                     .accepted = "a voltage, e.g. [[0 s, 0 V], [5 s, 4500 V]]"};
-    const dea_ref ref = {.key = &voltage, .path = "drive.waveform.points"};
+    const dea_ref ref = {.key = voltage, .path = "drive.waveform.points"};
     double *next = reader->scene->drive.waveform.voltages;
     dea_status status = DEA_OK;
     for (const dea_node *pair = node->first; pair && !status; pair = pair->next) {

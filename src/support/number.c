@@ -8,7 +8,7 @@
 const char *dea_number_text(char text[DEA_NUMBER_LENGTH], double value, int digits)
 {
     const struct lconv *convention = localeconv();
-    snprintf(text, DEA_NUMBER_LENGTH, "%.*g", digits, value);
+    snprintf(text, DEA_NUMBER_LENGTH, "%.*g", digits, value + 0.0); /* -0 + 0 is 0 */
     char *point = strstr(text, convention->decimal_point);
     if (point && strcmp(convention->decimal_point, ".") != 0) {
         const size_t length = strlen(convention->decimal_point);

@@ -88,7 +88,7 @@ char *draw_stall(uint64_t seed, size_t number);
 
 /* ---- judging (judge.c) */
 
-enum { MOST_REASONS = 48, REASON_LENGTH = 160, ACCURACIES = 4, STUDIES = 3, MOST_ENGINES = 4 };
+enum { MOST_REASONS = 48, REASON_LENGTH = 320, ACCURACIES = 4, STUDIES = 3, MOST_ENGINES = 4 };
 
 /* How often something was said. */
 typedef struct reason {

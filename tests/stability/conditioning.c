@@ -138,7 +138,7 @@ static int put_port(matrix *m, const dea_dynamics *d, const place *at, int film,
 /* The network as mobility.c writes it, each element as the trapezoidal rule makes it: C -> 2 C/h, L -> 2 L/h. */
 static void assemble(matrix *m, dea_dynamics *d, const place *at)
 {
-    const double stiffness = at->edge.stress_slope, step = at->step;
+    const double stiffness = at->edge.stress_slope[0], step = at->step;
     const int film = 0, edge = 1, spring = 2;
     *m = (matrix){.n = 3};
     if (d->mass > 0.0) {

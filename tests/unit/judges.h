@@ -189,10 +189,13 @@ static inline dea_row judge_membrane(const dea_scene *scene)
     return row;
 }
 
-/* Eq. 18 in the strain e of the active film, in long double: sigma_A - sigma_P and the load m (1 + e)^4. */
+/* Eq. 18 in the strain e of the active film, in long double: sigma_A - sigma_P and the load m (1 + e)^4. Or the model `ring` in
+ * the size e of the disc's strain. */
 typedef struct judged_balance {
     double yeoh[DEA_YEOH_TERMS];
     long double prestretch, ratio, load;
+    bool ring, dot;
+    long double coverage;
 } judged_balance;
 
 static inline long double plain_cauchy(const double *yeoh, long double l)
@@ -212,12 +215,47 @@ static inline judged_balance judged_balance_of(const dea_scene *scene, bool cons
     return (judged_balance){{film.yeoh[0], film.yeoh[1], film.yeoh[2]},
                             scene->actuator.prestretch,
                             constant_force ? 0.0L : ratio,
-                            film.permittivity * y * y * nominal * nominal};
+                            film.permittivity * y * y * nominal * nominal,
+                            false,
+                            scene->actuator.kind == DEA_DOT,
+                            b};
+}
+
+/* The same for the model `ring`: its strain ends where the annulus of a dot has no width, or the disc of a lens none. */
+static inline judged_balance judged_ring_of(const dea_scene *scene)
+{
+    judged_balance balance = judged_balance_of(scene, false);
+    balance.ring = true;
+    balance.ratio = balance.dot ? balance.coverage / (1.0L - balance.coverage) : 1.0L;
+    return balance;
+}
+
+/* Nominal stress along l1, nothing factored. */
+static inline long double plain_nominal(const double *yeoh, long double l1, long double l2)
+{
+    const long double v = 1.0L / (l1 * l1 * l2 * l2);
+    const long double j = l1 * l1 + l2 * l2 + v - 3.0L;
+    return 2.0L * (l1 - v / l1) * (yeoh[0] + 2.0L * yeoh[1] * j + 3.0L * yeoh[2] * j * j);
+}
+
+/* 2 A P_disc - (F + A) P_radial + (F - A) P_hoop over 2 A, against the load eps (U/H)^2 lambda_pre^3 (1 + s) times the area
+ * stretch, with radii in units of that of the frame. */
+static inline long double judged_ring_share(const judged_balance *b, long double e)
+{
+    const long double edge = b->coverage * (b->dot ? 1.0L + e : 1.0L - e), l0 = b->prestretch, r = b->coverage;
+    const long double disc = l0 * edge / r, radial = l0 * (1.0L - edge) / (1.0L - r), hoop = l0 * (1.0L + edge) / (1.0L + r);
+    const long double held = plain_nominal(b->yeoh, disc, disc) - (1.0L + r) / (2.0L * r) * plain_nominal(b->yeoh, radial, hoop) +
+                             (1.0L - r) / (2.0L * r) * plain_nominal(b->yeoh, hoop, radial);
+    const long double area = (b->dot ? disc * disc : radial * hoop) / (l0 * l0);
+    return (b->dot ? held : -held) / (b->load / l0 * edge / r * area);
 }
 
 /* Share of the load that holds the strain e: it grows from rest to the first fold. */
 static inline long double judged_share(const judged_balance *b, long double e)
 {
+    if (b->ring) {
+        return judged_ring_share(b, e);
+    }
     const long double s = 1.0L + e;
     const long double active = plain_cauchy(b->yeoh, b->prestretch * s);
     return (active - plain_cauchy(b->yeoh, b->prestretch * (1.0L - b->ratio * e))) / (b->load * s * s * s * s);

@@ -451,7 +451,7 @@ static void the_csv_has_a_row_a_setting_and_empty_fields_where_there_is_no_numbe
     const int file = mkstemp(path);
     assert_true(file >= 0);
     close(file);
-    assert_int_equal(dea_bench_output_open(path, NULL, &output, NULL), DEA_OK);
+    assert_int_equal(dea_bench_output_open(path, NULL, NULL, &output, NULL), DEA_OK);
     assert_int_equal(dea_bench_output_finish(output, &bench, NULL), DEA_OK);
     read_text(path, text);
     unlink(path);
@@ -484,7 +484,7 @@ static void the_diagram_names_engines_models_and_accuracies(void **state)
     assert_true(file >= 0);
     close(file);
     dea_bench_output *output;
-    if (dea_bench_output_open(NULL, path, &output, &error) != DEA_OK ||
+    if (dea_bench_output_open(NULL, path, NULL, &output, &error) != DEA_OK ||
         dea_bench_output_finish(output, &bench, &error) != DEA_OK) {
         fail_msg("%s", error.message);
     }
@@ -500,8 +500,8 @@ static void the_diagram_names_engines_models_and_accuracies(void **state)
             fail_msg("the picture has no \"%s\"", words[i]);
         }
     }
-    assert_int_equal(dea_bench_output_open(NULL, "/tmp/bench.pdf", &output, &error), DEA_ERROR_USAGE);
-    assert_int_equal(dea_bench_output_open("/nowhere/bench.csv", NULL, &output, &error), DEA_ERROR_IO);
+    assert_int_equal(dea_bench_output_open(NULL, "/tmp/bench.jpg", NULL, &output, &error), DEA_ERROR_USAGE);
+    assert_int_equal(dea_bench_output_open("/nowhere/bench.csv", NULL, NULL, &output, &error), DEA_ERROR_IO);
     assert_int_equal(dea_bench_output_finish(NULL, &bench, &error), DEA_OK);
     dea_bench_free(&bench);
     dea_scene_free(&scene);
@@ -538,7 +538,7 @@ static void the_program_prints_a_table_or_writes_csv(void **state)
     assert_memory_equal(output, "model,engine,", 13);
     assert_int_equal(run_program("--budget 0", output), 2);
     assert_int_equal(run_program("--runs 0", output), 2);
-    assert_int_equal(run_program("--plot x.pdf", output), 2);
+    assert_int_equal(run_program("--plot x.jpg", output), 2);
 }
 
 int main(void)

@@ -113,7 +113,7 @@ static void check_measures_the_model_that_auto_chose(void **state)
         "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1}\n"
         "material: {base: elastosil-2030, density: 1080 kg/m^3}\n"
         "drive: {waveform: {step: {on: 1 ms, voltage: 3 kV, rise: 1 us}}}\n"
-        "model: auto\naccuracy: 0.1\n"
+        "model: auto\nmodel_error: 5 %\naccuracy: 0.1\n"
         "study: {transient: {until: 50 ms, every: 0.1 ms}}\n";
     file_write("swing.yaml", scene, strlen(scene));
     RUN("check", "swing.yaml");

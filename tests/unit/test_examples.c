@@ -449,6 +449,38 @@ static int leave(void **state)
     return rmdir(folder);
 }
 
+/* README's scenes as a reader types them in: every block of YAML that has an actuator. */
+static void scenes_of_the_readme_run_as_written(void **state)
+{
+    static char text[1 << 16];
+    size_t scenes = 0;
+    (void)state;
+    FILE *file = fopen("README.md", "r");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    assert_int_equal(fclose(file), 0);
+    for (char *block = strstr(text, "```yaml\n"); block; block = strstr(block, "```yaml\n")) {
+        block += strlen("```yaml\n");
+        char *end = strstr(block, "```");
+        assert_non_null(end);
+        *end = '\0';
+        if (strncmp(block, "actuator:", 9) == 0 || strstr(block, "\nactuator:")) {
+            char path[PATH_LENGTH], words[2 * PATH_LENGTH];
+            snprintf(path, sizeof path, "%s/readme.yaml", folder);
+            file = fopen(path, "w");
+            assert_non_null(file);
+            assert_true(fputs(block, file) >= 0);
+            assert_int_equal(fclose(file), 0);
+            snprintf(words, sizeof words, "run --no-files %s", path);
+            run_program(words);
+            assert_int_equal(unlink(path), 0);
+            scenes++;
+        }
+        block = end + 1;
+    }
+    assert_true(scenes > 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -463,6 +495,7 @@ int main(void)
         cmocka_unit_test(vhb_follows_the_closed_form_of_a_neo_hookean),
         cmocka_unit_test(sample_data_gives_back_the_constants_it_was_made_from),
         cmocka_unit_test(every_example_opens_with_a_command_that_works),
+        cmocka_unit_test(scenes_of_the_readme_run_as_written),
     };
     return cmocka_run_group_tests(tests, enter, leave);
 }

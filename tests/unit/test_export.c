@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "netlist/export.h"
+#include "netlist/part.h"
 
 enum { RANDOM_SCENES = 50, RANDOM_SWEEPS = 40, PATH_ROOM = 512, MOST_VECTORS = 96, SECONDS = 120 };
 
@@ -828,16 +829,50 @@ static void film_without_memory_follows_the_voltage_in_both_analogies(void **sta
     }
 }
 
+static bool holds_line(const char *path, const char *wanted)
+{
+    char line[512];
+    bool held = false;
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file)) {
+        held = held || strcmp(line, wanted) == 0;
+    }
+    fclose(file);
+    return held;
+}
+
+/* After the file, the scene where that is a stream, or what the user says. */
+static void a_part_has_the_name_of_its_file(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path, *name;
+    } known[] = {{"a/soft.lib", "soft"}, {"2 ply.v1.lib", "dea_2_ply"}, {"-", NULL}, {"a/.lib", NULL}, {"./.hidden", NULL},
+                 {"_a-b", "dea__a_b"}, {"a234567890123456789012345678901234567890.lib", "a2345678901234567890123456789012"}};
+    char name[DEA_PART_NAME_LENGTH + 1], part[PATH_ROOM];
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        assert_int_equal(dea_part_name_after(known[i].path, name), known[i].name != NULL);
+        assert_true(!known[i].name || (strcmp(name, known[i].name) == 0 && dea_part_name_valid(name)));
+    }
+    path_to("hard-one.lib", part);
+    assert_int_equal(PROGRAM("--as", "subckt", "-o", part, "tests/cases/part_soft.yaml"), 0);
+    assert_true(holds_line(part, ".subckt hard_one p n edge\n") && holds_line(part, ".ends hard_one_lever\n"));
+    assert_int_equal(PROGRAM("--as", "subckt", "--name", "soft", "-o", part, "tests/cases/part_soft.yaml"), 0);
+    assert_true(holds_line(part, ".subckt soft p n edge\n"));
+    unlink(part);
+}
+
 /* Two scenes of different material as parts of one circuit. */
-static void named_parts_keep_their_material_in_one_circuit(void **state)
+static void two_parts_keep_their_material_in_one_circuit(void **state)
 {
     (void)state;
     char first[PATH_ROOM], second[PATH_ROOM], command[4 * PATH_ROOM], line[256];
     double silicone = 0.0, soft = 0.0;
     path_to("part_silicone.lib", first);
     path_to("part_soft.lib", second);
-    assert_int_equal(PROGRAM("--as", "subckt", "--name", "silicone", "-o", first, "tests/cases/part_silicone.yaml"), 0);
-    assert_int_equal(PROGRAM("--as", "subckt", "--name", "soft", "-o", second, "tests/cases/part_soft.yaml"), 0);
+    assert_int_equal(PROGRAM("--as", "subckt", "-o", first, "tests/cases/part_silicone.yaml"), 0);
+    assert_int_equal(PROGRAM("--as", "subckt", "-o", second, "tests/cases/part_soft.yaml"), 0);
     snprintf(command, sizeof command, "cp tests/cases/two_parts.cir '%s/circuit.cir' && cd '%s' && ngspice -b circuit.cir 2>&1", folder,
              folder);
     FILE *heard = popen(command, "r");
@@ -894,7 +929,8 @@ int main(void)
         cmocka_unit_test(netlists_keep_to_the_rules_of_their_dialect),
         cmocka_unit_test(film_without_memory_follows_the_voltage_in_both_analogies),
         cmocka_unit_test(program_writes_whole_files_or_none),
-        cmocka_unit_test(named_parts_keep_their_material_in_one_circuit),
+        cmocka_unit_test(a_part_has_the_name_of_its_file),
+        cmocka_unit_test(two_parts_keep_their_material_in_one_circuit),
         cmocka_unit_test(transients_for_xyce_step_by_tmax_alone),
     };
     if (!mkdtemp(folder)) {

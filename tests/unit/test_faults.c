@@ -361,6 +361,8 @@ static const command run_netcdf = {.words = {"run", "sweep.yaml", "--engine", "d
 static const command run_raw = {.words = {"run", "sweep.yaml", "--engine", "direct", "-j", "1", "-o", "out/a.raw"}, .targets = {"out/a.raw"}};
 static const command run_plot = {
     .words = {"run", "sweep.yaml", "--engine", "direct", "-j", "1", "-o", "out/a.csv", "--plot", "out/a.svg"}, .targets = {"out/a.csv", "out/a.svg"}};
+static const command run_script = {
+    .words = {"run", "sweep.yaml", "--engine", "direct", "-j", "1", "--plot", "out/a.gp", "--size", "8.5x6cm"}, .targets = {"out/a.gp"}};
 static const command run_ngspice = {.words = {"run", "sweep.yaml", "--engine", "ngspice", "-j", "1", "-o", "out/a.csv"}, .targets = {"out/a.csv"}, .accuracy = 1e-6};
 static const command step_direct = {.words = {"run", "step.yaml", "--engine", "direct", "-j", "1", "-o", "out/a.csv"}, .targets = {"out/a.csv"}};
 static const command step_ida = {
@@ -394,6 +396,7 @@ WALK(run_csv)
 WALK(run_netcdf)
 WALK(run_raw)
 WALK(run_plot)
+WALK(run_script)
 WALK(run_ngspice)
 WALK(step_direct)
 WALK(step_ida)
@@ -452,7 +455,7 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(walk_run_csv),     cmocka_unit_test(walk_run_netcdf),   cmocka_unit_test(walk_run_raw),
-        cmocka_unit_test(walk_run_plot),    cmocka_unit_test(walk_run_ngspice),  cmocka_unit_test(walk_step_direct),
+        cmocka_unit_test(walk_run_plot),    cmocka_unit_test(walk_run_ngspice),  cmocka_unit_test(walk_run_script),  cmocka_unit_test(walk_step_direct),
         cmocka_unit_test(walk_step_ida),    cmocka_unit_test(walk_step_ngspice), cmocka_unit_test(walk_resume),
         cmocka_unit_test(walk_merge),       cmocka_unit_test(walk_check),        cmocka_unit_test(walk_bench),
         cmocka_unit_test(walk_netlist),     cmocka_unit_test(walk_part),         cmocka_unit_test(walk_fit),

@@ -341,8 +341,61 @@ static void peak_current_is_that_between_the_samples(void **state)
         const dea_summary sine = summary_by(&scene, engines[e]);
         assert_relative(sine.peak_current, 30.0 * omega * c / sqrt(1.0 + turn * turn), 2e-5);
     }
-    scene.drive.series_resistance = (double)NAN; /* nothing limits it */
+    scene.drive.series_resistance = (double)NAN; /* a sine jumps nowhere: U sqrt((w C)^2 + G^2) */
+    scene.drive.leakage_resistance = 1e6;
+    for (size_t e = 0; e < ENGINES; e++) {
+        const dea_summary sine = summary_by(&scene, engines[e]);
+        assert_relative(sine.peak_current, 30.0 * hypot(omega * c, 1e-6), 2e-5);
+    }
+    scene.drive.leakage_resistance = (double)NAN; /* no port */
     assert_true(isnan(summary_by(&scene, "ida").peak_current));
+}
+
+/* Where the voltage jumps nothing limits the current, and of a film that runs without its mass it is not known. */
+static void peak_current_that_is_not_known_is_not_told(void **state)
+{
+    (void)state;
+    for (size_t e = 0; e < ENGINES; e++) {
+        dea_scene scene = moving_scene("lumped", (dea_step){1e-3, (double)NAN, 3000.0, 0.0}, 0.01, 3.3e-4);
+        scene.material.density = 1080.0;
+        scene.material.retardation = 1e-4;
+        scene.drive.leakage_resistance = 1e9;
+        scene.full = true;
+        assert_true(isnan(summary_by(&scene, engines[e]).peak_current));
+        scene.drive.waveform.step.rise = 1e-4;
+        assert_true(summary_by(&scene, engines[e]).peak_current > 0.0);
+        scene.reduction.mass = true;
+        assert_true(isnan(summary_by(&scene, engines[e]).peak_current));
+    }
+}
+
+/* A film that swings on the source itself, through corners and with a branch: the closed form and both networks see one peak. */
+static void peak_current_of_a_swinging_film_is_that_of_its_closed_form(void **state)
+{
+    (void)state;
+    double times[] = {0.0, 1e-3, 1.1e-3, 2e-3, 2.05e-3, 0.01}, volts[] = {0.0, 0.0, 4000.0, 4000.0, -3000.0, -2000.0};
+    for (int i = 0; i < 3; i++) {
+        dea_scene scene = moving_scene("lumped", (dea_step){0.0, (double)NAN, 4000.0, 0.0}, 0.01, 3.3e-4);
+        scene.drive.waveform = (dea_waveform){
+            .kind = DEA_WAVE_POINTS, .point_count = 6, .times = times, .voltages = volts, .period = (double)NAN};
+        if (i == 2) {
+            scene.drive.waveform = (dea_waveform){
+                .kind = DEA_WAVE_SINE, .sine = {.amplitude = 3000.0, .frequency = 440.0}, .period = (double)NAN};
+        }
+        scene.material.density = 1080.0;
+        scene.material.retardation = i == 0 ? 5e-5 : (double)NAN;
+        scene.material.prony_count = 1;
+        scene.material.prony[0] = (dea_prony){.g = 0.2, .tau = 2e-3};
+        scene.drive.leakage_resistance = 1e8;
+        scene.accuracy = 1e-6;
+        scene.full = true;
+        const dea_summary wanted = summary_by(&scene, "direct");
+        for (size_t e = 1; e < ENGINES; e++) {
+            const dea_summary got = summary_by(&scene, engines[e]);
+            assert_relative(got.peak_current, wanted.peak_current, 1e-5);
+            assert_near(got.peak_time, wanted.peak_time, 1e-6);
+        }
+    }
 }
 
 /* A film that swings behind its resistance: both engines see the same peak. */
@@ -426,6 +479,8 @@ int main(void)
         cmocka_unit_test(every_engine_names_the_same_swing),
         cmocka_unit_test(peak_current_is_that_between_the_samples),
         cmocka_unit_test(peak_current_of_a_moving_film_is_that_of_either_engine),
+        cmocka_unit_test(peak_current_that_is_not_known_is_not_told),
+        cmocka_unit_test(peak_current_of_a_swinging_film_is_that_of_its_closed_form),
         cmocka_unit_test(resonance_and_bandwidth_are_right_between_frequencies),
         cmocka_unit_test(responses_without_a_peak_name_none),
     };

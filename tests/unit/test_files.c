@@ -231,7 +231,7 @@ static void what_killed_runs_left_goes_with_the_next_one(void **state)
 static void a_limit_of_file_size_is_told(void **state)
 {
     char command[CHILD_TEXT];
-    static const char *const targets[] = {"-o big.csv", "-o big.nc", "-o big.raw", "--plot big.svg"};
+    static const char *const targets[] = {"-o big.csv", "-o big.nc", "-o big.raw", "--plot big.svg", "--plot big.pdf", "--plot big.gp"};
     (void)state;
     inputs_write();
     for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
@@ -297,13 +297,13 @@ static void a_picture_with_a_hole_is_none(void **state)
     RUN("run", "sweep.yaml", "--plot", "res.png");
     assert_status(0);
     char *svg = file_read("res.svg", &sizes[0]), *png = file_read("res.png", &sizes[1]);
-    assert_true(dea_image_svg_whole(svg, sizes[0]) && dea_image_png_whole((unsigned char *)png, sizes[1]));
+    assert_true(dea_image_svg_whole(svg, sizes[0]) && dea_image_png_whole(png, sizes[1]));
     for (size_t length = 0; length < sizes[1]; length += 97) {
-        assert_false(dea_image_png_whole((unsigned char *)png, length));
+        assert_false(dea_image_png_whole(png, length));
     }
     for (size_t at = 0; at + PIECE < sizes[1]; at += PIECE, holes++) {
         png[at + 7] ^= 1;
-        assert_false(dea_image_png_whole((unsigned char *)png, sizes[1]));
+        assert_false(dea_image_png_whole(png, sizes[1]));
         png[at + 7] ^= 1;
     }
     for (size_t length = 0; length + 7 < sizes[0]; length += 97) {
@@ -322,8 +322,11 @@ static void a_picture_that_lost_a_line_is_refused(void **state)
 {
     static const char lossy[] = "#!/bin/sh\n"
                                 "PATH=${PATH#*:} gnuplot \"$@\" >drawn || exit\n"
-                                "if test -e once; then cat drawn; else touch once; sed \"$LOST\" drawn; fi\n";
-    static const char *const lost[] = {"/gridline/d", "100d", "$d", "3d"};
+                                "if test -e once; then cat drawn; else touch once; LC_ALL=C sed \"$LOST\" drawn; fi\n";
+    static const struct {
+        const char *name, *lost;
+    } cases[] = {{"res.svg", "/gridline/d"}, {"res.svg", "100d"}, {"res.svg", "$d"}, {"res.svg", "3d"}, {"res.eps", "100d"},
+                 {"res.eps", "$d"},          {"res.pdf", "2d"},   {"res.pdf", "$d"}, {"res.pdf", "8d"}};
     char path[4096];
     (void)state;
     inputs_write();
@@ -335,19 +338,48 @@ static void a_picture_that_lost_a_line_is_refused(void **state)
     char *kept = strdup(before);
     assert_non_null(kept);
     setenv("PATH", path, 1);
-    for (size_t i = 0; i < sizeof lost / sizeof *lost; i++) {
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         unlink("once");
-        unlink("res.svg");
-        setenv("LOST", lost[i], 1);
-        RUN("run", "sweep.yaml", "--engine", "direct", "--plot", "res.svg");
+        unlink(cases[i].name);
+        setenv("LOST", cases[i].lost, 1);
+        RUN("run", "sweep.yaml", "--engine", "direct", "--plot", cases[i].name);
         assert_status(1);
         assert_says("whole picture");
-        assert_false(file_exists("res.svg"));
+        assert_false(file_exists(cases[i].name));
     }
-    RUN("run", "sweep.yaml", "--engine", "direct", "--plot", "res.svg");
+    static const char *const whole[] = {"res.svg", "res.eps", "res.pdf"};
+    for (size_t i = 0; i < 3; i++) {
+        RUN("run", "sweep.yaml", "--engine", "direct", "--plot", whole[i]);
+        assert_status(0);
+    }
     setenv("PATH", kept, 1);
     free(kept);
+}
+
+/* What a PDF lacks moves what lies behind it away from where its table of objects says. */
+static void a_pdf_with_a_hole_is_none(void **state)
+{
+    size_t size, holes = 0;
+    (void)state;
+    inputs_write();
+    RUN("run", "sweep.yaml", "--plot", "res.pdf");
     assert_status(0);
+    char *whole = file_read("res.pdf", &size), *text = calloc(1, size + 1);
+    assert_non_null(text);
+    memcpy(text, whole, size);
+    assert_true(dea_image_pdf_whole(text, size));
+    for (size_t at = 0; at + 100 < size; at += 997, holes++) {
+        memcpy(text, whole, at);
+        memcpy(text + at, whole + at + 100, size - at - 100);
+        text[size - 100] = '\0';
+        assert_false(dea_image_pdf_whole(text, size - 100));
+        memcpy(text, whole, at);
+        text[at] = '\0';
+        assert_false(dea_image_pdf_whole(text, at));
+    }
+    assert_true(holes > 5);
+    free(whole);
+    free(text);
 }
 
 int main(void)
@@ -364,6 +396,7 @@ int main(void)
         cmocka_unit_test(a_title_never_breaks_the_picture),
         cmocka_unit_test(a_picture_with_a_hole_is_none),
         cmocka_unit_test(a_picture_that_lost_a_line_is_refused),
+        cmocka_unit_test(a_pdf_with_a_hole_is_none),
     };
     return cmocka_run_group_tests_name("files", tests, child_enter, child_leave);
 }

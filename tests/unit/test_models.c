@@ -2,9 +2,9 @@
  * another way. */
 #include "judges.h"
 
-static const char *const all_models[] = {"pelrine", "constant_force", "lumped", "coverage", "lame", "field"};
-static const char *const lens_models[] = {"lumped", "coverage", "lame", "field"};
-enum { ALL_MODELS = 6, LENS_MODELS = 4 };
+static const char *const all_models[] = {"pelrine", "constant_force", "lumped", "coverage", "lame", "ring", "field"};
+static const char *const lens_models[] = {"lumped", "coverage", "lame", "ring", "field"};
+enum { ALL_MODELS = 7, LENS_MODELS = 5 };
 
 static double paper_strain(const char *model, dea_kind kind, double prestretch, double coverage, double voltage)
 {
@@ -34,6 +34,26 @@ static void strains_at_4500_volts_to_all_printed_digits(void **state)
         assert_printed(paper_strain("field", DEA_DOT, l, b, 4500.0), table[i].field, 8);
         assert_printed(paper_strain("coverage", DEA_LENS, l, b, 4500.0), table[i].lens_eq18, 8);
         assert_printed(paper_strain("field", DEA_LENS, l, b, 4500.0), table[i].lens_field, 8);
+    }
+}
+
+/* Relative error of the strain against the exact membrane: physics.md, section 7, and the bound over all films of the paper. */
+static void rings_lie_next_to_the_membrane(void **state)
+{
+    (void)state;
+    static const double printed[][3] = {{1.1, 0.1, 2e-5}, {1.2, 0.5, 6e-5}, {1.3, 0.75, 5e-5}};
+    for (size_t i = 0; i < 3; i++) {
+        const double field = paper_strain("field", DEA_DOT, printed[i][0], printed[i][1], 4500.0);
+        const double error = paper_strain("ring", DEA_DOT, printed[i][0], printed[i][1], 4500.0) / field - 1.0;
+        assert_printed(1e5 * error, 1e5 * printed[i][2], 0);
+    }
+    for (int kind = DEA_DOT; kind <= DEA_LENS; kind++) {
+        for (double l = 1.1; l < 1.35; l += 0.1) {
+            for (double b = 0.1; b < 0.95; b += 0.1) {
+                const double field = paper_strain("field", (dea_kind)kind, l, b, 4500.0);
+                assert_relative(paper_strain("ring", (dea_kind)kind, l, b, 4500.0), field, fmax(2e-4, 0.08 * field * field));
+            }
+        }
     }
 }
 
@@ -98,6 +118,7 @@ static void plane_elastic_displacement_peaks_at_one_over_root_three(void **state
 {
     (void)state;
     assert_near(best_coverage("lame", 1.2, 1.0), 1.0 / sqrt(3.0), 1e-6);
+    assert_near(best_coverage("ring", 1.2, 1.0), 1.0 / sqrt(3.0), 1e-6);
     assert_near(best_coverage("field", 1.2, 1.0), 1.0 / sqrt(3.0), 1e-6);
 }
 
@@ -185,8 +206,8 @@ static void plane_elasticity_approaches_the_field_with_second_order(void **state
 static void lens_is_the_opposite_of_a_dot_at_small_voltage(void **state)
 {
     (void)state;
-    static const char *const models[] = {"lame", "field"};
-    for (size_t i = 0; i < 2; i++) {
+    static const char *const models[] = {"lame", "ring", "field"};
+    for (size_t i = 0; i < 3; i++) {
         for (double b = 0.1; b < 0.95; b += 0.2) {
             double sum[2];
             for (int k = 0; k < 2; k++) {
@@ -227,8 +248,8 @@ static double capacitance_slope(const dea_scene *scene, double u)
 static void force_of_a_dot_is_the_slope_of_its_electric_energy(void **state)
 {
     (void)state;
-    static const char *const models[] = {"constant_force", "coverage", "field"};
-    for (size_t i = 0; i < 3; i++) {
+    static const char *const models[] = {"constant_force", "coverage", "ring", "field"};
+    for (size_t i = 0; i < 4; i++) {
         for (double b = 0.1; b < 0.95; b += 0.2) {
             dea_scene scene = paper_scene(DEA_DOT, 1.2, b, 4500.0);
             scene.material.permittivity_per_stretch = -0.28;
@@ -325,13 +346,15 @@ static void tiny_voltages_keep_twelve_digits(void **state)
 static void true_field_follows_the_thinner_film(void **state)
 {
     (void)state;
-    static const char *const models[] = {"pelrine", "constant_force", "lumped", "coverage", "lame"};
-    for (size_t i = 0; i < 5; i++) {
+    static const char *const models[] = {"pelrine", "constant_force", "lumped", "coverage", "lame", "ring"};
+    for (size_t i = 0; i < 6; i++) {
         const dea_row row = solve_paper(models[i], DEA_DOT, 1.2, 0.4, 4500.0);
         assert_relative(row.field, 45e6 * pow(1.2 * (1.0 + row.strain), 2.0), 1e-13);
     }
     const dea_row lens = solve_paper("coverage", DEA_LENS, 1.2, 0.4, 4500.0);
     assert_relative(lens.field, 45e6 * pow(1.2 * (1.0 - 0.4 * (1.0 + lens.strain)) / 0.6, 2.0), 1e-13);
+    const dea_row ring = solve_paper("ring", DEA_LENS, 1.2, 0.4, 4500.0); /* the true area of the annulus */
+    assert_relative(ring.field, 45e6 * 1.44 * (1.0 - 0.16 * pow(1.0 + ring.strain, 2.0)) / 0.84, 1e-13);
 }
 
 static void breakdown_is_named_above_its_field_and_keeps_the_numbers(void **state)
@@ -393,17 +416,39 @@ static void film_without_pre_stretch_is_slack(void **state)
     }
 }
 
-/* At the limit that a dot of the exact membrane meets first, the disc's nominal stress w a1 - M lambda_A^3 is 0. */
-static void disc_of_the_field_is_slack_where_its_stress_vanishes(void **state)
+/* At the limit that a dot of a membrane meets first, the disc's nominal stress w a1 - M lambda_A^3 is 0. */
+static void disc_of_a_membrane_is_slack_where_its_stress_vanishes(void **state)
 {
     (void)state;
-    dea_scene scene = paper_scene(DEA_DOT, 1.1, 0.8, 0.0);
-    dea_state beyond = DEA_STATE_OK;
-    const double voltage = last_fine_voltage("field", &scene, &beyond);
-    assert_int_equal(beyond, DEA_STATE_SLACK);
-    const double l = 1.1 * (1.0 + solve_direct(&scene, "field").strain);
-    const double maxwell = 2.8 * DEA_EPSILON_0 * pow(voltage / 1e-4, 2.0) * l * l * l;
-    assert_relative(dea_law_stress(scene.material.law, scene.material.constants, l, l).p1, maxwell, 1e-6);
+    static const char *const models[] = {"ring", "field"};
+    for (size_t i = 0; i < 2; i++) {
+        dea_scene scene = paper_scene(DEA_DOT, 1.1, 0.8, 0.0);
+        dea_state beyond = DEA_STATE_OK;
+        const double voltage = last_fine_voltage(models[i], &scene, &beyond);
+        assert_int_equal(beyond, DEA_STATE_SLACK);
+        const double l = 1.1 * (1.0 + solve_direct(&scene, models[i]).strain);
+        const double maxwell = 2.8 * DEA_EPSILON_0 * pow(voltage / 1e-4, 2.0) * l * l * l;
+        assert_relative(dea_law_stress(scene.material.law, scene.material.constants, l, l).p1, maxwell, 1e-6);
+    }
+}
+
+/* Where a lens loses its tension one of the two stresses of its annulus under voltage, or that of its disc, is 0. */
+static void lens_of_rings_is_slack_where_a_stress_vanishes(void **state)
+{
+    (void)state;
+    for (double b = 0.2; b < 0.9; b += 0.15) {
+        dea_scene scene = paper_scene(DEA_LENS, 1.15, b, 0.0);
+        dea_state beyond = DEA_STATE_OK;
+        const double voltage = last_fine_voltage("ring", &scene, &beyond);
+        assert_int_equal(beyond, DEA_STATE_SLACK);
+        const double s = solve_direct(&scene, "ring").strain;
+        const double disc = 1.15 * (1.0 + s), l1 = 1.15 * (1.0 - b * (1.0 + s)) / (1.0 - b);
+        const double l2 = 1.15 * (1.0 + b * (1.0 + s)) / (1.0 + b);
+        const double maxwell = 2.8 * DEA_EPSILON_0 * pow(voltage / 1e-4, 2.0) * l1 * l1 * l2 * l2;
+        const dea_stress annulus = dea_law_stress(scene.material.law, scene.material.constants, l1, l2);
+        const double least = fmin(annulus.p1 - maxwell / l1, annulus.p2 - maxwell / l2);
+        assert_near(fmin(least, dea_law_stress(scene.material.law, scene.material.constants, disc, disc).p1), 0.0, 1e-6 * annulus.p1);
+    }
 }
 
 static void pull_in_stays_pull_in_at_any_higher_voltage(void **state)
@@ -461,32 +506,38 @@ static void lame_keeps_its_digits_before_pull_in(void **state)
 
 /* A material that softens and stiffens again has equilibria behind its fold; a film driven from rest never gets there smoothly.
  */
-static void equilibrium_behind_a_fold_is_pull_in(void **state)
+static void judge_folds(bool ring)
 {
-    (void)state;
     int snapped = 0;
     int taken = 0;
     for (double l = 1.0; l < 2.05; l += 0.1) {
         for (double b = 0.05; b < 0.96; b += 0.1) {
             for (double voltage = 500.0; voltage < 20000.0; voltage *= 1.15) {
                 const dea_scene scene = soft_scene(voltage > 3000.0 ? DEA_DOT : DEA_LENS, l, b, voltage);
-                const judged_balance balance = judged_balance_of(&scene, false);
+                const judged_balance balance = ring ? judged_ring_of(&scene) : judged_balance_of(&scene, false);
                 const judgement found = judge_balance(&balance, 10000);
                 if (fabs(found.fold - 1.0) < 1e-5) {
                     continue; /* too near the fold for the scan */
                 }
-                const dea_row row = solve_direct(&scene, "coverage");
+                const dea_row row = solve_direct(&scene, ring ? "ring" : "coverage");
                 assert_true((row.state == DEA_STATE_PULL_IN) == (bool)isnan(found.strain));
                 snapped += isnan(found.strain) && found.later;
                 if (!isnan(found.strain)) {
                     taken++;
-                    assert_relative(active_strain(&scene, row.strain), found.strain, 1e-12);
+                    assert_relative(ring ? fabs(row.strain) : active_strain(&scene, row.strain), found.strain, 1e-12);
                 }
             }
         }
     }
     assert_true(snapped >= 20);
     assert_true(taken >= 200);
+}
+
+static void equilibrium_behind_a_fold_is_pull_in(void **state)
+{
+    (void)state;
+    judge_folds(false);
+    judge_folds(true);
 }
 
 /* A lens deep in slack, whose share of the load jumps beside its root: the branch from rest is followed by the edge, and the next
@@ -527,12 +578,14 @@ static void snap_through_without_a_fold_is_followed(void **state)
     for (double voltage = 100.0; voltage < 30000.0; voltage *= 1.1) {
         for (double b = 0.2; b < 0.95; b += 0.3) {
             const dea_scene scene = paper_scene(DEA_DOT, 1.3, b, voltage);
-            const judged_balance balance = judged_balance_of(&scene, false);
-            const judgement found = judge_balance(&balance, 20000);
-            const dea_row row = solve_direct(&scene, "coverage");
-            assert_true((row.state == DEA_STATE_PULL_IN) == (bool)isnan(found.strain));
-            if (!isnan(found.strain)) {
-                assert_relative(row.strain, found.strain, 1e-12);
+            for (int ring = 0; ring < 2; ring++) {
+                const judged_balance balance = ring ? judged_ring_of(&scene) : judged_balance_of(&scene, false);
+                const judgement found = judge_balance(&balance, 20000);
+                const dea_row row = solve_direct(&scene, ring ? "ring" : "coverage");
+                assert_true((row.state == DEA_STATE_PULL_IN) == (bool)isnan(found.strain));
+                if (!isnan(found.strain)) {
+                    assert_relative(row.strain, found.strain, 1e-12);
+                }
             }
         }
     }
@@ -551,6 +604,11 @@ static void hyperelastic_models_balance_their_forces_at_random_points(void **sta
         const double rounding = 1e-15 / fabs(row.strain); /* of the judge, that takes differences of stresses */
         if (row.state != DEA_STATE_PULL_IN) {
             assert_near((double)judged_share(&balance, active_strain(&scene, row.strain)), 1.0, 1e-11 + rounding);
+        }
+        const judged_balance rings = judged_ring_of(&scene);
+        const dea_row ring = solve_direct(&scene, "ring");
+        if (ring.state != DEA_STATE_PULL_IN) {
+            assert_near((double)judged_share(&rings, fabs(ring.strain)), 1.0, 1e-11 + 1e-15 / fabs(ring.strain));
         }
         const judged_balance bias = judged_balance_of(&scene, true);
         const dea_row upper = solve_direct(&scene, "constant_force");
@@ -706,7 +764,7 @@ static void every_model_says_which_actuators_it_can_do(void **state)
         assert_string_equal(model->name, all_models[i]);
         assert_ptr_equal(dea_model_find(all_models[i]), model);
         assert_int_equal(model->lens, i >= 2);
-        assert_int_equal(model->membrane, i == 5);
+        assert_int_equal(model->membrane, i == 6);
         assert_true(model->equation[0] && model->leaves_out[0]);
     }
 }
@@ -715,6 +773,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(strains_at_4500_volts_to_all_printed_digits),
+        cmocka_unit_test(rings_lie_next_to_the_membrane),
         cmocka_unit_test(free_film_strains_to_all_printed_digits),
         cmocka_unit_test(smaller_coverage_costs_what_the_paper_says),
         cmocka_unit_test(displacement_peaks_at_half_coverage),
@@ -737,7 +796,8 @@ int main(void)
         cmocka_unit_test(breakdown_is_named_above_its_field_and_keeps_the_numbers),
         cmocka_unit_test(passive_film_is_slack_where_its_stretch_falls_to_one),
         cmocka_unit_test(film_without_pre_stretch_is_slack),
-        cmocka_unit_test(disc_of_the_field_is_slack_where_its_stress_vanishes),
+        cmocka_unit_test(disc_of_a_membrane_is_slack_where_its_stress_vanishes),
+        cmocka_unit_test(lens_of_rings_is_slack_where_a_stress_vanishes),
         cmocka_unit_test(pull_in_stays_pull_in_at_any_higher_voltage),
         cmocka_unit_test(lame_keeps_its_digits_before_pull_in),
         cmocka_unit_test(equilibrium_behind_a_fold_is_pull_in),

@@ -322,7 +322,7 @@ static const char *const points =
     "material: elastosil-2030\ndrive: {voltage: 4 kV}\nmodel: auto\n"
     "study: {sweep: {coverage: {from: 0.2, to: 0.8, points: 61}, voltage: [100 V, 4 kV]}}\n";
 
-static dea_model_choice choice_at(double accuracy, double voltage, const char *engine)
+static dea_model_choice choice_at(double model_error, double voltage, const char *engine)
 {
     dea_scene scene;
     dea_model_choice choice;
@@ -332,29 +332,50 @@ static dea_model_choice choice_at(double accuracy, double voltage, const char *e
     }
     assert_true(scene.automatic);
     scene.axes[1].values[1] = voltage;
-    scene.accuracy = accuracy;
+    scene.model_error = model_error;
     assert_int_equal(dea_needs_model(&scene, engine ? dea_engine_find(engine) : NULL, &choice, &error), DEA_OK);
     dea_scene_free(&scene);
     return choice;
 }
 
 /* Small voltages leave the film linear; what no network reaches is left to the membrane, or to nobody. */
-static void accuracy_decides_which_model_is_chosen(void **state)
+static void model_error_decides_which_model_is_chosen(void **state)
 {
     (void)state;
-    assert_string_equal(choice_at(1e-6, 4000.0, NULL).model->name, "field");
-    assert_null(choice_at(1e-6, 4000.0, "ngspice").model);
-    assert_string_equal(choice_at(1e-6, 4000.0, "ngspice").next->name, "lame");
-    assert_string_equal(choice_at(0.3, 4000.0, "ngspice").model->name, "lame");
-    assert_string_equal(choice_at(1e-3, 200.0, NULL).model->name, "lame");
-    assert_true(choice_at(1e-3, 200.0, NULL).bound < choice_at(0.3, 4000.0, NULL).bound);
+    assert_string_equal(choice_at(5e-7, 4000.0, NULL).model->name, "field");
+    assert_null(choice_at(5e-7, 4000.0, "ngspice").model);
+    assert_string_equal(choice_at(5e-7, 4000.0, "ngspice").next->name, "ring");
+    assert_string_equal(choice_at(5e-4, 4000.0, NULL).model->name, "ring");
+    assert_string_equal(choice_at(0.15, 4000.0, "ngspice").model->name, "lame");
+    assert_string_equal(choice_at(5e-4, 200.0, NULL).model->name, "lame");
+    assert_true(choice_at(5e-4, 200.0, NULL).bound < choice_at(0.15, 4000.0, NULL).bound);
+}
+
+/* The numerical error asked for says nothing about models, and a choice takes nothing of it. */
+static void accuracy_does_not_decide_which_model_is_chosen(void **state)
+{
+    (void)state;
+    static const double accuracies[] = {1e-2, 1e-6, 1e-11};
+    for (size_t i = 0; i < sizeof accuracies / sizeof *accuracies; i++) {
+        dea_scene scene;
+        dea_model_choice choice;
+        dea_error error = {0};
+        assert_int_equal(dea_scene_parse(points, strlen(points), "needs", ".", NULL, 0, NULL, &scene, &error), DEA_OK);
+        assert_true(scene.model_error == 0.01);
+        scene.axes[1].values[1] = 200.0;
+        scene.accuracy = accuracies[i];
+        assert_int_equal(dea_needs_model(&scene, NULL, &choice, &error), DEA_OK);
+        assert_string_equal(choice.model->name, "lame");
+        assert_true(scene.accuracy == accuracies[i]);
+        dea_scene_free(&scene);
+    }
 }
 
 static const char *const swinging =
     "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1}\n"
     "material: {yeoh: {C1: 178426 Pa, C2: -6023 Pa, C3: 4234 Pa}, permittivity: 2.8, density: 1080 kg/m^3}\n"
     "drive: {waveform: {step: {on: 1 ms, voltage: 3 kV, rise: 1 us}}}\n"
-    "model: auto\naccuracy: 0.1\nstudy: {transient: {until: 50 ms, every: 0.1 ms}}\n";
+    "model: auto\nmodel_error: 5 %\naccuracy: 0.1\nstudy: {transient: {until: 50 ms, every: 0.1 ms}}\n";
 
 static dea_model_choice choice_in_time(const char *const *settings, size_t count, dea_scene *scene)
 {
@@ -380,14 +401,14 @@ static void a_swing_decides_which_model_is_chosen(void **state)
                                        "prestretch=1.02", "voltage=1600 V",         "every=57 us"};
     static const char *const weak[] = {"voltage=30 V"};
     dea_scene scene;
-    assert_string_equal(choice_in_time(NULL, 0, &scene).model->name, "coverage");
+    assert_string_equal(choice_in_time(NULL, 0, &scene).model->name, "ring");
     dea_scene_free(&scene);
-    assert_string_equal(choice_in_time(damped, 1, &scene).model->name, "coverage");
+    assert_string_equal(choice_in_time(damped, 1, &scene).model->name, "ring");
     dea_scene_free(&scene);
-    assert_string_equal(choice_in_time(lens, 7, &scene).model->name, "coverage");
+    assert_string_equal(choice_in_time(lens, 7, &scene).model->name, "ring");
     dea_scene_free(&scene);
     const dea_model_choice choice = choice_in_time(weak, 1, &scene);
-    assert_string_equal(choice.model->name, "lumped");
+    assert_string_equal(choice.model->name, "lame");
     assert_true(choice.bound > 0.0 && choice.bound <= 0.05);
     dea_scene_free(&scene);
 }
@@ -436,7 +457,7 @@ static void chosen_models_keep_their_bounds_in_time(void **state)
         scene.transient.every = scene.transient.until / 200.0;
         scene.drive.series_resistance = scene.drive.leakage_resistance = (double)NAN;
         random_wave(&seed, &scene, pull_in_voltage(&scene, "coverage") * random_decades(&seed, 0.01, 0.5));
-        scene.accuracy = random_decades(&seed, 1e-2, 0.3);
+        scene.model_error = random_decades(&seed, 5e-3, 0.15);
         scene.automatic = true;
         dea_model_choice choice;
         assert_int_equal(dea_needs_model(&scene, NULL, &choice, NULL), DEA_OK);
@@ -508,7 +529,8 @@ int main(void)
         cmocka_unit_test(what_costs_an_engine_nothing_stays),
         cmocka_unit_test(reduced_runs_keep_the_accuracy),
         cmocka_unit_test(simpler_forms_of_a_branch_are_springs_and_dampers),
-        cmocka_unit_test(accuracy_decides_which_model_is_chosen),
+        cmocka_unit_test(model_error_decides_which_model_is_chosen),
+        cmocka_unit_test(accuracy_does_not_decide_which_model_is_chosen),
         cmocka_unit_test(a_swing_decides_which_model_is_chosen),
         cmocka_unit_test(chosen_models_keep_their_bounds_in_time),
         cmocka_unit_test(a_swing_that_left_its_mark_is_no_broken_bound),

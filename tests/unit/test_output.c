@@ -246,7 +246,7 @@ static void numbers_print_as_printf_does(void **state)
         char ours[DEA_NUMBER_LENGTH + 1], theirs[64];
         ours[dea_number_write(ours, value)] = '\0';
         snprintf(theirs, sizeof theirs, "%.17g", value);
-        assert_string_equal(ours, theirs);
+        assert_string_equal(ours, value == 0.0 ? "0" : theirs);
     }
 }
 
@@ -658,7 +658,7 @@ static void netcdf_keeps_the_scalars_that_the_study_used(void **state)
 static dea_status study_draw(const dea_scene *scene, const char *path, dea_error *error)
 {
     dea_plot *plot;
-    dea_status status = dea_plot_begin(scene, path, &plot, error);
+    dea_status status = dea_plot_begin(scene, path, NULL, &plot, error);
     if (status != DEA_OK) {
         return status;
     }
@@ -723,9 +723,9 @@ static void pictures_without_content_are_refused(void **state)
     assert_int_equal(study_draw(&scene, in_folder("a.svg"), &error), DEA_ERROR_USAGE);
     assert_non_null(strstr(error.message, "60 curves"));
     scene = scene_make(1, some, 1);
-    assert_int_equal(study_draw(&scene, in_folder("a.pdf"), &error), DEA_ERROR_USAGE);
+    assert_int_equal(study_draw(&scene, in_folder("a.jpg"), &error), DEA_ERROR_USAGE);
     dea_plot *plot;
-    assert_int_equal(dea_plot_begin(&scene, in_folder("a.svg"), &plot, &error), DEA_OK);
+    assert_int_equal(dea_plot_begin(&scene, in_folder("a.svg"), NULL, &plot, &error), DEA_OK);
     assert_int_equal(dea_plot_finish(plot, true, &error), DEA_ERROR_USAGE);
     assert_int_equal(folder_count(), 0);
 }
@@ -735,7 +735,7 @@ static dea_status points_draw(const dea_scene *scene, const char *path, dea_erro
 {
     const dea_layout layout = dea_layout_of(scene);
     dea_plot *plot;
-    const dea_status status = dea_plot_begin(scene, path, &plot, error);
+    const dea_status status = dea_plot_begin(scene, path, NULL, &plot, error);
     if (status != DEA_OK) {
         return status;
     }
@@ -755,7 +755,7 @@ static void pictures_of_runs_appear_whole(void **state)
     const size_t counts[] = {3};
     const dea_scene scenes[] = {transient_make(1, counts, 2, 500), response_make(1, counts, 2, 4)};
     static const char *const shown[][4] = {{"Strain s [%]", "U [kV]", "i [µA]", "Time [s]"},
-                                           {"Displacement per volt [m/V]", "Impedance [Ω]", "Phase [°]", "Frequency [Hz]"}};
+                                           {"Displacement per volt [µm/V]", "Impedance [Ω]", "Phase [°]", "Frequency [Hz]"}};
     for (size_t i = 0; i < 2; i++) {
         dea_error error = {0};
         assert_int_equal(points_draw(&scenes[i], in_folder("a.svg"), &error), DEA_OK);
@@ -856,16 +856,222 @@ static void phase_is_drawn_without_jumps(void **state)
     char *point = calloc(1, layout.point_size);
     point_make(&scene, &layout, 0, point);
     for (size_t i = 0; i < layout.rows; i++) {
+        ((dea_response *)(void *)point)[i].displacement = 1e-9;
         ((dea_response *)(void *)point)[i].displacement_phase = remainder(-20.0 * (double)i, 360.0);
     }
     dea_runs runs;
     const dea_plot_trace *trace = trace_make(&scene, &runs, 1, point);
-    assert_int_equal(trace->count, 31);
+    size_t samples = 0;
     for (size_t i = 0; i < trace->count; i++) {
-        assert_true(fabs(trace->y[i] + 20.0 * (double)i) < 1e-9);
+        const double place = 10.0 * log10(trace->x[i]); /* number of the sample */
+        const bool sample = fabs(place - round(place)) < 1e-6;
+        samples += sample;
+        assert_true(fabs(trace->y[i] + 20.0 * place) < (sample ? 1e-6 : 20.0));
+        assert_true(i == 0 || fabs(trace->y[i] - trace->y[i - 1]) < 21.0);
     }
+    assert_int_equal(samples, 31);
+    assert_true(trace->count > 100);
     dea_runs_close(&runs);
     free(point);
+}
+
+/* 1/(1 - x^2 + i x/Q) with Q = 50 at ten samples a decade, none of them within its width: the samples reach a fifth of the peak. */
+static void a_resonance_is_drawn_as_high_as_it_is(void **state)
+{
+    (void)state;
+    static const double quality = 50.0, resonance = 133.0; /* [1], [Hz] */
+    const dea_scene scene = response_make(0, NULL, 1, 4);
+    const dea_layout layout = dea_layout_of(&scene);
+    char *point = calloc(1, layout.point_size);
+    double sampled = 0.0, drawn = 0.0;
+    for (size_t i = 0; i < layout.rows; i++) {
+        const double f = dea_layout_place(&scene, i), x = f / resonance;
+        const double real = 1.0 - x * x, imaginary = x / quality, size = hypot(real, imaginary);
+        ((dea_response *)(void *)point)[i] =
+            (dea_response){f, 1e-9 / size, -atan2(imaginary, real) * 180.0 / acos(-1.0), 1e9 / f, -90.0, DEA_STATE_OK};
+        sampled = fmax(sampled, 1e-9 / size);
+    }
+    dea_runs runs;
+    const dea_plot_trace *trace = trace_make(&scene, &runs, 0, point);
+    for (size_t i = 0; i < trace->count; i++) {
+        drawn = fmax(drawn, trace->y[i]);
+    }
+    assert_true(sampled < 0.2 * quality * 1e-9);
+    assert_true(fabs(drawn / (quality * 1e-9) - 1.0) < 0.01);
+    dea_runs_close(&runs);
+    free(point);
+}
+
+/* How the script of a picture draws a curve. */
+typedef struct drawn {
+    char dash[48], colour[8], palette[24];
+    int symbol;
+} drawn;
+
+/* Look of the lines of a data block, and of the last points of @p marks; false where no line has it. */
+static bool drawn_read(const char *script, const char *block, const char *marks, drawn *look)
+{
+    char words[64];
+    *look = (drawn){.symbol = 0};
+    snprintf(words, sizeof words, "%s with lines dashtype ", block);
+    const char *line = strstr(script, words);
+    if (!line) {
+        return false;
+    }
+    line += strlen(words);
+    snprintf(look->dash, sizeof look->dash, "%.*s", (int)(strstr(line, " linewidth") - line), line);
+    sscanf(strstr(line, "linecolor "), "linecolor '%7[#0-9a-f]", look->colour);
+    sscanf(strstr(line, "linecolor "), "linecolor palette cb %23s", look->palette);
+    snprintf(words, sizeof words, "%s with points pointtype ", marks);
+    const char *points = strstr(script, words);
+    if (points) {
+        look->symbol = atoi(points + strlen(words));
+    }
+    return true;
+}
+
+/* Luminance, 0 to 1, of a colour in grey (ITU-R BT.601). */
+static double grey_of(const char *colour)
+{
+    unsigned rgb[3];
+    assert_int_equal(sscanf(colour, "#%2x%2x%2x", &rgb[0], &rgb[1], &rgb[2]), 3);
+    return (0.299 * rgb[0] + 0.587 * rgb[1] + 0.114 * rgb[2]) / 255.0;
+}
+
+static bool told_apart_in_grey(const drawn *a, const drawn *b)
+{
+    return strcmp(a->dash, b->dash) != 0 || a->symbol != b->symbol || fabs(grey_of(a->colour) - grey_of(b->colour)) > 0.15;
+}
+
+static void curves_are_told_apart_in_grey(void **state)
+{
+    (void)state;
+    enum { GROUPS = 6 };
+    const size_t counts[] = {40, GROUPS}, runs[] = {GROUPS};
+    for (size_t k = 0; k < 3; k++) { /* the scenes share their axes */
+        dea_error error = {0};
+        dea_scene scene = k == 0 ? scene_make(2, counts, 2) : k == 1 ? transient_make(1, runs, 2, 50) : response_make(1, runs, 2, 3);
+        drawn looks[2 * GROUPS];
+        char block[32], marks[32];
+        scene.models[0] = dea_model_find("lumped");
+        scene.models[1] = dea_model_find("coverage");
+        assert_int_equal(k == 0 ? study_draw(&scene, in_folder("a.gp"), &error) : points_draw(&scene, in_folder("a.gp"), &error),
+                         DEA_OK);
+        const char *script = file_text(in_folder("a.gp"));
+        for (size_t i = 0; i < 2 * GROUPS; i++) {
+            snprintf(block, sizeof block, k == 0 ? "$curve%zu using 1:2" : "$run%zu_0 using 1:2", i);
+            snprintf(marks, sizeof marks, k == 0 ? "$curve%zu using 1:10" : "$marks%zu_0 using 1:2", i);
+            assert_true(drawn_read(script, block, marks, &looks[i]));
+            for (size_t before = 0; before < i; before++) {
+                assert_true(told_apart_in_grey(&looks[i], &looks[before]));
+            }
+        }
+    }
+}
+
+static void a_model_has_its_colour_and_dash_in_every_picture(void **state)
+{
+    (void)state;
+    const size_t counts[] = {40};
+    for (size_t i = 0; i < dea_model_count(); i++) {
+        drawn looks[3];
+        for (size_t k = 0; k < 3; k++) {
+            dea_error error = {0};
+            dea_scene scene = k == 0 ? scene_make(1, counts, 2) : k == 1 ? transient_make(0, NULL, 2, 50) : response_make(0, NULL, 1, 3);
+            scene.models[k == 0] = dea_model_at(i); /* first or second among others */
+            scene.models[k != 0] = dea_model_at((i + 1) % dea_model_count());
+            assert_int_equal(k == 0 ? study_draw(&scene, in_folder("a.gp"), &error) : points_draw(&scene, in_folder("a.gp"), &error), DEA_OK);
+            assert_true(drawn_read(file_text(in_folder("a.gp")), k == 0 ? "$curve1 using 1:2" : "$run0_0 using 1:2", "none", &looks[k]));
+            assert_string_equal(looks[k].colour, looks[0].colour);
+            assert_string_equal(looks[k].dash, looks[0].dash);
+        }
+    }
+}
+
+static void many_curves_have_a_colour_scale(void **state)
+{
+    (void)state;
+    const size_t counts[] = {40, 8};
+    dea_error error = {0};
+    drawn first, last;
+    dea_scene scene = scene_make(2, counts, 2);
+    assert_int_equal(study_draw(&scene, in_folder("a.gp"), &error), DEA_OK);
+    const char *script = file_text(in_folder("a.gp"));
+    assert_true(drawn_read(script, "$curve0 using 1:2", "none", &first) && drawn_read(script, "$curve7 using 1:2", "none", &last));
+    assert_string_equal(first.palette, "0.1");
+    assert_string_equal(last.palette, "0.9");
+    assert_non_null(strstr(script, "set cbrange [0.1:0.9]"));
+    assert_non_null(strstr(script, "set cblabel textcolor '#202020' \"Coverage ratio B\""));
+}
+
+/* The range of the axis behind a label. */
+static void range_read(const char *script, const char *label, double *low, double *high)
+{
+    const char *at = strstr(script, label);
+    assert_non_null(at);
+    assert_int_equal(sscanf(strstr(at, "set yrange"), "set yrange [%lf:%lf]", low, high), 2);
+}
+
+static void a_flat_drive_does_not_lie_on_the_frame(void **state)
+{
+    (void)state;
+    double low, high;
+    dea_error error = {0};
+    const dea_scene scene = transient_make(0, NULL, 1, 20001); /* 10 000 s */
+    assert_int_equal(points_draw(&scene, in_folder("a.gp"), &error), DEA_OK);
+    const char *script = file_text(in_folder("a.gp"));
+    range_read(script, "U [kV]", &low, &high);
+    assert_true(low < -0.1 && high > 4.6);
+    assert_non_null(strstr(script, "Time [h]"));
+    assert_non_null(strstr(script, "set xrange [0:2.77777778]"));
+}
+
+static void a_script_draws_the_picture(void **state)
+{
+    (void)state;
+    const size_t counts[] = {40, 30};
+    dea_error error = {0};
+    const dea_scene scene = scene_make(2, counts, 1);
+    char command[256], *drawn_text;
+    snprintf(title, sizeof title, "`touch x` $(id) \"q'z\" 50%% \\n 4.5 λ");
+    assert_int_equal(study_draw(&scene, in_folder("a.svg"), &error), DEA_OK);
+    drawn_text = strdup(file_text(in_folder("a.svg")));
+    assert_int_equal(study_draw(&scene, in_folder("b.gp"), &error), DEA_OK);
+    snprintf(command, sizeof command, "cd %s && gnuplot b.gp", folder);
+    assert_int_equal(system(command), 0);
+    assert_string_equal(strstr(file_text(in_folder("b.svg")), "<svg"), strstr(drawn_text, "<svg"));
+    assert_int_equal(folder_count(), 3);
+    free(drawn_text);
+}
+
+static void a_picture_has_the_size_that_is_asked_for(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *size;
+    } kinds[] = {{"a.svg", "width=\"321\" height=\"227\""}, {"a.eps", "%%BoundingBox: 0 0 241 170"}, {"a.pdf", "MediaBox [ 0 0 241 170 ]"}};
+    const size_t counts[] = {40};
+    const dea_scene scene = scene_make(1, counts, 1);
+    const dea_plot_options sizes[] = {{.width = 0.085, .height = 0.06}, {.width = 0.04, .height = 0.04}, {.width = 0.085}};
+    const dea_status wanted[] = {DEA_OK, DEA_ERROR_USAGE, DEA_ERROR_USAGE};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        for (size_t k = 0; k < 3; k++) {
+            dea_plot *plot = NULL;
+            dea_error error = {0};
+            dea_status status = dea_plot_begin(&scene, in_folder(kinds[i].name), &sizes[k], &plot, &error);
+            for (size_t row = 0; status == DEA_OK && row < counts[0]; row++) {
+                const dea_row made = row_make(row);
+                dea_plot_points(plot, row, &made, 1);
+            }
+            status = status == DEA_OK ? dea_plot_finish(plot, true, &error) : status;
+            assert_int_equal(status, wanted[k]);
+        }
+        struct stat about;
+        assert_int_equal(stat(in_folder(kinds[i].name), &about), 0);
+        if (!memmem(file_text(in_folder(kinds[i].name)), (size_t)about.st_size, kinds[i].size, strlen(kinds[i].size))) {
+            fail_msg("%s is not of the size %s", kinds[i].name, kinds[i].size);
+        }
+    }
 }
 
 static void runs_that_no_picture_can_show_are_refused(void **state)
@@ -883,7 +1089,7 @@ static void runs_that_no_picture_can_show_are_refused(void **state)
     const dea_layout layout = dea_layout_of(&scene);
     char *point = calloc(1, layout.point_size);
     dea_plot *plot;
-    assert_int_equal(dea_plot_begin(&scene, in_folder("a.svg"), &plot, &error), DEA_OK);
+    assert_int_equal(dea_plot_begin(&scene, in_folder("a.svg"), NULL, &plot, &error), DEA_OK);
     dea_layout_fail(&scene, &layout, point);
     dea_plot_points(plot, 0, point, 1);
     assert_int_equal(dea_plot_finish(plot, true, &error), DEA_ERROR_USAGE);
@@ -1005,6 +1211,13 @@ int main(void)
         cmocka_unit_test(phase_is_drawn_without_jumps),
         IN_FOLDER(runs_that_no_picture_can_show_are_refused),
         IN_FOLDER(gnuplot_failures_are_told_in_its_words),
+        IN_FOLDER(a_resonance_is_drawn_as_high_as_it_is),
+        IN_FOLDER(curves_are_told_apart_in_grey),
+        IN_FOLDER(a_model_has_its_colour_and_dash_in_every_picture),
+        IN_FOLDER(many_curves_have_a_colour_scale),
+        IN_FOLDER(a_flat_drive_does_not_lie_on_the_frame),
+        IN_FOLDER(a_script_draws_the_picture),
+        IN_FOLDER(a_picture_has_the_size_that_is_asked_for),
         cmocka_unit_test(progress_shows_on_a_terminal_and_erases_itself),
         cmocka_unit_test(progress_is_silent_without_a_terminal),
     };

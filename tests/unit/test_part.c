@@ -307,7 +307,7 @@ static void springs_in_parallel_share_the_force_at_the_operating_point(void **st
         for (int k = 0; k < 100; k++) {
             const double u = 0.5 * (low + high);
             const dea_edge e = dea_dynamics_edge(&dynamics, u);
-            *(e.push * 1.6e7 - e.area * e.stress - 755.5 * u > 0.0 ? &low : &high) = u;
+            *(e.push * 1.6e7 - dea_edge_held(&dynamics, &e, NULL) - 755.5 * u > 0.0 ? &low : &high) = u;
         }
         dea_dynamics_close(&dynamics);
         snprintf(name, sizeof name, "v(x%d.u)", i);
@@ -345,8 +345,8 @@ static void the_energy_drawn_is_work_and_stores_and_losses(void **state)
                 const dea_edge e = dea_dynamics_edge(&d, 1e-6 * child_value(&run, "v(xpart.u)", n));
                 drawn += 0.5 * h * child_value(&run, "v(f)", n) * child_value(&run, "i(vi)", n);
                 work += 0.5 * h * child_value(&run, "v(xpart.force)", n) * v;
-                losses += 0.5 * h * (d.retardation * e.area * e.stress_slope + 0.5) * v * v;
-                elastic += 0.5 * h * e.area * e.stress * v;
+                losses += 0.5 * h * (d.retardation * dea_edge_viscous(&d, &e) + 0.5) * v * v;
+                elastic += 0.5 * h * dea_edge_held(&d, &e, NULL) * v;
             }
         }
         const double u = 1e-6 * child_last(&run, "v(xpart.u)"), v = child_last(&run, "v(edge)"), film = child_last(&run, "v(f)");

@@ -17,6 +17,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <math.h>
+
 enum { MOST_WORDS = 24, TEXT_LENGTH = 1 << 16 };
 
 typedef struct result {
@@ -194,6 +196,117 @@ static void help_of_a_command_is_its_own_help(void **state)
     check_wrong("did you mean \"fit\"");
 }
 
+/* The options of every command as its completion knows them. */
+static void every_option_stands_in_its_help(void **state)
+{
+    static char script[TEXT_LENGTH];
+    size_t commands = 0;
+    (void)state;
+    RUN("completion", "bash");
+    assert_int_equal(last.status, 0);
+    memcpy(script, last.out, sizeof script);
+    for (char *at = script; (at = strstr(at, ") options='")); commands++) {
+        char *name = at;
+        while (name > script && name[-1] != ' ')
+            name--;
+        *at = '\0';
+        RUN(name, "--help");
+        assert_int_equal(last.status, 0);
+        char *end = strchr(at + strlen(" options='") + 1, '\'');
+        assert_non_null(end);
+        *end = '\0';
+        for (const char *option = strtok(at + strlen(") options='"), " "); option; option = strtok(NULL, " ")) {
+            if (!strstr(last.out, option))
+                fail_msg("the help of %s has no %s", name, option);
+        }
+        at = end + 1;
+    }
+    assert_int_equal(commands, 9);
+}
+
+static void bash_completes(void **state)
+{
+    static const struct {
+        const char *words, *offers;
+    } cases[] = {
+        {"''", "help run merge check bench export fit materials init completion"},
+        {"mat", "materials"},
+        {"help mat", "materials"},
+        {"run --eng", "--engine"},
+        {"run --engine n", "ngspice"},
+        {"run --engine = d", "direct"},
+        {"run --model fie", "field"},
+        {"run --format ''", "csv nc raw"},
+        {"run --set drive.vol", "drive.voltage="},
+        {"run --set coverage = ''", ""},
+        {"run --jobs ''", ""},
+        {"run only", "only.yaml"},
+        {"run -o only", "only.csv only.yaml"},
+        {"fit only", "only.csv"},
+        {"export --as kic", "kicad"},
+        {"export --dialect x", "xyce"},
+        {"init ''", "dot lens transient ac sweep"},
+        {"materials vhb", "vhb-4910"},
+        {"completion ''", "bash zsh fish"},
+        {"check --resu", ""},
+    };
+    (void)state;
+    write_file("only.yaml", "");
+    write_file("only.csv", "");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char script[8192 + 512];
+        snprintf(script, sizeof script,
+                 "source <('%s' completion bash)\nCOMP_WORDS=(deaspice %s)\nCOMP_CWORD=$((${#COMP_WORDS[@]}-1))\n_deaspice\n"
+                 "IFS=' '\nprintf '%%s' \"${COMPREPLY[*]}\"\n",
+                 program, cases[i].words);
+        write_file("complete.sh", script);
+        assert_int_equal(system("bash complete.sh >offers.txt"), 0);
+        read_file("offers.txt", last.out);
+        if (strcmp(last.out, cases[i].offers) != 0)
+            fail_msg("deaspice %s offers \"%s\", not \"%s\"", cases[i].words, last.out, cases[i].offers);
+    }
+    RUN("completion", "tcsh");
+    check_wrong("unknown shell \"tcsh\"");
+}
+
+static void every_scene_to_start_from_runs(void **state)
+{
+    static const char *const kinds[] = {"dot", "lens", "transient", "ac", "sweep"};
+    (void)state;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        static char straight[TEXT_LENGTH];
+        char name[32];
+        snprintf(name, sizeof name, "start-%s.yaml", kinds[i]);
+        RUN("init", kinds[i]);
+        assert_int_equal(last.status, 0);
+        memcpy(straight, last.out, sizeof straight);
+        RUN("init", kinds[i], "-o", name);
+        assert_int_equal(last.status, 0);
+        assert_non_null(strstr(last.err, name));
+        read_file(name, last.out);
+        assert_string_equal(last.out, straight);
+        RUN("run", name, "-o", "start.csv");
+        assert_int_equal(last.status, 0);
+        assert_non_null(strstr(last.err, "ok"));
+        assert_null(strstr(last.err, "warning"));
+        write_file(name, "mine\n");
+        RUN("init", kinds[i], "-o", name);
+        check_wrong("is there already; choose another name, or give --force");
+        read_file(name, last.out);
+        assert_string_equal(last.out, "mine\n");
+        RUN("init", kinds[i], "-o", name, "--force", "--quiet");
+        assert_int_equal(last.status, 0);
+        assert_string_equal(last.err, "");
+        read_file(name, last.out);
+        assert_string_equal(last.out, straight);
+    }
+    RUN("init");
+    assert_int_equal(last.status, 0);
+    assert_int_equal(lines_of(last.out), 5);
+    RUN("init", "lense");
+    check_wrong("did you mean \"lens\"");
+}
+
 static void wrong_usage_is_told_with_a_guess(void **state)
 {
     (void)state;
@@ -202,7 +315,7 @@ static void wrong_usage_is_told_with_a_guess(void **state)
     RUN("run", "dot.yaml", "--modle", "lumped");
     check_wrong("did you mean \"--model\"");
     RUN("run", "dot.yaml", "--engine", "ngspise");
-    check_wrong("did you mean \"ngspice\"");
+    check_wrong("did you mean ngspice?");
     RUN("run", "dot.yaml", "--terms", "3");
     check_wrong("--terms");
     RUN("run", "dot.yaml", "-o");
@@ -269,6 +382,32 @@ static void run_writes_a_file_and_sums_up(void **state)
     assert_int_equal(lines_of(last.out), 19);
     RUN("run", "dot.yaml", "--engine", "direct", "-q", "-o", "dot.csv");
     assert_string_equal(last.err, "");
+}
+
+/* Against numbers that the summary does not come from: eps eps0 lambda^4 A/H of the film, Eq. 22 for its strain. */
+static void summary_speaks_of_the_actuator_first(void **state)
+{
+    double strain, micrometres, picofarads, microseconds;
+    (void)state;
+    RUN("run", "dot.yaml", "-o", "dot.csv", "--set", "study.sweep={}", "--set", "coverage=0.5", "--set", "prestretch=1.2", "--set",
+        "series_resistance=1 MOhm");
+    assert_int_equal(last.status, 0);
+    assert_int_equal(sscanf(last.err, "largest strain %lf %% and displacement %lf", &strain, &micrometres), 2);
+    assert_true(fabs(strain / 100.0 * 15e3 - micrometres) < 1e-3 * micrometres);
+    const char *rest = strstr(last.err, "at rest and 0 V: capacitance ");
+    assert_non_null(rest);
+    assert_int_equal(sscanf(rest, "at rest and 0 V: capacitance %lf pF, R_s C %lf", &picofarads, &microseconds), 2);
+    const double area = 3.14159265358979 * 15e-3 * 15e-3, expected = 2.8 * 8.8541878128e-12 * 1.44 * area / 100e-6;
+    assert_true(fabs(picofarads * 1e-12 - expected) < 1e-3 * expected);
+    assert_true(fabs(microseconds - picofarads) < 1e-3 * picofarads); /* 1 MOhm times 1 pF is 1 us */
+    assert_non_null(strstr(last.err, "; strength unknown\n"));
+    assert_non_null(strstr(last.err, "1 point in "));
+    assert_non_null(strstr(last.err, " (direct): 1 ok\n"));
+    RUN("run", "dot.yaml", "-o", "dot.csv", "--set", "breakdown=60 V/um", "--set", "study.sweep={voltage: [1 kV, 3 kV, 6 kV]}", "--set",
+        "coverage=0.5");
+    assert_non_null(strstr(last.err, " % of the strength 60 MV/m\n"));
+    assert_non_null(strstr(last.err, "  breakdown in 1 row, first at voltage = 6 kV\n"));
+    assert_non_null(strstr(last.err, " at voltage = 3 kV\n")); /* a film that broke down moves no more */
 }
 
 static void transient_writes_its_samples_and_prints_its_averages(void **state)
@@ -420,6 +559,27 @@ static void runs_are_drawn(void **state)
         read_file("runs.svg", last.out);
         assert_true(begins(last.out, "<?xml"));
         assert_int_equal(remove("runs.svg"), 0);
+    }
+}
+
+static void pictures_take_sizes_and_logarithmic_axes(void **state)
+{
+    (void)state;
+    static const char *const wrong[][2] = {{"--size", "8.5x6"},   {"--size", "8.5cm"},      {"--size", "3x6cm"}, {"--size", "8.5x300cm"},
+                                           {"--size", "8x6furlong"}, {"--size", "nanxnancm"}, {"--size", "8x6cmm"}, {"--log", "z"},
+                                           {"--log", "yx"}};
+    static const char *const right[][2] = {{"--size", "8.5x6cm"}, {"--size", "85mm x 6cm"}, {"--size", "6x4in"}, {"--size", "300x200 pt"},
+                                           {"--log", "x"},        {"--log", "y"},           {"--log", "xy"}};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        RUN("run", "step.yaml", "--engine", "direct", "--plot", "sized.gp", wrong[i][0], wrong[i][1]);
+        assert_int_equal(last.status, 2);
+        assert_non_null(strstr(last.err, wrong[i][0]));
+        assert_false(exists("sized.gp"));
+    }
+    for (size_t i = 0; i < sizeof right / sizeof *right; i++) {
+        RUN("run", "step.yaml", "--engine", "direct", "--plot", "sized.svg", right[i][0], right[i][1]);
+        assert_int_equal(last.status, 0);
+        assert_int_equal(remove("sized.svg"), 0);
     }
 }
 
@@ -753,10 +913,14 @@ int main(void)
         cmocka_unit_test(program_alone_shows_usage),
         cmocka_unit_test(help_and_version_succeed),
         cmocka_unit_test(help_of_a_command_is_its_own_help),
+        cmocka_unit_test(every_option_stands_in_its_help),
+        cmocka_unit_test(bash_completes),
+        cmocka_unit_test(every_scene_to_start_from_runs),
         cmocka_unit_test(wrong_usage_is_told_with_a_guess),
         cmocka_unit_test(run_prints_csv),
         cmocka_unit_test(raw_file_and_standard_output_hold_the_same),
         cmocka_unit_test(run_writes_a_file_and_sums_up),
+        cmocka_unit_test(summary_speaks_of_the_actuator_first),
         cmocka_unit_test(transient_writes_its_samples_and_prints_its_averages),
         cmocka_unit_test(averages_stand_beside_a_result_on_standard_output),
         cmocka_unit_test(runs_over_an_axis_carry_it_in_front),
@@ -765,6 +929,7 @@ int main(void)
         cmocka_unit_test(pull_in_of_a_transient_is_physics_and_named),
         cmocka_unit_test(response_tells_resonance_and_bandwidth),
         cmocka_unit_test(runs_are_drawn),
+        cmocka_unit_test(pictures_take_sizes_and_logarithmic_axes),
         cmocka_unit_test(engines_agree_about_a_transient),
         cmocka_unit_test(jobs_do_not_change_the_result),
         cmocka_unit_test(unwritable_target_fails_before_the_run),

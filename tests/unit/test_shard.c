@@ -382,9 +382,11 @@ static void every_scalar_of_a_scene_counts(void **state)
     scene = paper_scene(DEA_LENS, 1.2, 0.5, 3000.0);
     scene.models[0] = dea_model_find("lumped");
     assert_int_equal(dea_identity_write(&scene, engine, &before, NULL), DEA_OK);
-    for (size_t i = 0; dea_key_at(i); i++) {
-        const dea_key *key = dea_key_at(i);
-        if (key->offset == DEA_KEY_NOWHERE || key->stride > 0 || (key->kinds & DEA_KEY_LENS) == 0) {
+    dea_key at;
+    for (size_t i = 0; dea_key_at(i, &at); i++) {
+        const dea_key *key = &at;
+        const bool foreign = key->law && key->law != scene.material.law;
+        if (key->offset == DEA_KEY_NOWHERE || key->stride > 0 || foreign || (key->kinds & DEA_KEY_LENS) == 0) {
             continue;
         }
         double *place = (double *)(void *)((char *)&scene + key->offset), value = *place;

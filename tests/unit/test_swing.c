@@ -91,7 +91,7 @@ enum { MOST = DEA_PRONY_MAX + 3 };
 static double complex eigenvalue_of(dea_dynamics *d, double u, double voltage)
 {
     const dea_edge e = dea_dynamics_edge(d, u);
-    const double stiffness = dea_dynamics_stiffness(d, u, voltage, true), viscous = e.area * e.stress_slope;
+    const double stiffness = dea_dynamics_stiffness(d, u, voltage, true), viscous = dea_edge_viscous(d, &e);
     const double omega = sqrt(stiffness / d->mass);
     const int port = d->series > 0.0 ? 1 : 0, n = 2 + (int)d->branch_count + port;
     double a[MOST * MOST] = {0}, real[MOST], imaginary[MOST];
@@ -178,7 +178,7 @@ static void random_films_swing_as_their_eigenvalues_say(void **state)
 static double residual_of(dea_dynamics *d, long double complex s)
 {
     const dea_edge e = dea_dynamics_edge(d, 0.0);
-    const long double viscous = (long double)e.area * e.stress_slope;
+    const long double viscous = dea_edge_viscous(d, &e);
     long double complex sum = dea_dynamics_stiffness(d, 0.0, 0.0, true) + d->mass * s * s + d->retardation * viscous * s;
     long double parts = cabsl(d->mass * s * s) + cabsl(d->retardation * viscous * s) + cabsl(sum);
     for (size_t i = 0; i < d->branch_count; i++) {

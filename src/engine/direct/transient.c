@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "engine/direct/direct.h"
+#include "engine/direct/peak.h"
 #include "engine/direct/walk.h"
 
 /* Samples that are stepped from one to the next before the state is computed anew from the begin of the segment. */
@@ -19,6 +20,8 @@ typedef struct run {
     size_t rows, row; /* the next one */
     dea_audit audit;
     double integrals[DEA_WINDOWS]; /* of u over the windows of the scene [m s] */
+    dea_peak current;              /* largest of the source, while known */
+    bool known;
     double peak;  /* of |u| at the samples [m] */
     double parts; /* of what a sine does [m] */
     double turns; /* of the pair and of the sine, which round [rad] */
@@ -41,7 +44,7 @@ const char *dea_direct_refuses_transient(const dea_scene *scene, const dea_model
     bool ramps = wave->kind == DEA_WAVE_SINE && wave->sine.amplitude != 0.0;
     ramps = ramps || (wave->kind == DEA_WAVE_STEP && wave->step.rise > 0.0 && wave->step.voltage != 0.0);
     for (size_t i = 1; wave->kind == DEA_WAVE_POINTS && i < wave->point_count; i++) {
-        ramps = ramps || wave->voltages[i] != wave->voltages[i - 1];
+        ramps = ramps || (wave->voltages[i] != wave->voltages[i - 1] && wave->times[i] > wave->times[i - 1]);
     }
     return ramps && linear.softening != 0.0 && !scene->reduction.softening ? varies : NULL;
 }
@@ -76,6 +79,7 @@ static dea_status open_run(run *r, const dea_model *model, dea_error *error)
                          .from_bias = r->scene->transient.from_bias};
     r->walk.chain = dea_walk_chain(&r->dynamics, r->walk.linear.stiffness);
     r->rows = dea_layout_of(r->scene).rows;
+    r->known = dea_peak_is_known(r->scene, &r->dynamics, &r->signal);
     return check_segments(r, error);
 }
 
@@ -259,6 +263,7 @@ static dea_status run_segment(run *r, const dea_segment *segment, bool last, dea
     }
     write_rows(r, &piece, &start, last);
     integrate(r, &piece, &start);
+    r->known = r->known && dea_direct_peak(&r->walk, &piece, &start, &r->dynamics, &r->current);
     dea_walk_pass(&r->walk, &piece, &start);
     audit_piece(r, &piece, &start, first, branches);
     count_turns(r, &piece);
@@ -332,6 +337,8 @@ static dea_status run_segments(run *r, dea_summary *summary, dea_error *error)
     *summary = dea_summary_failed();
     if (status == DEA_OK && !r->walk.lost) {
         close_audit(r, &first, summary);
+        summary->peak_current = r->known ? r->current.current : (double)NAN;
+        summary->peak_time = r->known ? r->current.time : (double)NAN;
     }
     tell_averages(r, summary);
     summary->error = summary->velocity_error = error_of(r); /* rounding of modes, whose rates are as exact */

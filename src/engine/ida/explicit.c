@@ -29,7 +29,7 @@ typedef struct explicit_run {
 static void powers(const explicit_run *run, double time, const double *y, double *out)
 {
     const dea_flight *flight = run->flight;
-    double z[DEA_PRONY_MAX];
+    double z[DEA_RELAXED_MAX];
     dea_audit rate = {0};
     const dea_moment moment = dea_motion_moment(&flight->motion, time, y);
     dea_motion_branches(&flight->motion, y, z);
@@ -163,7 +163,7 @@ static double current_at(void *user, double time)
 static void see_current(explicit_run *run, double before, double time)
 {
     dea_flight *flight = run->flight;
-    if (flight->motion.q >= 0 && time > before) {
+    if (flight->peaks && time > before) {
         const double begin = flight->motion.segment->from;
         dea_peak_search(&flight->trace->peak, begin + before, begin + time, current_at, run);
     }
@@ -200,7 +200,7 @@ static void close_energies(const explicit_run *run, double time)
 {
     dea_flight *flight = run->flight;
     const double *energy = NV_DATA_S(run->w) + flight->motion.count;
-    double z[DEA_PRONY_MAX];
+    double z[DEA_RELAXED_MAX];
     const dea_moment moment = dea_motion_moment(&flight->motion, time, flight->y);
     dea_motion_branches(&flight->motion, flight->y, z);
     flight->audit->work += energy[WORK] * run->energy;

@@ -18,6 +18,7 @@ dea_status dea_flight_open(const dea_sundials *sun, const dea_scene *scene, dea_
                            dea_flight *flight, dea_error *error)
 {
     *flight = (dea_flight){.scene = scene, .signal = signal, .rows = dea_layout_of(scene).rows};
+    flight->peaks = dea_peak_is_known(scene, dynamics, signal);
     dea_motion_open(dynamics, signal, &flight->motion);
     flight->ring = calloc(1, sizeof *flight->ring);
     if (!flight->ring) {
@@ -143,7 +144,7 @@ dea_state dea_flight_broke(dea_flight *flight, const char *solver, int code, dou
 /* An algebraic u at the begin of a segment. */
 static bool jump(dea_flight *flight)
 {
-    double z[DEA_PRONY_MAX];
+    double z[DEA_RELAXED_MAX];
     const double before = flight->y[0] * flight->motion.size[0];
     if (!dea_motion_jump(&flight->motion, flight->y)) {
         return false;
@@ -192,7 +193,7 @@ static dea_state fly_segment(dea_flight *flight)
 void dea_flight_run(dea_flight *flight, double tolerance, dea_trace *trace, dea_summary *summary)
 {
     dea_audit audit = {0};
-    double first_z[DEA_PRONY_MAX], z[DEA_PRONY_MAX];
+    double first_z[DEA_RELAXED_MAX], z[DEA_RELAXED_MAX];
     *trace = (dea_trace){.moments = trace->moments};
     flight->trace = trace;
     flight->audit = summary ? &audit : NULL;

@@ -28,6 +28,7 @@ typedef struct dea_flight {
     dea_integrator integrator; /* owned */
     N_Vector between;          /* owned: w between two steps */
     size_t rows;
+    bool peaks; /* the current between samples is known */
     long spent;     /* steps of all runs */
     double loosest; /* tolerance of the first run */
     dea_error why;  /* what the last run that failed was about, "" before */

@@ -153,7 +153,7 @@ typedef void visit(const dea_flight *flight, double time, double angle, const do
 static void audit_at(const dea_flight *flight, double time, double angle, const double *w, double weight, double *sum)
 {
     (void)sum;
-    double y[DEA_MOTION_MOST], z[DEA_PRONY_MAX];
+    double y[DEA_MOTION_MOST], z[DEA_RELAXED_MAX];
     const dea_turn turn = dea_ring_turn(flight->ring, time, angle);
     dea_ring_state(flight->ring, turn, w, y);
     dea_moment moment = dea_motion_moment(&flight->motion, time, y);
@@ -269,6 +269,20 @@ static double current_at(void *user, double time)
     return dea_dynamics_current(flight->motion.dynamics, &moment);
 }
 
+/* Sees the current over a step: in a frame that turns, radian by radian while the tolerance sees the ring. */
+static void see_current(dea_flight *flight, double before, double time)
+{
+    const dea_ring *ring = flight->ring;
+    const double begin = flight->motion.segment->from;
+    const double *w = NV_DATA_S(flight->integrator.y);
+    const bool lives = ring->turns && hypot(w[0], w[1]) > flight->tolerance;
+    const double parts = lives ? ceil(ring->omega * (time - before)) : 1.0;
+    for (double i = 0.0; i < parts && flight->peaks; i++) {
+        const double from = before + (time - before) * (i / parts), to = before + (time - before) * ((i + 1.0) / parts);
+        dea_peak_search(&flight->trace->peak, begin + from, begin + to, current_at, flight);
+    }
+}
+
 /* Highest order of BDF behind an explicit method. From order 3 on BDF lets the tail of a ring grow while a step is a part of its
  * period, and may crawl through all that is left, a step a radian. Order 2 never does; of its steps, relaxation takes about
  * 4/tolerance^(1/3). */
@@ -327,10 +341,7 @@ dea_state dea_flight_implicit(dea_flight *flight, double from)
             return DEA_STATE_PULL_IN;
         }
         integrate_step(flight, before, time);
-        if (flight->motion.q >= 0) {
-            const double begin = flight->motion.segment->from;
-            dea_peak_search(&flight->trace->peak, begin + before, begin + time, current_at, flight);
-        }
+        see_current(flight, before, time);
         if (flight->audit) {
             visit_step(flight, before, time, audit_at, NULL);
         }

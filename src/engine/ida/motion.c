@@ -9,8 +9,9 @@ typedef struct local_state {
     double u, v;
     double voltage;       /* of the film [V] */
     double voltage_slope; /* dU/du at constant charge [V/m] */
-    double stress;        /* S + sum c_i (S - z_i) */
-    double force;         /* phi U^2 - A stress [N] */
+    double viscous;       /* sum B_a S_a' [N/m] */
+    double z[DEA_RELAXED_MAX];
+    double force; /* phi U^2 less what the film holds but for its damper [N] */
 } local_state;
 
 /* Rate of all that relaxes and charges [1/s]; 1 where nothing does. */
@@ -21,6 +22,23 @@ static double pace_of(const dea_dynamics *d, double capacitance)
         sum += 1.0 / d->branches[i].tau;
     }
     return sum > 0.0 ? sum : 1.0;
+}
+
+/* Stress and branch that unknown number @p k, a z, belongs to. */
+static size_t stress_of(const dea_motion *m, int k)
+{
+    return (size_t)(k - m->z) / m->dynamics->branch_count;
+}
+
+static const dea_branch *branch_of(const dea_motion *m, int k)
+{
+    return &m->dynamics->branches[(size_t)(k - m->z) % m->dynamics->branch_count];
+}
+
+/* One past the last z. */
+static int relaxed_end(const dea_motion *m)
+{
+    return m->z + (int)dea_dynamics_states(m->dynamics);
 }
 
 void dea_motion_open(dea_dynamics *d, const dea_signal *signal, dea_motion *m)
@@ -38,9 +56,9 @@ void dea_motion_open(dea_dynamics *d, const dea_signal *signal, dea_motion *m)
         m->v = 1;
         m->size[1] = length * sqrt(m->stiffness / d->mass);
     }
-    m->count = m->z + (int)d->branch_count;
+    m->count = m->z + (int)dea_dynamics_states(d);
     for (int i = m->z; i < m->count; i++) {
-        m->size[i] = rest.stress_slope * length;
+        m->size[i] = dea_edge_viscous(d, &rest) / rest.lever[stress_of(m, i)] * length; /* that holds the film at the length */
     }
     if (d->series > 0.0) {
         m->q = m->count++;
@@ -87,18 +105,16 @@ static bool look(const dea_motion *m, double time, const double *y, local_state 
     } else {
         at->voltage = dea_motion_source(m, time);
     }
-    at->stress = at->edge.stress * (1.0 + d->total_share);
-    for (size_t i = 0; i < d->branch_count; i++) {
-        at->stress -= d->branches[i].share * y[m->z + (int)i] * m->size[m->z + (int)i];
-    }
-    at->force = at->edge.push * at->voltage * at->voltage - at->edge.area * at->stress;
+    dea_motion_branches(m, y, at->z);
+    at->viscous = dea_edge_viscous(d, &at->edge);
+    at->force = at->edge.push * at->voltage * at->voltage - dea_edge_held(d, &at->edge, at->z);
     return isfinite(at->force) && isfinite(at->v);
 }
 
-/* Mechanical resistance A tau_KV S' [N s/m]. */
+/* Mechanical resistance tau_KV sum B_a S_a' [N s/m]. */
 static double resistance(const dea_motion *m, const local_state *at)
 {
-    return at->edge.area * m->dynamics->retardation * at->edge.stress_slope;
+    return m->dynamics->retardation * at->viscous;
 }
 
 bool dea_motion_rates(const dea_motion *m, double time, const double *y, double *f)
@@ -120,9 +136,8 @@ bool dea_motion_rates(const dea_motion *m, double time, const double *y, double 
         }
         f[0] = at.force / (r * m->size[0]);
     }
-    for (size_t i = 0; i < d->branch_count; i++) {
-        const int k = m->z + (int)i;
-        f[k] = (at.edge.stress / m->size[k] - y[k]) / d->branches[i].tau;
+    for (int k = m->z; k < relaxed_end(m); k++) {
+        f[k] = (at.edge.stress[stress_of(m, k)] / m->size[k] - y[k]) / branch_of(m, k)->tau;
     }
     if (m->q >= 0) {
         const double current = (dea_motion_source(m, time) - at.voltage) / d->series - at.voltage * d->conductance;
@@ -135,19 +150,17 @@ bool dea_motion_rates(const dea_motion *m, double time, const double *y, double 
 static double force_slope(const dea_motion *m, const local_state *at)
 {
     const dea_edge *e = &at->edge;
-    return (e->push_slope * at->voltage + 2.0 * e->push * at->voltage_slope) * at->voltage - e->area_slope * at->stress -
-           e->area * (1.0 + m->dynamics->total_share) * e->stress_slope;
+    return (e->push_slope * at->voltage + 2.0 * e->push * at->voltage_slope) * at->voltage -
+           dea_edge_held_slope(m->dynamics, e, at->z);
 }
 
-/* The row of the edge equation: force over u, z_i and q, over @p unit [N]. */
+/* The row of the edge equation: force over u, z and q, over @p unit [N]. */
 static void fill_edge_row(const dea_motion *m, const local_state *at, int row, double unit, double *jacobian)
 {
-    const dea_dynamics *d = m->dynamics;
     const int n = m->count;
     jacobian[row] = force_slope(m, at) * m->size[0] / unit;
-    for (size_t i = 0; i < d->branch_count; i++) {
-        const int k = m->z + (int)i;
-        jacobian[k * n + row] = at->edge.area * d->branches[i].share * m->size[k] / unit;
+    for (int k = m->z; k < relaxed_end(m); k++) {
+        jacobian[k * n + row] = at->edge.lever[stress_of(m, k)] * branch_of(m, k)->share * m->size[k] / unit;
     }
     if (m->q >= 0) {
         jacobian[m->q * n + row] = 2.0 * at->edge.push * at->voltage / at->edge.capacitance * m->size[m->q] / unit;
@@ -167,17 +180,17 @@ void dea_motion_jacobian(const dea_motion *m, double time, const double *y, doub
     if (m->v >= 0) {
         const double unit = d->mass * m->size[m->v];
         fill_edge_row(m, &at, m->v, unit, jacobian);
-        jacobian[m->v] -= at.edge.area_slope / at.edge.area * r * at.v * m->size[0] / unit;
+        jacobian[m->v] -= d->retardation * dea_edge_viscous_slope(d, &at.edge) * at.v * m->size[0] / unit;
         jacobian[m->v * n + m->v] = -r / d->mass;
         jacobian[m->v * n] = m->size[m->v] / m->size[0];
     } else {
         fill_edge_row(m, &at, 0, (m->algebraic ? m->stiffness / m->pace : r) * m->size[0], jacobian);
-        jacobian[0] -= m->algebraic ? 0.0 : at.force * at.edge.area_slope / (at.edge.area * r);
+        jacobian[0] -= m->algebraic ? 0.0 : at.force * dea_edge_viscous_slope(d, &at.edge) / (at.viscous * r);
     }
-    for (size_t i = 0; i < d->branch_count; i++) {
-        const int k = m->z + (int)i;
-        jacobian[k] = at.edge.stress_slope * m->size[0] / (m->size[k] * d->branches[i].tau);
-        jacobian[k * n + k] = -1.0 / d->branches[i].tau;
+    for (int k = m->z; k < relaxed_end(m); k++) {
+        const double tau = branch_of(m, k)->tau;
+        jacobian[k] = at.edge.stress_slope[stress_of(m, k)] * m->size[0] / (m->size[k] * tau);
+        jacobian[k * n + k] = -1.0 / tau;
     }
     if (m->q >= 0) {
         const double admittance = 1.0 / d->series + d->conductance;
@@ -201,14 +214,14 @@ double dea_motion_firmness(const dea_motion *m, double time, const double *y)
 
 void dea_motion_branches(const dea_motion *m, const double *y, double *z)
 {
-    for (size_t i = 0; i < m->dynamics->branch_count; i++) {
-        z[i] = y[m->z + (int)i] * m->size[m->z + (int)i];
+    for (int k = m->z; k < relaxed_end(m); k++) {
+        z[k - m->z] = y[k] * m->size[k];
     }
 }
 
 bool dea_motion_jump(const dea_motion *m, double *y)
 {
-    double z[DEA_PRONY_MAX];
+    double z[DEA_RELAXED_MAX];
     double u = y[0] * m->size[0];
     if (!m->algebraic || m->q >= 0) {
         return true;
@@ -235,8 +248,8 @@ bool dea_motion_start(const dea_motion *m, bool from_bias, double *y)
     }
     const dea_edge e = dea_dynamics_edge(d, u);
     y[0] = u / m->size[0];
-    for (size_t i = 0; i < d->branch_count; i++) {
-        y[m->z + (int)i] = e.stress / m->size[m->z + (int)i];
+    for (int k = m->z; k < relaxed_end(m); k++) {
+        y[k] = e.stress[stress_of(m, k)] / m->size[k];
     }
     if (m->q >= 0) {
         y[m->q] = e.capacitance * voltage / m->size[m->q];
@@ -245,19 +258,18 @@ bool dea_motion_start(const dea_motion *m, bool from_bias, double *y)
 }
 
 /* Velocity of a film without mass. */
-static double velocity(const dea_motion *m, double time, const local_state *at, const double *z)
+static double velocity(const dea_motion *m, double time, const local_state *at)
 {
     dea_dynamics *d = m->dynamics;
     if (m->q < 0) {
-        return dea_dynamics_velocity(d, at->u, at->voltage, dea_motion_slope(m, time), z);
+        return dea_dynamics_velocity(d, at->u, at->voltage, dea_motion_slope(m, time), at->z);
     }
     const double current = (dea_motion_source(m, time) - at->voltage) / d->series - at->voltage * d->conductance;
-    return dea_dynamics_velocity_charged(d, at->u, at->voltage, current / at->edge.capacitance, z);
+    return dea_dynamics_velocity_charged(d, at->u, at->voltage, current / at->edge.capacitance, at->z);
 }
 
 dea_moment dea_motion_moment(const dea_motion *m, double time, const double *y)
 {
-    double z[DEA_PRONY_MAX];
     local_state at;
     const double none = (double)NAN;
     dea_moment moment = {
@@ -270,8 +282,7 @@ dea_moment dea_motion_moment(const dea_motion *m, double time, const double *y)
     moment.u = at.u;
     moment.v = at.v;
     if (m->v < 0) {
-        dea_motion_branches(m, y, z);
-        moment.v = velocity(m, time, &at, z);
+        moment.v = velocity(m, time, &at);
     }
     return moment;
 }

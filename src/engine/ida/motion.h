@@ -3,7 +3,7 @@
  *
  *   u    displacement; with mass a state, with a damper alone u' follows from it, with neither algebraic
  *   v    velocity, with mass
- *   z_i  stress that branch i has relaxed from
+ *   z    stresses that the branches have relaxed from, as the dynamics number them
  *   q    charge of the film, with series resistance */
 #ifndef DEA_IDA_MOTION_H
 #define DEA_IDA_MOTION_H
@@ -11,7 +11,7 @@
 #include "drive/signal.h"
 #include "network/dynamics.h"
 
-enum { DEA_MOTION_MOST = DEA_PRONY_MAX + 3 };
+enum { DEA_MOTION_MOST = DEA_RELAXED_MAX + 3 };
 
 typedef struct dea_motion {
     dea_dynamics *dynamics; /* borrowed, as all here */

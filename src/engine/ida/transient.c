@@ -179,7 +179,7 @@ static void tell_averages(const dea_flight *flight, const dea_trace *trace, dea_
 static void tell_peak(const dea_flight *flight, const dea_trace traces[2], dea_summary *summary)
 {
     const dea_peak *a = &traces[0].peak, *b = &traces[1].peak;
-    if (flight->motion.q >= 0 && traces[1].end == DEA_STATE_OK &&
+    if (flight->peaks && traces[1].end == DEA_STATE_OK &&
         fabs(a->current - b->current) <= 10.0 * flight->scene->accuracy * b->current) {
         summary->peak_current = b->current;
         summary->peak_time = b->time;

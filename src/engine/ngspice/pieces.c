@@ -20,7 +20,7 @@ static const double short_edge = 0.1;
 typedef struct film {
     const dea_dynamics *dynamics;
     double mass, resistance, stiffness;
-    double viscous;      /* A S': stiffness of a branch per share [N/m] */
+    double viscous;      /* sum B_a S_a': stiffness of a branch per share [N/m] */
     double transduction; /* T = 2 phi U, 0 where the film sees the source [N/V] */
     double capacitance, conductance;
 } film;
@@ -28,7 +28,7 @@ typedef struct film {
 static film film_at(dea_dynamics *d, double u, double voltage)
 {
     const dea_edge e = dea_dynamics_edge(d, u);
-    const double viscous = e.area * e.stress_slope;
+    const double viscous = dea_edge_viscous(d, &e);
     return (film){.dynamics = d,
                   .mass = d->mass,
                   .resistance = d->retardation * viscous,

@@ -31,23 +31,23 @@ static const double alternating = 2.0;
  * (y(t + h) - y(t - h))/2h, with an error that is even in h as the rule's own. */
 typedef struct fast_rates {
     bool any, u, charge; /* which */
-    bool z[DEA_PRONY_MAX];
+    bool z[DEA_RELAXED_MAX];
 } fast_rates;
 
 typedef struct slopes {
     double u, charge; /* [m/s], [A] */
-    double z[DEA_PRONY_MAX];
+    double z[DEA_RELAXED_MAX];
 } slopes;
 
 /* An accepted point of the library with the slopes that go with it inside one segment. */
 typedef struct node {
     dea_moment moment;
     dea_mobility_state state;
-    double stress;              /* S */
-    double acceleration;        /* with mass [m/s^2] */
-    double current;             /* slope of the charge, with series resistance [A] */
-    double rate[DEA_PRONY_MAX]; /* slopes of z */
-    double complex change;      /* what correct() has added [m] */
+    double stress[DEA_STRESSES];  /* S_a */
+    double acceleration;          /* with mass [m/s^2] */
+    double current;               /* slope of the charge, with series resistance [A] */
+    double rate[DEA_RELAXED_MAX]; /* slopes of z */
+    double complex change;        /* what correct() has added [m] */
 } node;
 
 typedef struct runner {
@@ -81,22 +81,30 @@ static bool is_free(const dea_dynamics *d)
     return !(d->mass > 0.0) && !(d->retardation > 0.0);
 }
 
-/* m u'' = phi U^2 - A [S + tau_KV S' u' + sum c_i (S - z_i)]. */
+/* m u'' = phi U^2 less what the film holds, its damper too. */
 static double acceleration(const dea_dynamics *d, const dea_edge *e, const node *n)
 {
-    double stress = e->stress + d->retardation * e->stress_slope * n->moment.v;
-    for (size_t i = 0; i < d->branch_count; i++) {
-        stress += d->branches[i].share * (e->stress - n->state.z[i]);
-    }
-    return (e->push * n->moment.voltage * n->moment.voltage - e->area * stress) / d->mass;
+    const double held = dea_edge_held(d, e, n->state.z) + d->retardation * dea_edge_viscous(d, e) * n->moment.v;
+    return (e->push * n->moment.voltage * n->moment.voltage - held) / d->mass;
+}
+
+/* Stress and branch of z number @p k. */
+static double stress_of(const dea_dynamics *d, const node *n, size_t k)
+{
+    return n->stress[k / d->branch_count];
+}
+
+static double tau_of(const dea_dynamics *d, size_t k)
+{
+    return d->branches[k % d->branch_count].tau;
 }
 
 /* Rates of the branches: (S - z)/tau, or the slopes of those that are too fast for the steps. */
 static void set_rates(const runner *r, node *n, const slopes *slope)
 {
     const dea_dynamics *d = r->route->dynamics;
-    for (size_t i = 0; i < d->branch_count; i++) {
-        n->rate[i] = slope && r->fast.z[i] ? slope->z[i] : (n->stress - n->state.z[i]) / d->branches[i].tau;
+    for (size_t i = 0; i < dea_dynamics_states(d); i++) {
+        n->rate[i] = slope && r->fast.z[i] ? slope->z[i] : (stress_of(d, n, i) - n->state.z[i]) / tau_of(d, i);
     }
 }
 
@@ -106,9 +114,9 @@ static void set_velocity(const runner *r, const dea_edge *e, node *n)
 {
     dea_dynamics *d = r->route->slow;
     dea_moment *m = &n->moment;
-    double z[DEA_PRONY_MAX]; /* that go with the rates */
-    for (size_t i = 0; i < d->branch_count; i++) {
-        z[i] = r->fast.z[i] ? n->stress - d->branches[i].tau * n->rate[i] : n->state.z[i];
+    double z[DEA_RELAXED_MAX]; /* that go with the rates */
+    for (size_t i = 0; i < dea_dynamics_states(d); i++) {
+        z[i] = r->fast.z[i] ? stress_of(d, n, i) - tau_of(d, i) * n->rate[i] : n->state.z[i];
     }
     if (d->series > 0.0) {
         const double slope = n->current / e->capacitance;
@@ -120,8 +128,9 @@ static void set_velocity(const runner *r, const dea_edge *e, node *n)
 }
 
 /* A film that charges at once: the drop over R_s, a difference of almost equal voltages, follows from i = d(C U)/dt with
- * U' = U_s' - R_s i' instead, where i' is C U_s'' + 2 C' u' U_s' + (C' u'' + C'' u'^2) U_s; C' = 2 phi. (R_s C)^2 i'' is left out:
- * that is nothing where the film charges within a small part of a step, and for a sample where that is of a radian of its ring. */
+ * U' = U_s' - R_s i' instead, where i' is C U_s'' + 2 C' u' U_s' + (C' u'' + C'' u'^2) U_s; C' = 2 phi. (R_s C)^2 i'' is left
+ * out: that is nothing where the film charges within a small part of a step, and for a sample where that is of a radian of its
+ * ring. */
 static void follow_source(const runner *r, const dea_edge *e, node *n)
 {
     const dea_dynamics *d = r->route->dynamics;
@@ -162,7 +171,8 @@ static node node_at(const runner *r, double time, const dea_mobility_state *stat
     dea_dynamics *d = route->dynamics;
     const dea_segment *segment = &route->signal->segments[r->segment];
     const dea_edge e = dea_dynamics_edge(d, state->u);
-    node n = {.state = *state, .stress = e.stress, .moment = {.time = time, .u = state->u, .v = state->v}};
+    node n = {.state = *state, .moment = {.time = time, .u = state->u, .v = state->v}};
+    memcpy(n.stress, e.stress, d->stress_count * sizeof *n.stress);
     n.moment.source = dea_segment_voltage(route->signal, segment, time);
     n.moment.slope = dea_segment_slope(route->signal, segment, time);
     n.moment.voltage = d->series > 0.0 ? state->charge / e.capacitance : n.moment.source;
@@ -216,7 +226,7 @@ static slopes slopes_between(const runner *r, const node *a, const node *b, doub
     const double h = b->moment.time - a->moment.time;
     slopes s = {.u = cubic_slope(a->moment.u, a->moment.v, b->moment.u, b->moment.v, h, x),
                 .charge = cubic_slope(a->state.charge, a->current, b->state.charge, b->current, h, x)};
-    for (size_t i = 0; i < r->route->dynamics->branch_count; i++) {
+    for (size_t i = 0; i < dea_dynamics_states(r->route->dynamics); i++) {
         s.z[i] = cubic_slope(a->state.z[i], a->rate[i], b->state.z[i], b->rate[i], h, x);
     }
     return s;
@@ -236,7 +246,7 @@ static node between(const runner *r, const node *a, const node *b, double time)
     const double h = b->moment.time - a->moment.time;
     const double x = (time - a->moment.time) / h;
     dea_mobility_state s = {.charge = cubic(a->state.charge, a->current, b->state.charge, b->current, h, x)};
-    for (size_t i = 0; i < r->route->dynamics->branch_count; i++) {
+    for (size_t i = 0; i < dea_dynamics_states(r->route->dynamics); i++) {
         s.z[i] = cubic(a->state.z[i], a->rate[i], b->state.z[i], b->rate[i], h, x);
     }
     s.u = place_between(r, a, b, time);
@@ -275,13 +285,14 @@ static double current_at(void *user, double time)
     const stretch *s = user;
     const node *a = &s->runner->last, *b = s->end;
     const node n = time <= a->moment.time ? *a : time >= b->moment.time ? *b : between(s->runner, a, b, time);
-    return n.current + n.moment.voltage * s->runner->route->dynamics->conductance;
+    dea_dynamics *d = s->runner->route->dynamics;
+    return d->series > 0.0 ? n.current + n.moment.voltage * d->conductance : dea_dynamics_current(d, &n.moment);
 }
 
 static void see_current(runner *r, const node *b)
 {
     stretch s = {r, b};
-    if (r->route->dynamics->series > 0.0) {
+    if (r->route->peaks) {
         dea_peak_search(&r->track->peak, r->last.moment.time, b->moment.time, current_at, &s);
     }
 }
@@ -424,7 +435,7 @@ static bool turns_back(const runner *r, const node *n)
     dea_dynamics *d = r->route->dynamics;
     const double end = n->moment.u > 0.0 ? d->point.frame_radius - d->radius : -d->radius;
     const dea_edge e = dea_dynamics_edge(d, (1.0 - 1e-6) * end);
-    const double force = e.push * n->moment.voltage * n->moment.voltage - e.area * e.stress;
+    const double force = e.push * n->moment.voltage * n->moment.voltage - dea_edge_held(d, &e, NULL);
     return !d->linear && isfinite(n->moment.u) && force * end < 0.0;
 }
 
@@ -450,7 +461,7 @@ static slopes slopes_over(const runner *r, const double time[3], const dea_mobil
 {
     slopes s = {.u = parabola_slope(time, state[0]->u, state[1]->u, state[2]->u, at),
                 .charge = parabola_slope(time, state[0]->charge, state[1]->charge, state[2]->charge, at)};
-    for (size_t i = 0; i < r->route->dynamics->branch_count; i++) {
+    for (size_t i = 0; i < dea_dynamics_states(r->route->dynamics); i++) {
         s.z[i] = r->fast.z[i] ? parabola_slope(time, state[0]->z[i], state[1]->z[i], state[2]->z[i], at) : 0.0;
     }
     return s;
@@ -520,14 +531,14 @@ static void find_fast(runner *r)
 {
     dea_dynamics *d = r->route->dynamics;
     const dea_edge e = dea_dynamics_edge(d, r->last.moment.u);
-    const double resistance = e.area * d->retardation * e.stress_slope, limit = r->step / alternating;
+    const double resistance = d->retardation * dea_edge_viscous(d, &e), limit = r->step / alternating;
     const double held = dea_dynamics_stiffness(d, r->last.moment.u, r->last.moment.voltage, false);
     const double heavy = d->mass > 0.0 ? (r->rings || r->slow ? (double)INFINITY : d->mass / resistance) : resistance / held;
     r->fast =
         (fast_rates){.u = !is_free(d) && heavy<limit, .charge = d->series> 0.0 && d->series * e.capacitance < limit && !r->rings};
     r->fast.any = r->fast.u || r->fast.charge;
-    for (size_t i = 0; i < d->branch_count; i++) {
-        r->fast.z[i] = d->branches[i].tau < limit;
+    for (size_t i = 0; i < dea_dynamics_states(d); i++) {
+        r->fast.z[i] = tau_of(d, i) < limit;
         r->fast.any = r->fast.any || r->fast.z[i];
     }
 }
@@ -715,9 +726,7 @@ static bool start(runner *r)
         }
         const dea_edge e = dea_dynamics_edge(d, state.u);
         state.charge = e.capacitance * voltage;
-        for (size_t i = 0; i < d->branch_count; i++) {
-            state.z[i] = e.stress;
-        }
+        dea_edge_relax(d, &e, state.z);
     }
     r->last = node_at(r, 0.0, &state, NULL);
     r->track->start = state;

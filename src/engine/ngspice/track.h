@@ -37,6 +37,7 @@ typedef struct dea_route {
     size_t samples;
     double voltage; /* most that the film sees [V] */
     double scale;   /* size of a displacement [m] */
+    bool peaks; /* the current between samples is known */
     double omega;   /* of the ring [rad/s], 0: none */
     double unit;    /* of the times of the scene [1/s] */
 } dea_route;

@@ -33,7 +33,8 @@ static const double enough = 1e-3;
 
 typedef struct levels {
     dea_track coarse, fine; /* the last two runs */
-    dea_track before;       /* extrapolated from the two before: points and integrals only */
+    dea_track before;       /* extrapolated from the two before: points, integrals and peak only */
+    double peak_error;      /* of the answer for the peak of the current [A] */
     size_t runs;
     double error;    /* of the answer: that of the column that is worst against what it promises */
     double displacement;   /* error of displacement and charge */
@@ -138,15 +139,25 @@ static bool is_shown(const dea_route *route, const dea_track_point *point)
     return point->u > -d->radius && point->u < d->point.frame_radius - d->radius;
 }
 
-/* The peak of the current, where the answer of the two last runs is within ten times the accuracy: half their difference bounds
- * its error. */
+/* The peak of the current: half the difference of two runs, from three on 2.5 times that of what they extrapolate to, bounds its
+ * error. */
+static void judge_peak(levels *l)
+{
+    const double coarse = l->coarse.peak.current, fine = l->fine.peak.current, answer = better(coarse, fine);
+    l->peak_error = 0.5 * fabs(fine - coarse);
+    if (l->runs > 2) {
+        l->peak_error = fmin(l->peak_error, 2.5 * fabs(answer - l->before.peak.current));
+    }
+    l->before.peak = (dea_peak){answer, l->fine.peak.time};
+}
+
+/* Where it is within ten times the accuracy. */
 static void tell_peak(const dea_route *route, const levels *l, dea_summary *summary)
 {
-    const double coarse = l->coarse.peak.current, fine = l->fine.peak.current;
-    const bool told = route->dynamics->series > 0.0 && l->fine.end == DEA_STATE_OK &&
-                      0.5 * fabs(fine - coarse) <= 10.0 * route->scene->accuracy * fine;
-    summary->peak_current = told ? better(coarse, fine) : (double)NAN;
-    summary->peak_time = told ? l->fine.peak.time : (double)NAN;
+    const bool told = route->peaks && l->fine.end == DEA_STATE_OK &&
+                      l->peak_error <= 10.0 * route->scene->accuracy * l->before.peak.current;
+    summary->peak_current = told ? l->before.peak.current : (double)NAN;
+    summary->peak_time = told ? l->before.peak.time : (double)NAN;
 }
 
 /* Two runs: twice their difference; the error of the finer one is 1/3 of it in theory. Three: 2.5 times the difference of what
@@ -174,6 +185,7 @@ static void judge(const dea_route *route, levels *l)
             l->before.points[i] = answer;
         }
     }
+    judge_peak(l);
     widen_means(route, l, shown ? (double)INFINITY : last, &second, &fourth);
     l->displacement = 2.0 * largest(&second);
     l->rates = (dea_rate_errors){2.0 * second.most.v, 2.0 * second.most.current};
@@ -190,11 +202,11 @@ static void judge(const dea_route *route, levels *l)
     }
 }
 
-static dea_mobility_state better_state(const dea_mobility_state *coarse, const dea_mobility_state *fine, size_t branches)
+static dea_mobility_state better_state(const dea_mobility_state *coarse, const dea_mobility_state *fine, size_t relaxed)
 {
     dea_mobility_state state = {
         better(coarse->u, fine->u), better(coarse->v, fine->v), better(coarse->charge, fine->charge), {0}};
-    for (size_t i = 0; i < branches; i++) {
+    for (size_t i = 0; i < relaxed; i++) {
         state.z[i] = better(coarse->z[i], fine->z[i]);
     }
     return state;
@@ -214,7 +226,7 @@ static void fill_summary(const dea_route *route, const levels *l, dea_summary *s
     }
     const dea_audit audit = {better(coarse->work, fine->work), better(coarse->dissipated, fine->dissipated),
                              better(coarse->branch, fine->branch), fine->largest};
-    const dea_mobility_state stop = better_state(&l->coarse.stop, &l->fine.stop, d->branch_count);
+    const dea_mobility_state stop = better_state(&l->coarse.stop, &l->fine.stop, dea_dynamics_states(d));
     dea_moment last = l->fine.last;
     last.u = stop.u;
     last.v = stop.v;
@@ -448,7 +460,7 @@ static double scale_of(dea_dynamics *d, const dea_transient *transient, double v
 static bool is_weightless(dea_dynamics *d, double accuracy)
 {
     const dea_edge e = dea_dynamics_edge(d, 0.0);
-    const double resistance = e.area * d->retardation * e.stress_slope;
+    const double resistance = d->retardation * dea_edge_viscous(d, &e);
     return d->mass * dea_dynamics_stiffness(d, 0.0, 0.0, false) <= 1e-3 * accuracy * resistance * resistance;
 }
 
@@ -520,6 +532,7 @@ static dea_status run_on(dea_route *route, dea_sample *samples, dea_summary *sum
     }
     route->pieces = &pieces;
     route->omega = pace.omega;
+    route->peaks = dea_peak_is_known(route->scene, route->dynamics, route->signal);
     route->voltage = film_voltage(route->dynamics, transient, route->signal);
     route->scale = scale_of(route->dynamics, transient, route->voltage);
     if (status == DEA_OK) {

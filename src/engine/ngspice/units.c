@@ -13,8 +13,8 @@ static double unit_for(double size)
 dea_units dea_units_of(dea_dynamics *dynamics, const dea_sizes *sizes)
 {
     const dea_edge rest = dea_dynamics_edge(dynamics, 0.0);
-    const double stress = rest.stress_slope * sizes->displacement;
-    const double force = unit_for(rest.area * stress);
+    const double stress = fabs(rest.stress_slope[0]) * sizes->displacement;
+    const double force = unit_for(dea_edge_viscous(dynamics, &rest) * sizes->displacement);
     dea_units units = {.length = unit_for(sizes->displacement),
                        .thickness = 1.0,
                        .voltage = unit_for(sizes->voltage),

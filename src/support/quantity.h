@@ -1,6 +1,6 @@
 /* Numbers with units, independent of the locale of the caller. */
-#ifndef DEA_SCENE_QUANTITY_H
-#define DEA_SCENE_QUANTITY_H
+#ifndef DEA_SUPPORT_QUANTITY_H
+#define DEA_SUPPORT_QUANTITY_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -16,6 +16,10 @@ void dea_units_close(dea_units *units);
 
 /* Reads "30 mm" as a number of @p unit ("1": a bare number or a percentage). On false, @p reason says why not. */
 bool dea_quantity_read(dea_units *units, const char *text, const char *unit, double *value, char reason[DEA_REASON_LENGTH]);
+/* Factor from the bare @p unit, as a table's header has it ("kV", "%"), to @p target; false where it is no such unit. */
+bool dea_unit_factor(dea_units *units, const char *unit, const char *target, double *factor);
+/* number * factor, the factor taken as the whole number, or the inverse of one, that it is: 100 um are 1e-4 m to the last bit. */
+double dea_unit_scale(double number, double factor);
 /* Reads the @p length bytes at @p text as one plain number. */
 bool dea_number_read(dea_units *units, const char *text, size_t length, double *value);
 /* Reads a whole number 1 ... @p most. */

@@ -1,6 +1,6 @@
 /* Bytes of a file, read whole. */
-#ifndef DEA_SCENE_FILE_H
-#define DEA_SCENE_FILE_H
+#ifndef DEA_SUPPORT_FILE_H
+#define DEA_SUPPORT_FILE_H
 
 #include <stdbool.h>
 

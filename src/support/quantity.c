@@ -1,4 +1,4 @@
-#include "scene/quantity.h"
+#include "support/quantity.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -351,9 +351,7 @@ static bool number_convert(dea_units *units, const char *text, double *value, ch
     return fits;
 }
 
-/* number * factor; a factor that is a whole number, or one over a whole number, is taken as that, so that 100 um is exactly 1e-4
- * m. */
-static double scale(double number, double factor)
+double dea_unit_scale(double number, double factor)
 {
     const bool small = factor < 1.0;
     const double ratio = small ? 1.0 / factor : factor;
@@ -389,7 +387,7 @@ static bool unit_apply(dea_units *units, const char *written, const char *unit, 
         return false;
     }
     const double number = *value;
-    *value = scale(number, factor);
+    *value = dea_unit_scale(number, factor);
     if (!isfinite(*value) || (*value == 0.0) != (number == 0.0)) {
         snprintf(reason, DEA_REASON_LENGTH, "too large or too small for a number of double precision");
         return false;
@@ -446,6 +444,17 @@ bool dea_quantity_read(dea_units *units, const char *text, const char *unit, dou
     const char *written = text + length;
     written += strspn(written, " \t");
     return number_convert(units, number, value, reason) && unit_apply(units, written, unit, value, reason);
+}
+
+bool dea_unit_factor(dea_units *units, const char *unit, const char *target, double *factor)
+{
+    char reason[DEA_REASON_LENGTH];
+    *factor = 1.0;
+    if (strcmp(target, "1") == 0) {
+        *factor = strcmp(unit, "%") == 0 ? 0.01 : 1.0;
+        return *factor < 1.0 || strcmp(unit, "1") == 0 || strcmp(unit, "-") == 0 || strcmp(unit, "mm/mm") == 0;
+    }
+    return factor_find(units, unit, target, factor, reason);
 }
 
 bool dea_number_read(dea_units *units, const char *text, size_t length, double *value)

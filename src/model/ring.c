@@ -1,0 +1,242 @@
+/* Disc and annulus as one ring of film each, under their mean stretches, both linear in the displacement of the edge u = s r_a
+ * (physics: section 7). With e the relative change of a stretch, A = r_a/lambda_pre and F = r/lambda_pre:
+ *
+ *     disc  e = s,    annulus  e1 = -s B/(1 - B),  e2 = s B/(1 + B),    lambda = lambda_pre (1 + e)
+ *     2 pi A H s_disc + pi H [ (F - A) s_hoop - (F + A) s_radial ]_annulus = 0
+ *
+ * with the nominal stresses s_a = P_a - eps (U/H)^2 (lambda_1 lambda_2)^2/lambda_a where electroded: the gradient of one energy.
+ */
+#include "expression/formula.h"
+#include "model/models.h"
+#include "model/path.h"
+#include "network/hyperelastic.h"
+
+/* One place of an iteration: the excess held - m weight, and its slope. */
+typedef struct guess {
+    double x, excess, slope;
+} guess;
+
+/* What does not change along the path of one point. */
+typedef struct rings {
+    const dea_film *film;
+    bool dot;
+    double radial, hoop; /* e1/s and e2/s of the annulus */
+    double outer, inner; /* (F + A)/2A, (F - A)/2A */
+    double aspect;       /* (F + A)/(F - A) */
+} rings;
+
+/* Area stretch of the electroded film over lambda_pre^2. */
+static inline double area_at(const rings *r, double s)
+{
+    return r->dot ? (1.0 + s) * (1.0 + s) : (1.0 + r->radial * s) * (1.0 + r->hoop * s);
+}
+
+/* One place of the path: both sides of the balance over 2 pi A H, against x = |s|. */
+typedef struct ring_place {
+    dea_path_place path;
+    double x;
+    dea_biaxial disc, annulus;
+} ring_place;
+
+/* The weight of the load is the edge's radius over r_a times the area stretch of the electroded film. */
+static inline ring_place place_at(const rings *r, double x)
+{
+    const double s = r->dot ? x : -x;
+    const double e1 = r->radial * s, e2 = r->hoop * s, edge = 1.0 + s;
+    ring_place place = {.x = x, .disc = dea_film_biaxial(r->film, s, s), .annulus = dea_film_biaxial(r->film, e1, e2)};
+    const dea_biaxial *disc = &place.disc, *annulus = &place.annulus;
+    const double held = disc->p1 + r->inner * annulus->p2 - r->outer * annulus->p1;
+    place.path.held = r->dot ? held : -held;
+    place.path.slope = r->film->prestretch *
+                       (disc->w11 + disc->w12 + 0.5 * (annulus->w11 * r->aspect + annulus->w22 / r->aspect) - annulus->w12);
+    const double area = area_at(r, s);
+    place.path.weight = edge * area;
+    place.path.weight_slope = r->dot ? 3.0 * area : -(area + edge * (r->radial * (1.0 + e2) + r->hoop * (1.0 + e1)));
+    return place;
+}
+
+static dea_path_place path_place(const void *user, double x)
+{
+    return place_at(user, x).path;
+}
+
+/* Zero of the cubic that has the values and slopes of x over the excess at two places. */
+static double between(const guess *a, const guess *b)
+{
+    const double over = 1.0 / (b->excess - a->excess);
+    const double chord = (b->x - a->x) * over, slope = 1.0 / b->slope;
+    const double second = (slope - chord) * over, first = (chord - 1.0 / a->slope) * over;
+    return b->x - b->excess * (slope - b->excess * (second - a->excess * (second - first) * over));
+}
+
+/* False where the iteration from rest does not settle; @p at is the last place but the root, which lies next to it. The error of
+ * the cubic goes with the square of both last steps: where that is below rounding no further one is needed. */
+static bool settle(const rings *r, const dea_path *path, double m, double *x, ring_place *at)
+{
+    guess a = {0.0, -m, path->rest - m * (r->dot ? 3.0 : -1.0 - r->radial - r->hoop)};
+    double next = m / a.slope, last = next;
+    for (int i = 0; i < 12 && next >= 0.0 && next < path->end; i++) {
+        *at = place_at(r, next);
+        const guess b = {next, at->path.held - m * at->path.weight, at->path.slope - m * at->path.weight_slope};
+        if (!(b.slope > 0.0)) {
+            return false;
+        }
+        *x = next = b.excess != a.excess ? between(&a, &b) : b.x - b.excess / b.slope;
+        const double step = next - b.x;
+        const double left = step * last / path->share;
+        const bool is_root = fabs(b.excess) <= 2.0 * fabs(b.slope * step); /* next to the end steps are short, too */
+        if (is_root && fabs(step) <= 1e-3 * next && left * left <= 1e-17 * next * path->share) {
+            return next < path->end;
+        }
+        a = b;
+        last = step;
+    }
+    return false;
+}
+
+/* True where the slope of U^2 keeps far from zero from rest to x: over so short a way its values at both ends and its mean that
+ * stay within a factor of two leave no room for a fold between. Spares the samples of dea_path_grows(). */
+static bool cannot_fold(const dea_path *path, double m, double x, const dea_path_place *at)
+{
+    const double mean = m / x, end = dea_path_fold(at) / at->weight;
+    return x <= 3.0 * dea_path_width(path, 0.0) && fmin(fmin(mean, end), path->rest) > 0.5 * fmax(fmax(mean, end), path->rest);
+}
+
+/* Equilibrium x = |s| under the load m = eps (U/H)^2 lambda_pre^3 and the place there; false where none is connected to rest. */
+static bool balance(const rings *r, double m, double *x, ring_place *at)
+{
+    const dea_film *film = r->film;
+    const double lame = film->w11 + 0.5 * film->w11 * (r->aspect + 1.0 / r->aspect);
+    const dea_path path = {path_place, r, film->prestretch * lame, r->dot ? 2.0 * r->inner : 1.0, r->inner / (r->inner + 0.5)};
+    if (!isfinite(m) || !(path.rest > 0.0)) {
+        return false;
+    }
+    if (settle(r, &path, m, x, at) && (cannot_fold(&path, m, *x, &at->path) || dea_path_grows(&path, *x))) {
+        return true;
+    }
+    const bool found = dea_path_trace(&path, m, x);
+    *at = place_at(r, *x);
+    return found;
+}
+
+/* Smallest in-plane nominal stress of disc and annulus, each with its electrical part eps (U/H)^2 (l1 l2)^2/l_a, is positive. The
+ * stresses are those of a place so near that its tangents lead to x. */
+static bool is_taut(const rings *r, double k, double x, double area, const ring_place *at)
+{
+    const double s = r->dot ? x : -x, l0 = r->film->prestretch;
+    const double change = l0 * (r->dot ? x - at->x : at->x - x), pull = k * l0 * l0 * l0 * area * area;
+    const dea_biaxial *disc = &at->disc, *annulus = &at->annulus;
+    double p = disc->p1 + (disc->w11 + disc->w12) * change;
+    double radial = annulus->p1 + (annulus->w11 * r->radial + annulus->w12 * r->hoop) * change;
+    double hoop = annulus->p2 + (annulus->w12 * r->radial + annulus->w22 * r->hoop) * change;
+    if (r->dot) {
+        p -= pull / (1.0 + s);
+    } else {
+        radial -= pull / (1.0 + r->radial * s);
+        hoop -= pull / (1.0 + r->hoop * s);
+    }
+    return r->film->tension + fmin(p, fmin(radial, hoop)) > 0.0;
+}
+
+static void solve(const dea_point *point, double accuracy, dea_row *row)
+{
+    (void)accuracy;
+    const dea_film *film = &point->film;
+    const double b = point->coverage, nominal = dea_point_nominal_field(point);
+    const rings r = {.film = film,
+                     .dot = point->kind == DEA_DOT,
+                     .radial = -b / (1.0 - b),
+                     .hoop = b / (1.0 + b),
+                     .outer = 0.5 * (1.0 + b) / b,
+                     .inner = 0.5 * (1.0 - b) / b,
+                     .aspect = (1.0 + b) / (1.0 - b)};
+    const double k = film->permittivity * nominal * nominal, m = k * film->square * film->prestretch;
+    double x = 0.0;
+    ring_place at = {0};
+    if (m != 0.0 && !balance(&r, m, &x, &at)) {
+        dea_row_refuse(row, DEA_STATE_PULL_IN);
+        return;
+    }
+    const double sign = dea_point_sign(point), s = sign * x, area = area_at(&r, s);
+    const double force = 2.0 * DEA_PI * point->film_thickness * (dea_point_divide(point) / film->prestretch) * m;
+    dea_row_fill(row, point, s, sign * force * (1.0 + s) * area, film->square * area, is_taut(&r, k, x, area, &at));
+}
+
+/* Relative changes of the stretches, and what area stretch the electroded film has over lambda_pre^2. */
+typedef struct ring_strains {
+    dea_expr disc, radial, hoop, area;
+} ring_strains;
+
+static ring_strains strains_of(const dea_symbols *symbols, dea_expr disc)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_expr one = NUM(1.0), width = MUL(symbols->frame_radius, ADD(one, symbols->coverage)); /* r + r_a */
+    ring_strains e = {disc, dea_symbols_annulus_strain(symbols), DIV(dea_expr_node(pool, 0), width), 0};
+    e.area = symbols->kind == DEA_DOT ? SQUARE(ADD(one, disc)) : MUL(ADD(one, e.radial), ADD(one, e.hoop));
+    return e;
+}
+
+/* The Cauchy stress at rest on levers that change: with sigma = sigma_pre everywhere their forces at rest cancel, and
+ *
+ *     G = -u pi H sigma_pre/lambda_pre^2 [ 2/(1 + e) + c/(1 + e1) + 1/(c (1 + e2)) ],   c = (1 + B)/(1 - B). */
+static dea_expr tension_of(const dea_symbols *symbols, const ring_strains *e)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_expr one = NUM(1.0);
+    const dea_expr rest = DIV(dea_symbols_rest_stress(symbols), SQUARE(symbols->prestretch));
+    const dea_expr c = DIV(ADD(one, symbols->coverage), SUB(one, symbols->coverage));
+    const dea_expr front = SCALE(DEA_PI, MUL(symbols->film_thickness, rest));
+    const dea_expr sum =
+        ADD(DIV(NUM(2.0), ADD(one, e->disc)), ADD(DIV(c, ADD(one, e->radial)), DIV(one, MUL(c, ADD(one, e->hoop)))));
+    return NEG(MUL(MUL(front, sum), dea_expr_node(pool, 0)));
+}
+
+static void limit_tension(const dea_symbols *symbols, dea_network *network, const ring_strains *e)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_expr rest = dea_symbols_rest_stress(symbols);
+    const dea_expr pull = MUL(dea_symbols_pressure(symbols), SQUARE(MUL(SQUARE(symbols->prestretch), e->area)));
+    const bool dot = symbols->kind == DEA_DOT;
+    const dea_expr disc = ADD(rest, dea_hyperelastic_change(symbols, e->disc));
+    const dea_expr radial = ADD(rest, dea_hyperelastic_principal(symbols, e->radial, e->hoop));
+    const dea_expr hoop = ADD(rest, dea_hyperelastic_principal(symbols, e->hoop, e->radial));
+    dea_network_taut(network, dot ? SUB(disc, pull) : disc);
+    dea_network_taut(network, dot ? radial : SUB(radial, pull));
+    dea_network_taut(network, dot ? hoop : SUB(hoop, pull));
+}
+
+/* The principal Cauchy stresses with their levers, 2 pi A H/lambda and pi H (F +- A)/lambda_a. */
+static void build(const dea_symbols *symbols, dea_network *network)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_expr one = NUM(1.0);
+    const ring_strains e = strains_of(symbols, network->strain);
+    const dea_expr unit = SCALE(DEA_PI, DIV(MUL(symbols->frame_radius, symbols->film_thickness), SQUARE(symbols->prestretch)));
+    const dea_expr outer = MUL(unit, ADD(one, symbols->coverage)), inner = MUL(unit, SUB(one, symbols->coverage));
+    dea_network_add_stress(network, "n_disc", "disc, sigma - sigma_pre [Pa] on 2 pi A H/lambda",
+                           dea_hyperelastic_change(symbols, e.disc), dea_hyperelastic_area(symbols, e.disc));
+    dea_network_add_stress(network, "n_radial", "annulus, radial sigma_pre - sigma [Pa] on pi H (F + A)/lambda",
+                           NEG(dea_hyperelastic_principal(symbols, e.radial, e.hoop)), DIV(outer, ADD(one, e.radial)));
+    dea_network_add_stress(network, "n_hoop", "annulus, hoop sigma - sigma_pre [Pa] on pi H (F - A)/lambda",
+                           dea_hyperelastic_principal(symbols, e.hoop, e.radial), DIV(inner, ADD(one, e.hoop)));
+    dea_network_add(network, DEA_ROLE_TENSION, "n_tension", "pre-stress sigma_pre on the change of these areas [N]",
+                    tension_of(symbols, &e));
+    const dea_expr rest = MUL(dea_symbols_pressure(symbols), SQUARE(SQUARE(symbols->prestretch)));
+    const dea_expr force = MUL(MUL(dea_symbols_cross_section(symbols), rest), MUL(ADD(one, e.disc), e.area));
+    dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force U^2/2 dC/du of the true area [N]",
+                    SCALE(network->sign, force));
+    network->capacitance = MUL(dea_symbols_capacitance(symbols), SQUARE(e.area));
+    network->end = symbols->kind == DEA_DOT ? dea_symbols_annulus_width(symbols) : MUL(symbols->coverage, symbols->frame_radius);
+    network->field = MUL(MUL(DIV(symbols->voltage, symbols->film_thickness), SQUARE(symbols->prestretch)), e.area);
+    limit_tension(symbols, network, &e);
+}
+
+const dea_model dea_model_ring = {
+    .name = "ring",
+    .equation = "one ring of film each for disc and annulus",
+    .leaves_out = "how stress and stretch vary across the annulus",
+    .lens = true,
+    .solve = solve,
+    .network = build,
+    .dynamic = true,
+};

@@ -1,0 +1,231 @@
+#include "program/answer.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "model/models.h"
+#include "network/swing.h"
+#include "program/omissions.h"
+#include "support/number.h"
+
+dea_answer dea_answer_begin(void)
+{
+    const dea_spot none = {.value = (double)NAN};
+    dea_answer answer = {.strain = none, .displacement = none, .field = none, .charge = none, .capacitance = (double)NAN};
+    for (size_t i = 0; i < DEA_STATE_COUNT; i++) {
+        answer.firsts[i] = none;
+    }
+    return answer;
+}
+
+/* NAN where the study has no such column. */
+static double column_of(const dea_layout *layout, const void *row, const char *name)
+{
+    double value = (double)NAN;
+    for (size_t i = 0; i < layout->column_count; i++) {
+        if (strcmp(layout->columns[i].name, name) == 0) {
+            memcpy(&value, (const char *)row + layout->columns[i].offset, sizeof value);
+        }
+    }
+    return value;
+}
+
+/* Keeps the larger one; of two rows one that is `ok`, where @p sound is asked for. */
+static bool keep_larger(dea_spot *spot, dea_spot here, bool sound)
+{
+    const bool was = spot->state == DEA_STATE_OK, is = here.state == DEA_STATE_OK;
+    const bool better = sound && was != is ? is : fabs(here.value) > fabs(spot->value);
+    const bool takes = isfinite(here.value) && (isnan(spot->value) || better);
+    if (takes) {
+        *spot = here;
+    }
+    return takes;
+}
+
+static void take_row(dea_answer *answer, const dea_layout *layout, dea_spot here, const void *row)
+{
+    answer->states[here.state]++;
+    if (isnan(answer->firsts[here.state].value)) {
+        here.value = 0.0;
+        answer->firsts[here.state] = here;
+    }
+    here.value = column_of(layout, row, "strain");
+    keep_larger(&answer->strain, here, true);
+    here.value = column_of(layout, row, "displacement_m");
+    keep_larger(&answer->displacement, here, true);
+    here.value = column_of(layout, row, "field_V_per_m");
+    keep_larger(&answer->field, here, false);
+    here.value = column_of(layout, row, "charge_C");
+    if (keep_larger(&answer->charge, here, false)) {
+        answer->capacitance = column_of(layout, row, "capacitance_F");
+    }
+}
+
+void dea_answer_take(dea_answer *answer, const dea_layout *layout, size_t number, const void *point)
+{
+    for (size_t i = 0; i < layout->rows; i++) {
+        const void *row = (const char *)point + i * layout->row_size;
+        take_row(answer, layout, (dea_spot){.number = number, .row = i, .state = dea_layout_state(layout, row)}, row);
+    }
+}
+
+/* Digits that a relative error leaves. */
+static int digits_of(double error)
+{
+    return error < 5e-5 ? 4 : error < 5e-4 ? 3 : 2;
+}
+
+static void print_quantity(double value, const char *unit, int digits)
+{
+    char text[64];
+    fputs(dea_quantity_digits(value, unit, digits, text), stderr);
+}
+
+/* " at coverage = 0.5, voltage = 4.5 kV, t = 2 s", nothing where there is one row only. */
+static void print_place(const dea_scene *scene, const dea_spot *spot)
+{
+    const char *before = " at ";
+    size_t step = dea_scene_point_count(scene);
+    for (size_t i = 0; i < scene->axis_count; i++) {
+        const dea_axis *axis = &scene->axes[i];
+        const char *dot = strrchr(axis->key, '.');
+        step /= axis->count;
+        fprintf(stderr, "%s%s = ", before, dot ? dot + 1 : axis->key);
+        print_quantity(axis->values[spot->number / step % axis->count], axis->unit, 6);
+        before = ", ";
+    }
+    if (scene->study == DEA_STUDY_TRANSIENT) {
+        fprintf(stderr, "%st = ", before);
+        print_quantity(dea_layout_place(scene, spot->row), "s", 6);
+    }
+}
+
+static void print_state(const dea_spot *spot)
+{
+    if (spot->state != DEA_STATE_OK) {
+        fprintf(stderr, " (%s)", dea_state_name(spot->state));
+    }
+}
+
+static bool same_place(const dea_spot *a, const dea_spot *b)
+{
+    return a->number == b->number && a->row == b->row;
+}
+
+static void print_stroke(const dea_answer *answer, const dea_scene *scene)
+{
+    char text[DEA_NUMBER_LENGTH];
+    const int digits = digits_of(scene->accuracy);
+    if (isnan(answer->displacement.value)) {
+        fputs("no row with numbers\n", stderr);
+        return;
+    }
+    const bool together = same_place(&answer->strain, &answer->displacement);
+    fprintf(stderr, "largest strain %s %%", dea_number_text(text, 100.0 * answer->strain.value, digits));
+    if (!together) {
+        print_place(scene, &answer->strain);
+        print_state(&answer->strain);
+        fputs(", largest", stderr);
+    } else {
+        fputs(" and", stderr);
+    }
+    fputs(" displacement ", stderr);
+    print_quantity(answer->displacement.value, "m", digits);
+    print_place(scene, &answer->displacement);
+    print_state(&answer->displacement);
+    fputc('\n', stderr);
+}
+
+static void print_field(const dea_answer *answer, const dea_scene *scene)
+{
+    if (isnan(answer->field.value)) {
+        return;
+    }
+    const int digits = digits_of(10.0 * scene->accuracy);
+    const double strength = dea_scene_of_run(scene, answer->field.number).material.breakdown;
+    fputs("  true field at most ", stderr);
+    print_quantity(answer->field.value, "V/m", digits);
+    print_place(scene, &answer->field);
+    if (isfinite(strength)) {
+        fprintf(stderr, ", %.*g %% of the strength ", digits, 100.0 * answer->field.value / strength);
+        print_quantity(strength, "V/m", 6);
+    } else {
+        fputs("; strength unknown", stderr);
+    }
+    fputc('\n', stderr);
+}
+
+/* What the film takes where it takes most. */
+static void print_charge(const dea_answer *answer, const dea_scene *scene)
+{
+    const int digits = digits_of(10.0 * scene->accuracy);
+    if (isnan(answer->charge.value)) {
+        return;
+    }
+    fputs("  charge at most ", stderr);
+    print_quantity(answer->charge.value, "C", digits);
+    print_place(scene, &answer->charge);
+    if (!isnan(answer->capacitance)) {
+        fputs(", capacitance ", stderr);
+        print_quantity(answer->capacitance, "F", digits);
+        fputs(" and energy ", stderr);
+        print_quantity(0.5 * answer->charge.value * answer->charge.value / answer->capacitance, "J", digits);
+        fputs(" there", stderr);
+    }
+    fputc('\n', stderr);
+}
+
+/* Of the film at rest and 0 V, in the place of the largest displacement; a transient tells of its resonance itself. */
+static void print_rest(const dea_answer *answer, const dea_scene *scene, const dea_model *model)
+{
+    dea_point point;
+    dea_scene here = dea_scene_of_run(scene, answer->displacement.number);
+    here.drive.voltage = 0.0;
+    dea_film_prepare(&here, &point.film);
+    dea_point_place(&here, &point);
+    if (!dea_point_valid(&point)) {
+        return;
+    }
+    const double capacitance = dea_point_capacitance(&point);
+    const dea_swing swing = dea_swing_free(&here, model);
+    fputs(scene->axis_count > 0 ? "  there, at rest and 0 V: capacitance " : "  at rest and 0 V: capacitance ", stderr);
+    print_quantity(capacitance, "F", 4);
+    if (!isnan(here.drive.series_resistance)) {
+        fputs(", R_s C ", stderr);
+        print_quantity(here.drive.series_resistance * capacitance, "s", 4);
+    }
+    if (isfinite(swing.frequency) && scene->study != DEA_STUDY_TRANSIENT) {
+        fputs(", first resonance ", stderr);
+        print_quantity(swing.frequency, "Hz", 4);
+    }
+    fputc('\n', stderr);
+}
+
+static void print_states(const dea_answer *answer, const dea_scene *scene)
+{
+    for (size_t i = DEA_STATE_OK + 1; i < DEA_STATE_COUNT; i++) {
+        if (answer->states[i] > 0) {
+            fprintf(stderr, "  %s in %zu row%s, first", dea_state_name((dea_state)i), answer->states[i],
+                    answer->states[i] == 1 ? "" : "s");
+            print_place(scene, &answer->firsts[i]);
+            fputc('\n', stderr);
+        }
+    }
+}
+
+void dea_answer_print(const dea_answer *answer, const dea_scene *scene, size_t model)
+{
+    if (scene->study == DEA_STUDY_AC) {
+        print_rest(answer, scene, scene->models[model]);
+        return;
+    }
+    if (scene->model_count > 1) {
+        fprintf(stderr, "%s: ", scene->models[model]->name);
+    }
+    print_stroke(answer, scene);
+    print_rest(answer, scene, scene->models[model]);
+    print_field(answer, scene);
+    print_charge(answer, scene);
+    print_states(answer, scene);
+}

@@ -1,0 +1,37 @@
+/** @file answer.h
+ * What a run says of the actuator, model by model: how far it moves and where, how near it is to breakdown, what it takes
+ * electrically, and where its states begin.
+ */
+#ifndef DEA_PROGRAM_ANSWER_H
+#define DEA_PROGRAM_ANSWER_H
+
+#include "deaspice/result.h"
+#include "deaspice/scene.h"
+
+/** A row of a study. */
+typedef struct dea_spot {
+    double value;  /**< what was looked for there, by magnitude the largest; NAN: none yet */
+    size_t number; /**< of its point, counted within its model */
+    size_t row;
+    dea_state state;
+} dea_spot;
+
+/** What was seen of one model. */
+typedef struct dea_answer {
+    dea_spot strain;       /**< [1], of rows that are `ok` where there are any */
+    dea_spot displacement; /**< [m], likewise */
+    dea_spot field;        /**< true field [V/m], of all rows */
+    dea_spot charge;       /**< of the film [C], of all rows */
+    double capacitance;    /**< in that row [F], NAN: not told */
+    size_t states[DEA_STATE_COUNT];
+    dea_spot firsts[DEA_STATE_COUNT];
+} dea_answer;
+
+/** An answer that has seen nothing. */
+dea_answer dea_answer_begin(void);
+/** Takes the rows of point number @p number, counted within its model. */
+void dea_answer_take(dea_answer *answer, const dea_layout *layout, size_t number, const void *point);
+/** Prints what model number @p model has shown on standard error; nothing of a frequency response but its electrical side. */
+void dea_answer_print(const dea_answer *answer, const dea_scene *scene, size_t model);
+
+#endif

@@ -6,9 +6,9 @@
  *
  * with the nominal stresses s_a = P_a - eps (U/H)^2 (lambda_1 lambda_2)^2/lambda_a where electroded: the gradient of one energy.
  */
+#include "expression/formula.h"
 #include "model/models.h"
 #include "model/path.h"
-#include "expression/formula.h"
 #include "network/hyperelastic.h"
 
 /* One place of an iteration: the excess held - m weight, and its slope. */
@@ -159,7 +159,12 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     }
     const double sign = dea_point_sign(point), s = sign * x, area = area_at(&r, s);
     const double force = 2.0 * DEA_PI * point->film_thickness * (dea_point_divide(point) / film->prestretch) * m;
-    dea_row_fill(row, point, s, sign * force * (1.0 + s) * area, film->square * area, is_taut(&r, k, x, area, &at));
+    dea_row_fill(row, point,
+                 (dea_found){.strain = s,
+                             .force = sign * force * (1.0 + s) * area,
+                             .stretch = film->square * area,
+                             .capacitance = dea_point_capacitance(point) * area * area,
+                             .taut = is_taut(&r, k, x, area, &at)});
 }
 
 /* Relative changes of the stretches, and what area stretch the electroded film has over lambda_pre^2. */
@@ -184,7 +189,7 @@ static dea_expr tension_of(const dea_symbols *symbols, const ring_strains *e)
     dea_pool *pool = symbols->pool;
     const dea_expr one = NUM(1.0);
     const dea_expr c = DIV(ADD(one, symbols->coverage), SUB(one, symbols->coverage));
-    const dea_expr rest = DIV(dea_symbols_rest_stress(symbols), SQUARE(symbols->prestretch));
+    const dea_expr rest = DIV(dea_symbols_rest_stress(symbols), SQUARE(symbols->prestretch)); /* sigma_pre/lambda_pre^2 */
     const dea_expr front = SCALE(DEA_PI, MUL(symbols->film_thickness, rest));
     const dea_expr sum =
         ADD(DIV(NUM(2.0), ADD(one, e->disc)), ADD(DIV(c, ADD(one, e->radial)), DIV(one, MUL(c, ADD(one, e->hoop)))));
@@ -194,7 +199,7 @@ static dea_expr tension_of(const dea_symbols *symbols, const ring_strains *e)
 static void limit_tension(const dea_symbols *symbols, dea_network *network, const ring_strains *e)
 {
     dea_pool *pool = symbols->pool;
-    const dea_expr rest = dea_symbols_rest_stress(symbols); /* sigma_pre */
+    const dea_expr rest = dea_symbols_rest_stress(symbols);
     const dea_expr pull = MUL(dea_symbols_pressure(symbols), SQUARE(MUL(SQUARE(symbols->prestretch), e->area)));
     const bool dot = symbols->kind == DEA_DOT;
     const dea_expr disc = ADD(rest, dea_hyperelastic_change(symbols, e->disc));

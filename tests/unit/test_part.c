@@ -9,14 +9,15 @@
 #include "netlist/symbol.h"
 #include "network/dynamics.h"
 
-enum { KINDS = 6 };
+enum { KINDS = 8 };
 
 static const struct kind {
     dea_kind kind;
     const char *model, *name;
 } kinds[KINDS] = {{DEA_DOT, "lumped", "dea_dot"},         {DEA_LENS, "lumped", "dea_lens"},
                   {DEA_DOT, "lame", "dea_dot_lame"},      {DEA_LENS, "lame", "dea_lens_lame"},
-                  {DEA_DOT, "coverage", "dea_dot_hyper"}, {DEA_LENS, "coverage", "dea_lens_hyper"}};
+                  {DEA_DOT, "coverage", "dea_dot_hyper"}, {DEA_LENS, "coverage", "dea_lens_hyper"},
+                  {DEA_LENS, "ring", "dea_lens_ring"},    {DEA_DOT, "ring", "dea_dot_ring"}};
 
 static void write_library(const char *name, const char *dialect)
 {
@@ -162,7 +163,7 @@ static void fly(const dea_scene *scene, dea_sample *samples)
     engine->end(session);
 }
 
-/* The six parts under one source, each with its resistor; all that a test wants to see is saved. */
+/* All parts under one source, each with its resistor; all that a test wants to see is saved. */
 static FILE *begin_moving_circuit(double step, const char *uic)
 {
     FILE *file = begin_circuit();
@@ -981,12 +982,12 @@ static void the_ready_made_library_is_up_to_date(void **state)
         files++;
     }
     pclose(list);
-    assert_int_equal(files, 14);
+    assert_int_equal(files, 16);
     FILE *stale = popen("find netlists -type f | wc -l", "r");
     assert_non_null(stale);
     assert_int_equal(fscanf(stale, "%d", &files), 1);
     pclose(stale);
-    assert_int_equal(files, 15); /* with its README */
+    assert_int_equal(files, 17); /* with its README */
     assert_int_equal(dea_library_write("/nonexistent/netlists", &error), DEA_ERROR_IO);
 }
 

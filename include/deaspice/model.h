@@ -19,6 +19,8 @@ typedef struct dea_point {
     double coverage;       /**< B [1] */
     double film_thickness; /**< H [m] */
     double voltage;        /**< U across the film [V] */
+    double focal_length;   /**< of a lens at rest [m], NAN: no optics */
+    double refractive_index; /**< of its liquid [1] */
 } dea_point;
 
 /** Computes the film of a scene. */
@@ -80,6 +82,11 @@ DEA_API const dea_model *dea_model_find(const char *name);
 /** Mass of film and electrodes that moves with the disc edge [kg], 0 without density: Rayleigh with the shape of Lame's solution,
  * the electrodes' mass per area counted over the pre-stretched film (physics: section 5). */
 DEA_API double dea_point_mass(const dea_scene *scene, const dea_point *point);
+
+/** Focal length [m] of a plano-convex cap of liquid of fixed volume, V = pi h (3 a^2 + h^2)/6, over an aperture of radius
+ * @p radius [m] at rest that is strained by @p strain [1]; @p rest is the focal length at strain 0 [m]. NAN where no cap has that:
+ * its radius of curvature rest (n - 1) would be less than @p radius (physics: section 5, lens optics). */
+DEA_API double dea_lens_focal_length(double rest, double refractive_index, double radius, double strain);
 
 #ifdef __cplusplus
 }

@@ -26,12 +26,16 @@ typedef enum dea_state {
         DEA_STATE_COUNT
 } dea_state;
 
-/** Static result of one point; with pull_in and failed the four numbers are NAN. */
+/** Static result of one point; with pull_in and failed all numbers are NAN. */
 typedef struct dea_row {
     double strain;       /**< s, radial strain of the disc edge [1] */
     double displacement; /**< u, outward [m] */
     double force;        /**< F_DEA over the full circumference, outward [N] */
     double field;        /**< true field in the electroded film, its largest value [V/m] */
+    double capacitance;  /**< of the deformed film, as its model has it (physics: section 5), so that F_DEA = U^2/2 dC/du [F] */
+    double charge;       /**< C U, signed as the voltage [C] */
+    double area_strain;  /**< change of the electroded area over that at rest: disc of a dot, annulus of a lens [1] */
+    double focal_length; /**< of a lens with optics [m]; NAN: none, or no cap of liquid has the focal length at rest */
     dea_state state;
 } dea_row;
 
@@ -41,7 +45,7 @@ DEA_API dea_row dea_row_failed(void);
 /** Name of a state as results print it. */
 DEA_API const char *dea_state_name(dea_state state);
 
-/** Numeric columns of a row: name, unit, offset in dea_row; the state column follows them. */
+/** Numeric columns of a row, the last of them only for a lens with optics: name, unit, offset in dea_row; the state column follows them. */
 typedef struct dea_column {
     const char *name;      /**< e.g. "displacement_m" */
     const char *long_name; /**< e.g. "radial displacement of the disc edge" */
@@ -49,7 +53,7 @@ typedef struct dea_column {
     size_t offset;         /**< of the double in dea_row */
 } dea_column;
 
-enum { DEA_ROW_COLUMNS = 4 };
+enum { DEA_ROW_COLUMNS = 8 };
 DEA_API extern const dea_column dea_row_columns[DEA_ROW_COLUMNS];
 
 /** One sample of a transient; from a pull_in or failed on, all numbers but time and voltage are NAN. */
@@ -63,6 +67,7 @@ typedef struct dea_sample {
     double current;      /**< of the source, where the scene has an electrical port [A] */
     double charge;       /**< of the film, where the scene has an electrical port [C] */
     double focal_length; /**< of a lens with optics [m] */
+    double film_voltage; /**< across the film, where the scene has a series resistance [V] */
     dea_state state;
 } dea_sample;
 

@@ -111,6 +111,7 @@ typedef struct dea_window {
 typedef struct dea_transient {
     double until;   /**< end [s], > 0 */
     double every;   /**< interval of the samples [s], 0 < every <= until, default until/1000 */
+    double grid;    /**< power of ten that makes a whole number of `every`: sample i lies at (every grid) i/grid [1/s]; 0: none */
     bool from_bias; /**< starts in the relaxed equilibrium under the first voltage (true), or at rest (default) */
     dea_window averages[DEA_WINDOWS];
     size_t average_count;

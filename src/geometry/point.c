@@ -31,6 +31,8 @@ void dea_point_place(const dea_scene *scene, dea_point *point)
     point->coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
     point->film_thickness = actuator->film_thickness;
     point->voltage = scene->drive.voltage * film_share(&scene->drive);
+    point->focal_length = actuator->focal_length;
+    point->refractive_index = actuator->refractive_index;
 }
 
 bool dea_point_valid(const dea_point *point)
@@ -76,4 +78,15 @@ double dea_point_mass(const dea_scene *scene, const dea_point *point)
     const double electrode = point->kind == DEA_DOT ? moving_disc(radius) : moving_annulus(radius, b);
     const double areal = isnan(scene->actuator.electrode_mass) ? 0.0 : scene->actuator.electrode_mass;
     return scene->material.density * point->film_thickness * film + areal * electrode;
+}
+
+/* h = 2 a sinh(asinh(3 V/(pi a^3))/3), f = (a^2 + h^2)/(2 h (n - 1)). */
+double dea_lens_focal_length(double rest, double refractive_index, double radius, double strain)
+{
+    const double curvature = rest * (refractive_index - 1.0); /* its radius at rest */
+    const double h0 = radius * radius / (curvature + sqrt((curvature - radius) * (curvature + radius)));
+    const double volume = 0.5 * h0 * (3.0 * radius * radius + h0 * h0); /* 3 V/pi */
+    const double a = radius * (1.0 + strain);
+    const double h = 2.0 * a * sinh(asinh(volume / (a * a * a)) / 3.0);
+    return curvature > 0.0 ? (a * a + h * h) / (2.0 * h * (refractive_index - 1.0)) : (double)NAN;
 }

@@ -80,15 +80,15 @@ static void change(const dea_film *film, size_t count, const double *strains, de
     }
 }
 
+static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
+{
+    return dea_invariant_biaxial(slopes, gain, film, e1, e2);
+}
+
 /* The chain stretch sqrt(I1/3) has come to lambda_m; the five terms go on. */
 static double locking(const double *c)
 {
     return 3.0 * (c[LAMBDA_M] - 1.0) * (c[LAMBDA_M] + 1.0);
-}
-
-static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
-{
-    return dea_invariant_biaxial(slopes, gain, film, e1, e2);
 }
 
 static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_law_form *form)

@@ -54,14 +54,14 @@ static void change(const dea_film *film, size_t count, const double *strains, de
     }
 }
 
-static double locking(const double *c)
-{
-    return c[JM];
-}
-
 static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
 {
     return dea_invariant_biaxial(slopes, gain, film, e1, e2);
+}
+
+static double locking(const double *c)
+{
+    return c[JM];
 }
 
 static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_law_form *form)

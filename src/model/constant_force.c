@@ -14,7 +14,12 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     }
     const double stretch = 1.0 + strain;
     const double force = pressure * stretch * stretch * stretch * dea_point_cross_section(point); /* A(lambda_a) eps E^2 */
-    dea_row_fill(row, point, strain, force, point->film.square * stretch * stretch, true);
+    dea_row_fill(row, point,
+                 (dea_found){.strain = strain,
+                             .force = force,
+                             .stretch = point->film.square * stretch * stretch,
+                             .capacitance = dea_point_disc_capacitance(point, strain),
+                             .taut = true});
 }
 
 /* The disc alone as a spring: the bias force is in its measure from the pre-stretch. */
@@ -26,6 +31,8 @@ static void build(const dea_symbols *symbols, dea_network *network)
                            dea_hyperelastic_change(symbols, network->strain), area);
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force, A eps E^2, Eq. 13 [N]",
                     dea_hyperelastic_force(symbols, network->strain, network->strain));
+    network->capacitance =
+        MUL(dea_symbols_capacitance(symbols), SQUARE(SQUARE(ADD(NUM(1.0), network->strain)))); /* C_0 lambda_a^4 */
     network->field = dea_hyperelastic_field(symbols, network->strain);
     network->length = MUL(symbols->coverage, symbols->frame_radius);
 }

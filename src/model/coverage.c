@@ -6,6 +6,35 @@
 #include "network/hyperelastic.h"
 #include "support/gauss.h"
 
+/* int_1^{1+s} (1 - B x)^4/x dx/(1 - B)^4, what pushes the lens over its way: in closed form, but where its terms cancel, near B = 1
+ * for a small strain, by quadrature. */
+static double push_of_lens(double b, double s)
+{
+    const double e = -b * s / (1.0 - b);
+    double sum = 0.0;
+    if (b > 0.5 && fabs(s) < 0.5) {
+        for (int i = 0; i < DEA_GAUSS_POINTS; i++) {
+            const double t = dea_gauss_place(i), square = (1.0 + e * t) * (1.0 + e * t);
+            sum += dea_gauss_weight(i) * square * square / (1.0 + s * t);
+        }
+        return s * sum;
+    }
+    const double b2 = b * b, rest = (1.0 - b) * (1.0 - b);
+    const double second = s * (2.0 + s), third = s * (3.0 + s * (3.0 + s)), fourth = second * (2.0 + second);
+    sum = log1p(s) - b * (4.0 * s + 4.0 / 3.0 * b2 * third) + b2 * (3.0 * second + 0.25 * b2 * fourth);
+    return sum / (rest * rest);
+}
+
+/* Dot: C_0 lambda_a^4. Lens: C_0 + int 2 F/U^2 du, because the equi-biaxial annulus is not the true area [F]. */
+static double capacitance_of(const dea_point *point, double strain)
+{
+    if (point->kind == DEA_DOT) {
+        return dea_point_disc_capacitance(point, strain);
+    }
+    const double b = point->coverage;
+    return dea_point_full_capacitance(point) * (1.0 - b * b - 4.0 * b * b * push_of_lens(b, strain));
+}
+
 static void solve(const dea_point *point, double accuracy, dea_row *row)
 {
     (void)accuracy;
@@ -24,12 +53,16 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     const double square = stretch * stretch;
     const double area = dea_point_cross_section(point) / (1.0 + strain); /* A(lambda_a) = 2 pi r_a H/(lambda_pre^2 lambda_a) */
     const bool taut = point->film.prestretch * (1.0 + passive) > 1.0;
-    dea_row_fill(row, point, strain, dea_point_sign(point) * area * pressure * square * square, point->film.square * square,
-                 taut);
+    dea_row_fill(row, point,
+                 (dea_found){.strain = strain,
+                             .force = dea_point_sign(point) * area * pressure * square * square,
+                             .stretch = point->film.square * square,
+                             .capacitance = capacitance_of(point, strain),
+                             .taut = taut});
 }
 
 /* s int_0^1 (1 + e t)^4/(1 + s t) dt with e = -B s/(1 - B), by quadrature: right for all B, also where that is a symbol, as long
- * as |s| is no more than some 0.6. */
+ * as |s| is no more than some 0.6. For parts, whose texts stay short by it. */
 static dea_expr push_by_rule(const dea_symbols *symbols, dea_expr s)
 {
     dea_pool *pool = symbols->pool;
@@ -113,9 +146,10 @@ static dea_expr capacitance(const dea_symbols *symbols, dea_expr strain)
     const dea_expr radius = MUL(symbols->coverage, symbols->frame_radius);
     const dea_expr front = MUL(symbols->permittivity, DIV(SQUARE(MUL(radius, symbols->prestretch)), symbols->film_thickness));
     const double coverage = dea_expr_constant(pool, symbols->coverage); /* NAN where it is a symbol */
-    const dea_expr push = coverage < 0.5    ? push_by_logarithm(symbols, strain)
-                          : coverage >= 0.5 ? push_by_moments(symbols, strain)
-                                            : push_by_rule(symbols, strain);
+    const bool part = isnan(coverage) && isnan(dea_expr_constant(pool, symbols->film_thickness)); /* all its scalars are symbols */
+    const dea_expr push = coverage < 0.5 ? push_by_logarithm(symbols, strain)
+                          : part         ? push_by_rule(symbols, strain)
+                                         : push_by_moments(symbols, strain);
     return SUB(rest, MUL(SCALE(4.0 * DEA_PI, front), push));
 }
 

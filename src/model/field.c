@@ -4,7 +4,10 @@
  *
  *     de/dx = -D,   dD/dx = -D [ 1 + ((P2 - P1)/D + k lambda_1 lambda_2 + s12)/s11 ],
  *
- * which keeps the digits of a strain of any size: D and e scale with the load. The one condition is e = 0 at the frame.
+ * which keeps the digits of a strain of any size: D and e scale with the load. The one condition is e = 0 at the frame. The
+ * annulus of a lens has the capacitance (2 pi eps/H) int (lambda_1 lambda_2)^2 R dR; what of it lies within R is (2 pi eps/H) R^2 c,
+ *
+ *     dc/dx = (lambda_1 lambda_2)^2 - 2 c,   c = 0 at R_a.
  */
 #include <float.h>
 
@@ -30,6 +33,7 @@ static double step_for(double accuracy)
 typedef struct radial_state {
     double d; /* D = lambda_2 - lambda_1 */
     double e; /* lambda_2 - lambda_pre */
+    double c; /* capacitance within R over 2 pi eps R^2/H */
 } radial_state;
 
 /* The boundary value problem at one load. */
@@ -46,6 +50,7 @@ typedef struct extremes {
     double least_stress; /* smallest in-plane nominal stress [Pa] */
     double largest_area; /* largest lambda_1 lambda_2 of the electroded region [1] */
     double edge_force;   /* lambda_1 lambda_2^2 of the electroded side at R_a [1] */
+    double charge;       /* c at the frame [1] */
 } extremes;
 
 /* Stresses and moduli of the film. */
@@ -63,10 +68,10 @@ static radial_state slope_at(const membrane *m, radial_state s)
     const double s11 = stress.w11 - m->annulus_k * l2 * l2;
     const double s12 = stress.w12 - 2.0 * m->annulus_k * area;
     if (!(s11 > 0.0)) {
-        return (radial_state){NAN, NAN}; /* loss of ellipticity: no such film is stable */
+        return (radial_state){NAN, NAN, NAN}; /* loss of ellipticity: no such film is stable */
     }
     const double rate = 1.0 + (stress.shear + m->annulus_k * area + s12) / s11;
-    return (radial_state){-s.d * rate, -s.d};
+    return (radial_state){-s.d * rate, -s.d, area * area - 2.0 * s.c};
 }
 
 /* Gragg's modified midpoint rule over one step with n substeps and its smoothing. */
@@ -74,15 +79,16 @@ static radial_state midpoint(const membrane *m, radial_state start, radial_state
 {
     const double h = step / n;
     radial_state before = start;
-    radial_state now = {start.d + h * slope.d, start.e + h * slope.e};
+    radial_state now = {start.d + h * slope.d, start.e + h * slope.e, start.c + h * slope.c};
     for (int i = 1; i < n; i++) {
         const radial_state f = slope_at(m, now);
-        const radial_state next = {before.d + 2.0 * h * f.d, before.e + 2.0 * h * f.e};
+        const radial_state next = {before.d + 2.0 * h * f.d, before.e + 2.0 * h * f.e, before.c + 2.0 * h * f.c};
         before = now;
         now = next;
     }
     const radial_state f = slope_at(m, now);
-    return (radial_state){0.5 * (before.d + now.d + h * f.d), 0.5 * (before.e + now.e + h * f.e)};
+    return (radial_state){0.5 * (before.d + now.d + h * f.d), 0.5 * (before.e + now.e + h * f.e),
+                          0.5 * (before.c + now.c + h * f.c)};
 }
 
 /* One step: midpoint rules with 2, 4, ... 14 substeps, extrapolated in h^2 (Neville). False: the step is too long. */
@@ -101,6 +107,7 @@ static bool advance(const membrane *m, radial_state start, double step, radial_s
             change = weight * fabs(value.d - last.d);
             value.d += weight * (value.d - last.d);
             value.e += weight * (value.e - last.e);
+            value.c += weight * (value.c - last.c);
         }
         row[k] = value;
     }
@@ -149,11 +156,11 @@ static double miss_at_frame(const membrane *m, double edge, extremes *x)
     if (!(l > 0.0)) {
         return NAN;
     }
-    radial_state s = {jump_at_edge(m, l), edge};
+    radial_state s = {jump_at_edge(m, l), edge, 0.0};
     if (x) {
         const double disc = stress_at(m, l, l).p1 - m->disc_k * l * l * l;
         const bool lens = m->annulus_k > 0.0;
-        *x = (extremes){disc, lens ? (l - s.d) * l : l * l, lens ? (l - s.d) * l * l : l * l * l};
+        *x = (extremes){disc, lens ? (l - s.d) * l : l * l, lens ? (l - s.d) * l * l : l * l * l, 0.0};
         note(m, s, x);
     }
     const double longest = m->length / ceil(m->length / m->mesh.step);
@@ -174,6 +181,9 @@ static double miss_at_frame(const membrane *m, double edge, extremes *x)
         if (x) {
             note(m, s, x);
         }
+    }
+    if (x) {
+        x->charge = s.c;
     }
     return s.e;
 }
@@ -410,7 +420,15 @@ void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row)
     }
     const double force =
         sign * 2.0 * DEA_PI * point->film_thickness * pressure * x.edge_force * dea_point_divide(point) / film->prestretch;
-    dea_row_fill(row, point, edge / film->prestretch, force, x.largest_area, x.least_stress > 0.0);
+    const double strain = edge / film->prestretch;
+    /* (2 pi eps/H) (r/lambda_pre)^2 c */
+    const double annulus = 2.0 * dea_point_full_capacitance(point) * x.charge / (film->square * film->square);
+    dea_row_fill(row, point,
+                 (dea_found){.strain = strain,
+                             .force = force,
+                             .stretch = x.largest_area,
+                             .capacitance = dot ? dea_point_disc_capacitance(point, strain) : annulus,
+                             .taut = x.least_stress > 0.0});
 }
 
 static void solve(const dea_point *point, double accuracy, dea_row *row)

@@ -68,7 +68,16 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
                       is_taut(annulus_rest, annulus1, annulus2, rim, 0.0);
     const double area = dot ? (1.0 + strain) * (1.0 + strain) : (1.0 - edge * edge) * inverse;
     const double force = 2.0 * DEA_PI * point->film_thickness * load * dea_point_divide(point);
-    dea_row_fill(row, point, strain, force, film->square * area, taut);
+    /* C_0 + C_1 u + C_2 u^2/2 with C_1 = 2 F_DEA/U^2, C_2 = -2/(n_el U^2) */
+    const double share = dot ? 3.0 : q - 2.0, rest = dot ? b2 : 1.0 - b2;
+    const double bend = 2.0 * b2 * strain * (2.0 * dea_point_sign(point) + share * strain);
+    const double capacitance = dea_point_full_capacitance(point) * (rest + bend);
+    dea_row_fill(row, point,
+                 (dea_found){.strain = strain,
+                             .force = force,
+                             .stretch = film->square * area,
+                             .capacitance = capacitance,
+                             .taut = taut});
 }
 
 /* Moduli of one region: W11, W12 and what the voltage takes off where it carries the electrode. */

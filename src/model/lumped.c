@@ -21,7 +21,15 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     const bool dot = point->kind == DEA_DOT;
     const bool taut = dot ? film->prestretch * (1.0 - edge) > 1.0 - b : film->prestretch * stretch > 1.0;
     const double area = dot ? stretch * stretch : (1.0 - edge * edge) / (1.0 - b * b);
-    dea_row_fill(row, point, strain, sign * pressure * dea_point_cross_section(point), film->square * area, taut);
+    /* C_0 + C_1 u with C_1 u = 2 F_DEA/U^2 u = +-4 pi eps lambda_pre^2 r_a^2 s/H */
+    const double rest = dot ? b * b : 1.0 - b * b;
+    const double capacitance = dea_point_full_capacitance(point) * (rest + 4.0 * sign * b * b * strain);
+    dea_row_fill(row, point,
+                 (dea_found){.strain = strain,
+                             .force = sign * pressure * dea_point_cross_section(point),
+                             .stretch = film->square * area,
+                             .capacitance = capacitance,
+                             .taut = taut});
 }
 
 /* Two springs in parallel at the edge of the electrode, driven by the force source. */

@@ -44,35 +44,72 @@ static inline double dea_point_stress_per_volt(const dea_point *point)
     return point->film.permittivity * point->film.square * point->film.square / (point->film_thickness * point->film_thickness);
 }
 
+/* Relative change of the electroded area under a strain of the disc edge: (1 + s)^2 - 1 of the disc (dot), of the annulus
+ * between disc and frame -B^2 ((1 + s)^2 - 1)/(1 - B^2) (lens) [1]. */
+static inline double dea_area_strain(dea_kind kind, double coverage, double strain)
+{
+    const double disc = strain * (2.0 + strain), b2 = coverage * coverage;
+    return kind == DEA_DOT ? disc : -b2 * disc / (1.0 - b2);
+}
+
+/* pi eps lambda_pre^2 r^2/H, the capacitance at rest of a film with electrodes up to its frame [F]. */
+static inline double dea_point_full_capacitance(const dea_point *point)
+{
+    const double r = point->frame_radius;
+    return DEA_PI * point->film.permittivity * point->film.square * (r * r) / point->film_thickness;
+}
+
 /* Capacitance at rest [F]: eps lambda_pre^2/H times pi r_a^2 (dot) or pi (r^2 - r_a^2) (lens). */
 static inline double dea_point_capacitance(const dea_point *point)
 {
     const double b2 = point->coverage * point->coverage;
-    const double area = DEA_PI * point->frame_radius * point->frame_radius * (point->kind == DEA_DOT ? b2 : 1.0 - b2);
-    return point->film.permittivity * point->film.square / point->film_thickness * area;
+    return dea_point_full_capacitance(point) * (point->kind == DEA_DOT ? b2 : 1.0 - b2);
+}
+
+/* Capacitance of a dot's uniform disc, C_0 lambda_a^4 [F]. */
+static inline double dea_point_disc_capacitance(const dea_point *point, double strain)
+{
+    const double square = (1.0 + strain) * (1.0 + strain);
+    return dea_point_capacitance(point) * square * square;
 }
 
 /* A row without numbers. */
 static inline void dea_row_refuse(dea_row *row, dea_state state)
 {
-    *row = (dea_row){NAN, NAN, NAN, NAN, state};
+    *row = dea_row_failed();
+    row->state = state;
 }
 
-/* Fills a row. Strain, force [N] and stretch^2 of the electroded film (area ratio at its most stretched place) come from the
- * model; taut says whether every region is in tension. */
-static inline void dea_row_fill(dea_row *row, const dea_point *point, double strain, double force, double area_stretch, bool taut)
+/* What a model finds of a point. */
+typedef struct dea_found {
+    double strain;
+    double force;       /* [N] */
+    double stretch;     /* lambda_1 lambda_2 of the electroded film at its most stretched place [1] */
+    double capacitance; /* [F] */
+    bool taut;          /* every region is in tension */
+} dea_found;
+
+/* Fills a row from what the model found and what follows from that. */
+static inline void dea_row_fill(dea_row *row, const dea_point *point, dea_found found)
 {
-    const double field = fabs(dea_point_nominal_field(point) * area_stretch);
-    const double displacement = strain * dea_point_divide(point);
-    if (!(isfinite(strain) && isfinite(displacement) && isfinite(force) && isfinite(field))) {
+    const double field = fabs(dea_point_nominal_field(point) * found.stretch);
+    const double radius = dea_point_divide(point);
+    const double displacement = found.strain * radius;
+    if (!(isfinite(found.strain) && isfinite(displacement) && isfinite(found.force) && isfinite(field))) {
         dea_row_refuse(row, DEA_STATE_FAILED);
         return;
     }
-    row->strain = strain;
+    row->strain = found.strain;
     row->displacement = displacement;
-    row->force = force;
+    row->force = found.force;
     row->field = field;
-    row->state = field > point->film.breakdown ? DEA_STATE_BREAKDOWN : taut ? DEA_STATE_OK : DEA_STATE_SLACK;
+    row->capacitance = found.capacitance;
+    row->charge = found.capacitance * point->voltage;
+    row->area_strain = dea_area_strain(point->kind, point->coverage, found.strain);
+    row->focal_length = isnan(point->focal_length)
+                            ? (double)NAN
+                            : dea_lens_focal_length(point->focal_length, point->refractive_index, radius, found.strain);
+    row->state = field > point->film.breakdown ? DEA_STATE_BREAKDOWN : found.taut ? DEA_STATE_OK : DEA_STATE_SLACK;
 }
 
 #endif

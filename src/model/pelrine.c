@@ -15,7 +15,12 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     const double root = sqrt(1.0 - x);
     const double strain = x / (root * (1.0 + root)); /* 1/sqrt(1-x) - 1 without cancellation */
     const double stretch = film->prestretch * (1.0 + strain);
-    dea_row_fill(row, point, strain, pressure * dea_point_cross_section(point), stretch * stretch, true);
+    dea_row_fill(row, point,
+                 (dea_found){.strain = strain,
+                             .force = pressure * dea_point_cross_section(point),
+                             .stretch = stretch * stretch,
+                             .capacitance = dea_point_disc_capacitance(point, strain),
+                             .taut = true});
 }
 
 const dea_model dea_model_pelrine = {

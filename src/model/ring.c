@@ -6,9 +6,9 @@
  *
  * with the nominal stresses s_a = P_a - eps (U/H)^2 (lambda_1 lambda_2)^2/lambda_a where electroded: the gradient of one energy.
  */
+#include "expression/formula.h"
 #include "model/models.h"
 #include "model/path.h"
-#include "expression/formula.h"
 #include "network/hyperelastic.h"
 
 /* One place of an iteration: the excess held - m weight, and its slope. */
@@ -159,7 +159,12 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     }
     const double sign = dea_point_sign(point), s = sign * x, area = area_at(&r, s);
     const double force = 2.0 * DEA_PI * point->film_thickness * (dea_point_divide(point) / film->prestretch) * m;
-    dea_row_fill(row, point, s, sign * force * (1.0 + s) * area, film->square * area, is_taut(&r, k, x, area, &at));
+    dea_row_fill(row, point,
+                 (dea_found){.strain = s,
+                             .force = sign * force * (1.0 + s) * area,
+                             .stretch = film->square * area,
+                             .capacitance = dea_point_capacitance(point) * area * area,
+                             .taut = is_taut(&r, k, x, area, &at)});
 }
 
 /* Relative changes of the stretches, and what area stretch the electroded film has over lambda_pre^2. */

@@ -3,8 +3,24 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "model/models.h"
+
 enum { ELASTIC, LOAD };
-enum { STRAIN, FORCE, FIELD, BREAKDOWN, LENGTH, END, LISTS };
+enum {
+    STRAIN,
+    FORCE,
+    FIELD,
+    BREAKDOWN,
+    LENGTH,
+    END,
+    CAPACITANCE,
+    VOLTAGE,
+    COVERAGE,
+    RADIUS,
+    FOCAL_LENGTH,
+    REFRACTIVE_INDEX,
+    LISTS
+};
 
 /* What a row needs, then the ranges, then the tensions. */
 static dea_status compile_limits(dea_network *network, dea_balance *balance, dea_expr load, dea_error *error)
@@ -20,6 +36,12 @@ static dea_status compile_limits(dea_network *network, dea_balance *balance, dea
     limits[BREAKDOWN] = network->breakdown;
     limits[LENGTH] = network->length;
     limits[END] = network->end;
+    limits[CAPACITANCE] = network->capacitance;
+    limits[VOLTAGE] = network->voltage;
+    limits[COVERAGE] = network->coverage;
+    limits[RADIUS] = network->radius;
+    limits[FOCAL_LENGTH] = network->focal_length;
+    limits[REFRACTIVE_INDEX] = network->refractive_index;
     for (int i = 0; i < count - LISTS; i++) {
         limits[LISTS + i] = i < ranges ? network->range[i] : network->tension[i - ranges];
     }
@@ -30,7 +52,10 @@ static dea_status compile_limits(dea_network *network, dea_balance *balance, dea
 
 dea_status dea_balance_open(dea_network *network, dea_balance *balance, dea_error *error)
 {
-    *balance = (dea_balance){.range_count = network->range_count, .tension_count = network->tension_count, .sign = network->sign};
+    *balance = (dea_balance){.range_count = network->range_count,
+                             .tension_count = network->tension_count,
+                             .kind = network->kind,
+                             .sign = network->sign};
     const dea_expr load = dea_network_load(network);
     const dea_expr forces[] = {dea_network_elastic(network), load};
     dea_status status = dea_tape_compile(&network->pool, forces, 2, &balance->forces, error);
@@ -81,10 +106,12 @@ double dea_forces_stiffness(const dea_forces *f)
     return f->load == 0.0 ? f->elastic_slope : f->elastic_slope - f->elastic / f->load * f->load_slope;
 }
 
+/* Past the end of an energy, where forces are no numbers, nothing is stable. */
 static double stiffness_at(dea_balance *balance, double symbol, double u)
 {
     const dea_forces f = dea_balance_forces(balance, symbol, u);
-    return dea_forces_stiffness(&f);
+    const double stiffness = dea_forces_stiffness(&f);
+    return isnan(stiffness) ? -(double)INFINITY : stiffness;
 }
 
 double dea_balance_length(const dea_balance *balance)
@@ -186,11 +213,21 @@ static bool is_connected(dea_balance *balance, double symbol, double u, const de
 static dea_row row_of(const dea_balance *balance, double u)
 {
     const dea_tape *limits = &balance->limits;
-    dea_row row = {dea_tape_value(limits, STRAIN), u, dea_tape_value(limits, FORCE), fabs(dea_tape_value(limits, FIELD)),
-                   DEA_STATE_OK};
+    const double focal = dea_tape_value(limits, FOCAL_LENGTH);
+    dea_row row = {.strain = dea_tape_value(limits, STRAIN),
+                   .displacement = u,
+                   .force = dea_tape_value(limits, FORCE),
+                   .field = fabs(dea_tape_value(limits, FIELD)),
+                   .capacitance = dea_tape_value(limits, CAPACITANCE),
+                   .state = DEA_STATE_OK};
     if (!(isfinite(row.strain) && isfinite(u) && isfinite(row.force) && isfinite(row.field))) {
         return dea_row_failed();
     }
+    row.charge = row.capacitance * dea_tape_value(limits, VOLTAGE);
+    row.area_strain = dea_area_strain(balance->kind, dea_tape_value(limits, COVERAGE), row.strain);
+    row.focal_length = isnan(focal) ? focal
+                                    : dea_lens_focal_length(focal, dea_tape_value(limits, REFRACTIVE_INDEX),
+                                                            dea_tape_value(limits, RADIUS), row.strain);
     for (int i = 0; i < balance->tension_count; i++) {
         if (!(dea_tape_value(limits, LISTS + balance->range_count + i) > 0.0)) {
             row.state = DEA_STATE_SLACK;

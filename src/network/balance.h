@@ -11,6 +11,7 @@ typedef struct dea_balance {
     dea_tape forces; /* owned: R, F */
     dea_tape limits; /* owned: what a row and the ranges need */
     int range_count, tension_count;
+    dea_kind kind;
     double sign; /* of u */
 } dea_balance;
 

@@ -415,20 +415,7 @@ double dea_dynamics_velocity_charged(dea_dynamics *dynamics, double u, double vo
 dea_sample dea_sample_refused(double time, double voltage, dea_state state)
 {
     const double none = (double)NAN;
-    return (dea_sample){time, voltage, none, none, none, none, none, none, none, state};
-}
-
-/* Plano-convex cap of a liquid of fixed volume V = pi h (3 a^2 + h^2)/6 over the aperture radius a:
- * h = 2 a sinh(asinh(3 V/(pi a^3))/3), f = (a^2 + h^2)/(2 h (n - 1)). */
-static double focal_length(const dea_dynamics *d, double strain)
-{
-    const double curvature = d->focal_length * (d->refractive_index - 1.0); /* its radius at rest */
-    const double a0 = d->radius;
-    const double h0 = a0 * a0 / (curvature + sqrt((curvature - a0) * (curvature + a0)));
-    const double volume = 0.5 * h0 * (3.0 * a0 * a0 + h0 * h0); /* 3 V/pi */
-    const double a = a0 * (1.0 + strain);
-    const double h = 2.0 * a * sinh(asinh(volume / (a * a * a)) / 3.0);
-    return (a * a + h * h) / (2.0 * h * (d->refractive_index - 1.0));
+    return (dea_sample){time, voltage, none, none, none, none, none, none, none, none, state};
 }
 
 /* Current of the source: through R_s, or d(C U)/dt and the leakage. */
@@ -510,9 +497,8 @@ bool dea_dynamics_sample(dea_dynamics *dynamics, const dea_moment *moment, dea_s
         sample->current = current(dynamics, &e, moment);
         sample->charge = e.capacitance * moment->voltage;
     }
-    if (!isnan(dynamics->focal_length)) {
-        sample->focal_length = focal_length(dynamics, row.strain);
-    }
+    sample->focal_length = row.focal_length;
+    sample->film_voltage = moment->voltage;
     return true;
 }
 

@@ -179,6 +179,8 @@ static dea_symbols symbols_of(const dea_scene *scene, const dea_axis *axis, dea_
     const dea_expr breakdown = scalar(pool, scene, axis, &material->breakdown);
     s.breakdown = given(pool, breakdown) ? breakdown : NUM(INFINITY);
     s.voltage = film_voltage(pool, scene, axis);
+    s.focal_length = scalar(pool, scene, axis, &actuator->focal_length);
+    s.refractive_index = scalar(pool, scene, axis, &actuator->refractive_index);
     return s;
 }
 
@@ -239,7 +241,13 @@ static void place_edge(const dea_symbols *symbols, dea_network *network)
     const dea_expr one = NUM(1.0);
     network->edge = dea_expr_node(pool, 0);
     network->strain = dea_symbols_disc_strain(symbols);
+    network->kind = symbols->kind;
     network->sign = symbols->kind == DEA_DOT ? 1.0 : -1.0;
+    network->voltage = symbols->voltage;
+    network->coverage = symbols->coverage;
+    network->radius = divide_radius(symbols);
+    network->focal_length = symbols->focal_length;
+    network->refractive_index = symbols->refractive_index;
     network->length = MUL(divide_radius(symbols), SUB(one, symbols->coverage)); /* below both r_a and r - r_a */
     network->end = NUM(0.0);
     dea_network_demand(network, symbols->coverage);

@@ -25,6 +25,8 @@ typedef struct dea_symbols {
     dea_expr permittivity;         /* absolute [F/m] */
     dea_expr breakdown;            /* breakdown strength [V/m], +inf: none */
     dea_expr voltage;              /* across the film [V] */
+    dea_expr focal_length;         /* of a lens at rest [m], NAN: no optics */
+    dea_expr refractive_index;     /* of its liquid [1] */
 } dea_symbols;
 
 typedef enum dea_role { DEA_ROLE_SPRING, DEA_ROLE_SOFTENING, DEA_ROLE_HYPERELASTIC, DEA_ROLE_TENSION, DEA_ROLE_SOURCE } dea_role;
@@ -49,7 +51,10 @@ typedef struct dea_network {
     dea_pool pool;
     dea_element *elements; /* owned */
     int element_count;
-    dea_expr capacitance; /* of the film [F], where the model is dynamic */
+    dea_expr capacitance; /* of the film [F] */
+    dea_expr voltage;     /* across it [V] */
+    dea_expr coverage, radius;               /* B [1], r_a [m] */
+    dea_expr focal_length, refractive_index; /* of a lens at rest [m], [1]; NAN: no optics */
     dea_expr edge;        /* u [m] */
     dea_expr strain;      /* s [1] */
     dea_expr field;       /* true field, signed as U [V/m] */
@@ -60,6 +65,7 @@ typedef struct dea_network {
     dea_expr breakdown; /* breakdown strength [V/m], > 0 */
     dea_expr *range;    /* owned; each must be > 0 for the point to make sense: B, 1 - B, permittivity, those of the law */
     int range_count;
+    dea_kind kind;
     double sign; /* of u: +1 dot, -1 lens */
 } dea_network;
 

@@ -114,6 +114,11 @@ static void put_study(FILE *out, const dea_scene *scene)
     for (size_t i = 0; i < scene->axis_count; i++) {
         fprintf(out, "%s%s", i > 0 ? "," : "", scene->axes[i].key);
     }
+    fputs("\ncolumns=", out);
+    const dea_layout layout = dea_layout_of(scene);
+    for (size_t i = 0; i < layout.column_count; i++) {
+        fprintf(out, "%s%s", i > 0 ? "," : "", layout.columns[i].name);
+    }
     fputc('\n', out);
     for (size_t i = 0; i < scene->axis_count; i++) {
         char name[DEA_NAME_LENGTH + 16];

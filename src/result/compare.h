@@ -5,7 +5,7 @@
 #include "deaspice/result.h"
 #include "deaspice/scene.h"
 
-enum { DEA_COMPARED_COLUMNS = 7 };
+enum { DEA_COMPARED_COLUMNS = 8 };
 
 /* How the difference of two numbers counts. */
 typedef enum dea_measure {

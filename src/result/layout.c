@@ -4,6 +4,7 @@
 
 #include "deaspice/model.h"
 #include "deaspice/result.h"
+#include "support/number.h"
 
 static void add(dea_layout *layout, const char *name, const char *long_name, const char *unit, size_t offset)
 {
@@ -25,6 +26,9 @@ static void lay_transient(const dea_scene *scene, dea_layout *layout)
     }
     if (!isnan(scene->actuator.focal_length)) {
         add(layout, "focal_length_m", "focal length of the lens", "m", offsetof(dea_sample, focal_length));
+    }
+    if (!isnan(drive->series_resistance)) {
+        add(layout, "film_voltage_V", "voltage across the film", "V", offsetof(dea_sample, film_voltage));
     }
     layout->rows = (size_t)floor(scene->transient.until / scene->transient.every * (1.0 + 1e-12)) + 1;
     layout->row_size = sizeof(dea_sample);
@@ -56,7 +60,7 @@ dea_layout dea_layout_of(const dea_scene *scene)
         lay_ac(scene, &layout);
     } else {
         memcpy(layout.columns, dea_row_columns, sizeof dea_row_columns);
-        layout.column_count = DEA_ROW_COLUMNS;
+        layout.column_count = isnan(scene->actuator.focal_length) ? DEA_ROW_COLUMNS - 1 : DEA_ROW_COLUMNS;
     }
     return layout;
 }
@@ -66,7 +70,10 @@ double dea_layout_place(const dea_scene *scene, size_t index)
 {
     const dea_ac *ac = &scene->ac;
     if (scene->study == DEA_STUDY_TRANSIENT) {
-        return fmin((double)index * scene->transient.every, scene->transient.until);
+        const double every = scene->transient.every, grid = scene->transient.grid;
+        double whole;
+        const bool decimal = grid > 0.0 && dea_number_over(every, grid, &whole);
+        return fmin(decimal ? whole * (double)index / grid : every * (double)index, scene->transient.until);
     }
     if (scene->study == DEA_STUDY_AC) {
         return fmin(ac->from * pow(10.0, (double)index / (double)ac->points_per_decade), ac->to);

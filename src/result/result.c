@@ -17,9 +17,13 @@ const dea_column dea_row_columns[DEA_ROW_COLUMNS] = {
     {"displacement_m", "radial displacement of the disc edge", "m", offsetof(dea_row, displacement)},
     {"force_N", "electrostatic force over the full circumference", "N", offsetof(dea_row, force)},
     {"field_V_per_m", "largest true electric field in the electroded film", "V/m", offsetof(dea_row, field)},
+    {"capacitance_F", "capacitance of the deformed film", "F", offsetof(dea_row, capacitance)},
+    {"charge_C", "charge of the film", "C", offsetof(dea_row, charge)},
+    {"area_strain", "relative change of the electroded area", "1", offsetof(dea_row, area_strain)},
+    {"focal_length_m", "focal length of the lens", "m", offsetof(dea_row, focal_length)},
 };
 
 dea_row dea_row_failed(void)
 {
-    return (dea_row){NAN, NAN, NAN, NAN, DEA_STATE_FAILED};
+    return (dea_row){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, DEA_STATE_FAILED};
 }

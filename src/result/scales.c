@@ -66,6 +66,7 @@ static void set_least(dea_scales *scales, dea_dynamics *d, const dea_signal *sig
                                  .strain = u / d->radius,
                                  .force = missed * fabs(e.push) * signal->largest * signal->largest,
                                  .charge = missed * e.capacitance * signal->largest,
+                                 .film_voltage = missed * signal->largest,
                                  .focal_length = missed * fmax(0.0, d->focal_length)};
 }
 
@@ -110,6 +111,7 @@ dea_sample dea_scales_of(const dea_scales *scales, const dea_sample *samples, si
         peak.current = fmax(peak.current, fabs(samples[i].current));
         peak.charge = fmax(peak.charge, fabs(samples[i].charge));
         peak.focal_length = fmax(peak.focal_length, fabs(samples[i].focal_length));
+        peak.film_voltage = fmax(peak.film_voltage, fabs(samples[i].film_voltage));
     }
     peak.velocity = fmax(peak.velocity, peak.displacement * scales->pace);
     peak.current =

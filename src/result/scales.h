@@ -1,7 +1,7 @@
 /* What the numbers of a transient's columns are measured by: an error counts relative to these.
  *
- *   displacement, strain, force, charge, focal length   their own peak over the samples, no less than a hundredth of what the
- *                                                       largest voltage of the run does at rest
+ *   displacement, strain, force, charge, focal length, film voltage   their own peak over the samples, no less than a hundredth of what the
+ *                   largest voltage of the run does at rest
  *   velocity, current   their own peak over the samples, no less than displacement and charge over the run's fastest time T
  *
  * The samples may miss the peak of a velocity behind an edge; T tells what it was. With a segment of the drive that changes the

@@ -171,12 +171,35 @@ dea_status dea_material_finish(dea_reader *reader)
                           "the shares g sum to %g; accepted: less than 1, so that a long-term modulus stays", sum);
 }
 
+/* The cap of the lens is part of a sphere: its radius at rest, f (n - 1), is no less than that of the lens. */
+static dea_status cap_check(dea_reader *reader)
+{
+    const dea_actuator *actuator = &reader->scene->actuator;
+    const size_t focus = offsetof(dea_scene, actuator.focal_length);
+    const size_t needed[] = {focus, offsetof(dea_scene, actuator.refractive_index), offsetof(dea_scene, actuator.divide_radius),
+                             offsetof(dea_scene, actuator.coverage), offsetof(dea_scene, actuator.frame_radius)};
+    const double power = actuator->refractive_index - 1.0;
+    const double radius =
+        isnan(actuator->divide_radius) ? actuator->coverage * actuator->frame_radius : actuator->divide_radius;
+    for (size_t i = 0; i < sizeof needed / sizeof *needed; i++) {
+        if (swept(reader, needed[i])) {
+            return DEA_OK;
+        }
+    }
+    if (actuator->focal_length * power >= radius) {
+        return DEA_OK;
+    }
+    return dea_place_fail(dea_reader_place(reader, focus, "actuator"), reader->error, "actuator.optics.focal_length",
+                          "too short (%g m) for a cap of that lens radius, %g m; accepted: %.6g m and more",
+                          actuator->focal_length, radius, radius / power);
+}
+
 static dea_status optics_check(dea_reader *reader)
 {
     const dea_actuator *actuator = &reader->scene->actuator;
     const bool length = !isnan(actuator->focal_length);
     if (length == !isnan(actuator->refractive_index)) {
-        return DEA_OK;
+        return length ? cap_check(reader) : DEA_OK;
     }
     const size_t given = length ? offsetof(dea_scene, actuator.focal_length) : offsetof(dea_scene, actuator.refractive_index);
     return dea_place_fail(dea_reader_place(reader, given, "actuator"), reader->error, "actuator.optics",

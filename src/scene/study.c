@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "scene/reader.h"
+#include "support/number.h"
 
 enum { PER_DECADE_MAX = 10000 };
 
@@ -219,6 +220,8 @@ static dea_status transient_finish(dea_reader *reader)
         return fail_value(reader, every, "study.transient", "study.transient.every", "too many samples", transient->every,
                           "at most 4000000 samples up to until");
     }
+    double whole;
+    transient->grid = dea_number_power(transient->every, &whole);
     return windows_finish(reader);
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "scene/reader.h"
+#include "support/number.h"
 
 /* Most points of one axis, values of all axes together, and points of a study. */
 #ifndef DEA_AXIS_VALUES_MAX
@@ -64,13 +65,32 @@ static dea_status list_read(const axis_reader *self)
     return status;
 }
 
-/* values[i] = from + (to - from) i/(count - 1), or from (to/from)^(i/(count - 1)); the ends are exact. */
+/* Both ends as whole numbers over one power of ten; false where that is not to be had, or the values between them would not be
+ * exact before their one division: (from (n - i) + to i)/(n power), all below 2^53. */
+static bool ends_decimal(double steps, double *from, double *to, double *power)
+{
+    double first, last;
+    *power = fmax(dea_number_power(*from, &first), dea_number_power(*to, &last));
+    if (!(*power > 0.0 && dea_number_over(*from, *power, &first) && dea_number_over(*to, *power, &last))) {
+        return false;
+    }
+    *from = first;
+    *to = last;
+    return fmax(fabs(first), fabs(last)) * steps <= 0x1p53 && *power * steps <= 0x1p53;
+}
+
+/* values[i] = from + (to - from) i/(count - 1), the double nearest to it where the ends are decimals of some length, or
+ * from (to/from)^(i/(count - 1)); the ends are exact. */
 static void values_space(dea_axis *axis, double from, double to, bool logarithmic)
 {
     const double steps = axis->count > 1 ? (double)(axis->count - 1) : 1.0;
+    double first = from, last = to, power;
+    const bool decimal = ends_decimal(steps, &first, &last, &power);
     for (size_t i = 0; i < axis->count; i++) {
-        const double part = (double)i / steps;
-        axis->values[i] = logarithmic ? from * pow(to / from, part) : from + (to - from) * (double)i / steps;
+        const double at = (double)i;
+        axis->values[i] = logarithmic ? from * pow(to / from, at / steps)
+                          : decimal   ? (first * (steps - at) + last * at) / (steps * power)
+                                      : from + (to - from) * at / steps;
     }
     axis->values[axis->count - 1] = axis->count > 1 ? to : from;
     axis->uniform = !logarithmic && axis->count > 1;
@@ -287,10 +307,10 @@ static dea_status axes_read(dea_reader *reader, const dea_node *axes)
     return DEA_OK;
 }
 
-/* The focal length is a column of its own in a transient: an axis of it takes more of its path too. */
+/* The focal length is a column of its own: an axis of it takes more of its path too. */
 static bool column_taken(const dea_scene *scene, size_t index)
 {
-    if (scene->study == DEA_STUDY_TRANSIENT && strcmp(scene->axes[index].column, "focal_length_m") == 0) {
+    if (scene->study != DEA_STUDY_AC && strcmp(scene->axes[index].column, "focal_length_m") == 0) {
         return true;
     }
     for (size_t i = 0; i < scene->axis_count; i++) {

@@ -22,3 +22,20 @@ size_t dea_number_write(char text[DEA_NUMBER_LENGTH], double value)
 {
     return isnan(value) ? 0 : strlen(dea_number_text(text, value, 17));
 }
+
+static const double exact = 0x1p53; /* whole numbers up to here are doubles */
+
+bool dea_number_over(double value, double power, double *whole)
+{
+    *whole = nearbyint(value * power);
+    return fabs(*whole) <= exact && *whole / power == value;
+}
+
+double dea_number_power(double value, double *whole)
+{
+    double power = 1.0;
+    while (power <= 1e22 && !dea_number_over(value, power, whole)) {
+        power = fabs(*whole) <= exact ? 10.0 * power : (double)INFINITY;
+    }
+    return power <= 1e22 ? power : 0.0;
+}

@@ -9,6 +9,7 @@
 #include <string.h>
 #include <udunits2.h>
 
+#include "support/number.h"
 #include "support/text.h"
 
 enum { UNIT_LENGTH = 64, CASES_MOST = 6 };
@@ -356,8 +357,11 @@ double dea_unit_scale(double number, double factor)
     const bool small = factor < 1.0;
     const double ratio = small ? 1.0 / factor : factor;
     const double whole = round(ratio);
+    double digits;
+    const double power = dea_number_power(number, &digits);
+    const bool exact = power > 0.0 && (small ? power * whole <= 0x1p53 : fabs(digits) * whole <= 0x1p53);
     if (fabs(ratio - whole) <= 1e-13 * whole) {
-        return small ? number / whole : number * whole;
+        return exact ? small ? digits / (power * whole) : digits * whole / power : small ? number / whole : number * whole;
     }
     return number * factor;
 }

@@ -13,7 +13,7 @@ static const struct {
 } columns[] = {
     {offsetof(dea_sample, velocity), "velocity"}, {offsetof(dea_sample, force), "force"},
     {offsetof(dea_sample, current), "current"},   {offsetof(dea_sample, charge), "charge"},
-    {offsetof(dea_sample, focal_length), "focal_length"},
+    {offsetof(dea_sample, focal_length), "focal_length"}, {offsetof(dea_sample, film_voltage), "film_voltage"},
 };
 
 /* How far off the truth of a column may be [its unit]; the others follow from displacement and voltage. */
@@ -61,6 +61,23 @@ column_error columns_error(const judged *j, size_t point, const dea_sample *rows
         const double promise = dea_scales_allowance(offset) * number_at(&scale, offset);
         if (has(j, offset) && doubt(truth, offset) <= 0.1 * accuracy * promise) {
             hold(truth, rows, c, promise, &worst);
+        }
+    }
+    return worst;
+}
+
+column_error means_error(const judged *j, size_t point, const dea_summary *summary, double peak, double accuracy)
+{
+    column_error worst = {.column = ""};
+    const true_run *truth = &j->runs[point];
+    const dea_transient *run = &j->scene.transient;
+    const double last = truth->good > 0 ? truth->samples[truth->good - 1].time : -1.0;
+    for (size_t i = 0; i < run->average_count && truth->mean_error <= 0.1 * accuracy * peak; i++) {
+        const double got = summary->averages[i].displacement, gap = fabs(got - truth->means[i]);
+        const bool covered = truth->good == truth->count || (run->averages[i].to <= last && !isnan(got));
+        const double error = !covered || gap <= 0.0 ? 0.0 : isfinite(gap) ? gap / peak : (double)INFINITY;
+        if (error > worst.error) {
+            worst = (column_error){"mean", i, error};
         }
     }
     return worst;

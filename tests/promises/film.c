@@ -337,6 +337,27 @@ static long double ring_tension(const true_film *f, long double u, long double m
     return rest + least(disc, least(-e.stress[1].value, e.stress[2].value) - (f->dot ? 0.0L : pull));
 }
 
+static long double electroded_area(const true_film *f, long double radius)
+{
+    return f->dot ? pi * radius * radius : pi * (f->frame - radius) * (f->frame + radius);
+}
+
+dea_row film_state(const true_film *f, true_numbers n)
+{
+    const long double disc = n.strain * (2.0L + n.strain) * f->divide * f->divide * pi; /* its growth [m^2] */
+    return (dea_row){.strain = (double)n.strain,
+                     .displacement = (double)(n.strain * f->divide),
+                     .force = (double)n.force,
+                     .field = (double)n.field,
+                     .capacitance = (double)n.capacitance,
+                     .charge = (double)(n.capacitance * n.voltage),
+                     .area_strain = (double)((f->dot ? disc : -disc) / electroded_area(f, f->divide)),
+                     .focal_length = isnan((double)f->focal_length) ? (double)NAN : (double)film_focal_length(f, n.strain),
+                     .state = n.field > f->breakdown ? DEA_STATE_BREAKDOWN
+                              : n.taut               ? DEA_STATE_OK
+                                                     : DEA_STATE_SLACK};
+}
+
 /* Area stretch of the electroded film and whether all is taut; the models that move. */
 dea_row film_row(const true_film *f, long double u, long double voltage)
 {
@@ -354,10 +375,10 @@ dea_row film_row(const true_film *f, long double u, long double voltage)
                       : lame ? lame_tension(f, s, m) > 0.0L
                              : l * (f->dot ? 1.0L - p * s : 1.0L + s) > 1.0L;
     const long double field = fabsl(nominal * l * l * area);
-    return (dea_row){(double)s, (double)u, (double)(e.push.value * voltage * voltage), (double)field,
-                     field > f->breakdown ? DEA_STATE_BREAKDOWN
-                     : taut               ? DEA_STATE_OK
-                                          : DEA_STATE_SLACK};
+    const long double capacitance = film_edge(f, u).capacitance;
+    dea_row row = film_state(f, (true_numbers){s, e.push.value * voltage * voltage, field, capacitance, voltage, taut});
+    row.displacement = (double)u;
+    return row;
 }
 
 /* Cap of fixed volume: a^2 h 3 + h^3 = 6 V/pi. */

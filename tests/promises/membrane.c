@@ -391,6 +391,23 @@ static extremes extremes_of(const membrane *m, const long double *e)
     return x;
 }
 
+/* eps times the area of the deformed film over its thickness there, (2 pi eps/H) int (lambda_1 lambda_2)^2 R dR [F]. */
+static long double capacitance_of(const membrane *m, const long double *e)
+{
+    const true_film *f = m->film;
+    const long double radius = f->divide / f->prestretch, disc = f->prestretch + e[m->size - 1];
+    long double sum = f->dot ? 0.5L * disc * disc * disc * disc : 0.0L;
+    for (int i = 0; i < m->elements && !f->dot; i++) {
+        for (int q = 0; q < PLACES; q++) {
+            const long double x = m->width * (m->elements - i - 0.5L + 0.5L * m->place[q]);
+            const strain s = strain_at(m, e, i, &m->at[q]);
+            const long double area = (f->prestretch + s.e) * (f->prestretch + s.e + s.slope);
+            sum += 0.5L * m->width * m->weight[q] * expl(2.0L * x) * area * area;
+        }
+    }
+    return 2.0L * pi * f->permittivity / f->thickness * radius * radius * sum;
+}
+
 static dea_row row_at(const membrane *m, const long double *e, long double voltage)
 {
     const true_film *f = m->film;
@@ -400,10 +417,7 @@ static dea_row row_at(const membrane *m, const long double *e, long double volta
     const long double field = fabsl(voltage) / f->thickness * (f->dot ? disc * disc : x.area);
     const long double radial = f->dot ? disc : disc + behind.slope; /* of the electroded side */
     const long double force = sign * 2.0L * pi * f->thickness * m->load * (f->divide / l) * radial * disc * disc;
-    return (dea_row){(double)(edge / l), (double)(edge / l * f->divide), (double)force, (double)field,
-                     field > f->breakdown ? DEA_STATE_BREAKDOWN
-                     : x.stress > 0.0L    ? DEA_STATE_OK
-                                          : DEA_STATE_SLACK};
+    return film_state(f, (true_numbers){edge / l, force, field, capacitance_of(m, e), voltage, x.stress > 0.0L});
 }
 
 /* ---- meshes */
@@ -446,7 +460,9 @@ static void halve_elements(membrane *m, long double *e)
 
 static dea_row pulled_in(void)
 {
-    return (dea_row){(double)NAN, (double)NAN, (double)NAN, (double)NAN, DEA_STATE_PULL_IN};
+    dea_row row = dea_row_failed();
+    row.state = DEA_STATE_PULL_IN;
+    return row;
 }
 
 static double relative(double a, double b)
@@ -456,7 +472,8 @@ static double relative(double a, double b)
 
 static double gap(const dea_row *a, const dea_row *b)
 {
-    return fmax(relative(a->strain, b->strain), fmax(relative(a->field, b->field), relative(a->force, b->force)));
+    return fmax(fmax(relative(a->strain, b->strain), relative(a->capacitance, b->capacitance)),
+                fmax(relative(a->field, b->field), relative(a->force, b->force)));
 }
 
 /* Halves the elements under the full load until the row no longer changes; infinite: it does not come to that. */

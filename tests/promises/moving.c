@@ -28,6 +28,7 @@ typedef struct method {
 typedef struct state {
     long double u, v, w, q; /* displacement, velocity, film voltage, charge */
     long double z[TRUE_STRESSES][DEA_PRONY_MAX];
+    long double area; /* int u dt from the begin of the run [m s] */
 } state;
 
 typedef struct motion {
@@ -42,6 +43,7 @@ typedef struct motion {
     long double largest_u, largest_v;
     dea_sample *samples;
     size_t rows, done;
+    long double edges[DEA_WINDOWS][2]; /* areas at the edges of the windows, NAN before they are passed [m s] */
     double steps;
     const char *why;
     bool gone; /* pulled in */
@@ -395,6 +397,10 @@ static bool step_by(const motion *m, const state *from, long double time, long d
     const int last = STAGES - 1;
     *to = (state){.u = from->u + s.change[last], .v = s.v[last], .w = s.volts[last]};
     to->q = s.edge[last].capacitance * to->w;
+    to->area = from->area;
+    for (int i = 0; i < STAGES; i++) { /* the weights of the last stage are those of the step */
+        to->area += h * m->radau.weight.at[last][i] * (from->u + s.change[i]);
+    }
     for (int k = 0; k < s.edge[last].count; k++) {
         for (size_t b = 0; b < f->branches; b++) {
             to->z[k][b] = s.z[k][b][last];
@@ -547,6 +553,7 @@ static bool record(motion *m, double time, long double here, const state *s)
         .current = (double)current_of(m, here, s),
         .charge = (double)s->q,
         .focal_length = isnan((double)f->focal_length) ? (double)NAN : (double)film_focal_length(f, s->u / f->divide),
+        .film_voltage = f->series > 0.0L ? (double)s->w : (double)NAN,
         .state = row.state};
     return true;
 }
@@ -569,6 +576,28 @@ static bool record_step(motion *m, const state *from, long double time, long dou
         if (!record(m, at, here, &s)) {
             return false;
         }
+    }
+    return true;
+}
+
+/* Areas at the edges of windows within a step. */
+static bool pass_edges(motion *m, const state *from, long double time, long double h, const state *to)
+{
+    const dea_transient *transient = &m->scene->transient;
+    const long double begin = m->segment->from;
+    for (size_t i = 0; i < 2 * transient->average_count; i++) {
+        const dea_window *window = &transient->averages[i / 2];
+        const double edge = i % 2 == 0 ? window->from : window->to;
+        const long double here = fminl((long double)edge - begin, h + time);
+        const bool ends = edge >= m->segment->to && time + h >= (long double)m->segment->to - begin;
+        state s = here > time ? *to : *from;
+        if (edge > m->segment->to || !isnan(m->edges[i / 2][i % 2]) || ((long double)edge - begin > time + h && !ends)) {
+            continue;
+        }
+        if (here > time && here < time + h && !step_by(m, from, time, here - time, &s)) {
+            return false;
+        }
+        m->edges[i / 2][i % 2] = s.area;
     }
     return true;
 }
@@ -651,7 +680,7 @@ static bool run_segment(motion *m, state *s)
             m->gone = true;
             return false;
         }
-        if (!record_step(m, s, time, h, &two)) {
+        if (!pass_edges(m, s, time, h, &two) || !record_step(m, s, time, h, &two)) {
             m->gone = true;
             return false;
         }
@@ -692,6 +721,9 @@ static void run(motion *m, long double tolerance)
     m->tolerance = tolerance;
     m->done = 0;
     m->steps = 0.0;
+    for (size_t i = 0; i < 2 * DEA_WINDOWS; i++) {
+        m->edges[i / 2][i % 2] = (long double)NAN;
+    }
     m->gone = !start(m, &s);
     for (size_t i = 0; !m->gone && i < m->signal.count; i++) {
         m->segment = &m->signal.segments[i];
@@ -749,6 +781,23 @@ static double apart(const motion *m, const dea_sample *a, size_t count, size_t o
     return most;
 }
 
+/* Mean of u over a window, NAN where the motion ends before it [m]. */
+static double mean(const motion *m, size_t window)
+{
+    const dea_window *w = &m->scene->transient.averages[window];
+    return (double)((m->edges[window][1] - m->edges[window][0]) / ((long double)w->to - w->from));
+}
+
+/* Means of the last run, and how far those of the one before, in them so far, were off. */
+static void take_means(const motion *m, true_run *run_out)
+{
+    for (size_t i = 0; i < m->scene->transient.average_count; i++) {
+        const double now = mean(m, i);
+        run_out->mean_error = fmax(run_out->mean_error, fabs(now - run_out->means[i]));
+        run_out->means[i] = now;
+    }
+}
+
 static void solve_twice(motion *m, true_run *run_out)
 {
     dea_sample *first = malloc(m->rows * sizeof *first), *second = m->samples;
@@ -759,11 +808,14 @@ static void solve_twice(motion *m, true_run *run_out)
     if (!m->why) {
         run(m, 1e-12L);
     }
+    take_means(m, run_out);
+    run_out->mean_error = 0.0;
     const size_t count = m->done;
     m->samples = second;
     if (!m->why) {
         run(m, 1e-15L);
     }
+    take_means(m, run_out);
     run_out->good = m->done;
     run_out->error = count == m->done ? 1e-16 + gap(m, first, count) : (double)INFINITY;
     run_out->velocity_error = apart(m, first, count, offsetof(dea_sample, velocity));
@@ -792,7 +844,7 @@ true_run moving_truth(const dea_scene *scene, const dea_model *model, double fac
     const double none = (double)NAN;
     for (size_t i = truth.good; i < truth.count; i++) {
         const double time = dea_layout_place(scene, i);
-        truth.samples[i] = (dea_sample){time, none, none, none, none, none, none, none, none, DEA_STATE_PULL_IN};
+        truth.samples[i] = (dea_sample){time, none, none, none, none, none, none, none, none, none, DEA_STATE_PULL_IN};
     }
     dea_signal_close(&m->signal);
     free(m);

@@ -51,6 +51,12 @@ jet film_cauchy(const true_film *film, long double stretch);
 long double film_cauchy_change(const true_film *film, long double strain);
 true_film film_of(const dea_scene *scene, const dea_model *model);
 true_edge film_edge(const true_film *film, long double u);
+/* A row of the film: strain, F_DEA [N], largest true field [V/m], capacitance [F] and film voltage [V], and what follows from them. */
+typedef struct true_numbers {
+    long double strain, force, field, capacitance, voltage;
+    bool taut;
+} true_numbers;
+dea_row film_state(const true_film *film, true_numbers numbers);
 /* F_DEA as rows have it, and what else a row holds, under the film voltage. */
 dea_row film_row(const true_film *film, long double u, long double voltage);
 long double film_focal_length(const true_film *film, long double strain);
@@ -77,6 +83,7 @@ typedef struct true_run {
     size_t count, good;  /* rows, and those before a pull-in */
     double error;
     double velocity_error, current_error; /* [m/s], [A] */
+    double means[DEA_WINDOWS], mean_error; /* of u over the windows, NAN behind the end of the motion [m] */
     double steps;
     const char *why; /* NULL: judged, else why the truth was not found */
 } true_run;
@@ -142,6 +149,9 @@ typedef struct column_error {
 
 /* Worst of them in the rows of a point, of those whose truth is good to a tenth of what it judges. */
 column_error columns_error(const judged *j, size_t point, const dea_sample *rows, double accuracy);
+
+/* Worst mean of a point's windows that its rows cover, over the peak; INFINITY where a film that never ends has none. */
+column_error means_error(const judged *j, size_t point, const dea_summary *summary, double peak, double accuracy);
 
 /* The tightest accuracy that the engine promises for such a study. */
 double best_accuracy(const dea_engine *engine, const dea_scene *scene);

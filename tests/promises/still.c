@@ -10,7 +10,9 @@ static const long double none = (long double)NAN;
 
 static dea_row refused(void)
 {
-    return (dea_row){(double)NAN, (double)NAN, (double)NAN, (double)NAN, DEA_STATE_PULL_IN};
+    dea_row row = dea_row_failed();
+    row.state = DEA_STATE_PULL_IN;
+    return row;
 }
 
 /* ---- the share of the full load that holds a place on the branch, for Eqs. 13 and 18 */
@@ -145,8 +147,13 @@ static dea_row free_row(const true_film *f, long double voltage, bool constant_f
         return refused();
     }
     const long double a = 1.0L + s, field = fabsl(nominal) * l2 * a * a;
-    return (dea_row){(double)s, (double)(s * f->divide), (double)(pressure * section * (constant_force ? a * a * a : 1.0L)),
-                     (double)field, field > f->breakdown ? DEA_STATE_BREAKDOWN : DEA_STATE_OK};
+    const long double rest = f->permittivity * l2 / f->thickness * pi * f->divide * f->divide;
+    return film_state(f, (true_numbers){.strain = s,
+                                        .force = pressure * section * (constant_force ? a * a * a : 1.0L),
+                                        .field = field,
+                                        .capacitance = rest * a * a * a * a,
+                                        .voltage = voltage,
+                                        .taut = true});
 }
 
 long double still_displacement(const true_film *f, long double voltage)

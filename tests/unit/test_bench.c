@@ -173,7 +173,7 @@ static void the_digest_sees_the_last_bit_and_the_state(void **state)
     (void)state;
     const dea_scene scene = parse(sweep_scene);
     const dea_layout layout = dea_layout_of(&scene);
-    const dea_row row = {0.1, 1e-4, 2.0, 3e7, DEA_STATE_OK};
+    const dea_row row = {.strain = 0.1, .displacement = 1e-4, .force = 2.0, .field = 3e7, .state = DEA_STATE_OK};
     dea_row changed = row, past = row;
     changed.force = nextafter(row.force, 3.0);
     past.state = DEA_STATE_SLACK;
@@ -347,7 +347,8 @@ static void a_wrong_answer_breaks_the_promise_of_a_whole_study(void **state)
     dea_bench_model model = {.model = scene.models[0], .reference = dea_engine_find("direct"), .exact = true};
     dea_bench_setting setting = made_up("ida", 1e-3, 1.0, (double)NAN);
     dea_bench_truth truth = {.scene = scene, .known = true};
-    dea_row rows[2] = {{0.1, 1e-3, 1.0, 1e7, DEA_STATE_OK}, {0.2, 2e-3, 1.0, 1e7, DEA_STATE_OK}};
+    dea_row rows[2] = {{.strain = 0.1, .displacement = 1e-3, .force = 1.0, .field = 1e7, .state = DEA_STATE_OK},
+                       {.strain = 0.2, .displacement = 2e-3, .force = 1.0, .field = 1e7, .state = DEA_STATE_OK}};
     dea_bench_work work = {
         .bench = &bench, .layout = dea_layout_of(&scene), .points = 2, .buffer = (char *)rows, .truths = &truth};
     bench.models = &model;

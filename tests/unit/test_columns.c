@@ -101,7 +101,7 @@ static void every_column_is_within_ten_times_the_accuracy(void **state)
         {"move1", 1e-8, 1e-4},           {"move1223", 1e-6, 1e-2},       {"columns_charging", 1e-8, 1e-4},
         {"columns_damper", 1e-8, 1e-4},  {"columns_branches", 1e-4, 1e-2}, {"columns_corners", 1e-4, 1e-2},
         {"columns_bias", 1e-6, 1e-4},    {"columns_held", 1e-6, 1e-2},   {"force_ngspice", 1e-6, 1e-6},
-        {"columns_ohms", 1e-8, 1e-6},    {"columns_turning", 1e-4, 1e-2},
+        {"columns_ohms", 1e-8, 1e-6},    {"columns_turning", 1e-4, 1e-2}, {"columns_film_voltage", 1e-8, 1e-4},
     };
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
         char *text = read_case(cases[c].name);
@@ -115,12 +115,38 @@ static void every_column_is_within_ten_times_the_accuracy(void **state)
     }
 }
 
-/* Rows of one run of a case. */
-static dea_status take_rows(void *user, size_t first, const void *points, size_t count, dea_error *error)
+/* Every column of a point at rest, by every engine that can do the model, against its truth. */
+static void every_column_at_rest_is_within_the_accuracy(void **state)
 {
-    (void)first, (void)count, (void)error;
+    (void)state;
+    static const struct {
+        const char *name;
+        double accuracy;
+    } engines[] = {{"direct", 1e-12}, {"ngspice", 1e-9}, {"ida", 1e-9}, {"ida", 1e-4}};
+    static const char *const models[] = {"pelrine", "constant_force", "lumped", "coverage", "lame", "field"};
+    for (size_t m = 0; m < 6; m++) {
+        for (int lens = m < 2 ? 0 : 1; lens >= 0; lens--) {
+            char *text = read_case(lens ? "columns_still_lens" : "columns_still_dot"), line[4 * LINE];
+            snprintf(line, sizeof line, "%smodel: %s\n", text, models[m]);
+            judged j;
+            assert_true(judge_open(&j, line, m));
+            for (size_t e = 0; e < 4; e++) {
+                if (!dea_engine_find(engines[e].name)->refuses(&j.scene, j.scene.models[0])) {
+                    hold(&j, engines[e].name, engines[e].accuracy);
+                }
+            }
+            judge_close(&j);
+            free(text);
+        }
+    }
+}
+
+/* Rows of one run of a case. */
+static dea_status take_points(void *user, size_t first, const void *points, size_t count, dea_error *error)
+{
+    (void)error;
     const judged *j = ((void **)user)[0];
-    memcpy(((void **)user)[1], points, j->layout.point_size);
+    memcpy((char *)((void **)user)[1] + first * j->layout.point_size, points, count * j->layout.point_size);
     return DEA_OK;
 }
 
@@ -129,7 +155,7 @@ static dea_sample *run_case(judged *j, const char *engine, double accuracy)
     dea_error error = {0};
     dea_sample *rows = malloc(j->layout.point_size);
     void *user[2] = {j, rows};
-    const dea_run_options options = {.jobs = 1, .points = take_rows, .user = user};
+    const dea_run_options options = {.jobs = 1, .points = take_points, .user = user};
     assert_non_null(rows);
     j->scene.accuracy = accuracy;
     assert_int_equal(dea_study_run(&j->scene, dea_engine_find(engine), &options, &error), DEA_OK);
@@ -184,6 +210,57 @@ static void the_estimate_tells_the_error_of_a_rate(void **state)
         assert_true(v > 0.0 && v <= summary->velocity_error && summary->velocity_error <= 1e-3);
         assert_true(i > 0.0 && i <= summary->current_error && summary->current_error <= 1e-3);
         free(rows);
+    }
+    judge_close(&j);
+    free(text);
+}
+
+/* The electrical port by its own two laws: what the resistance leaves, and q = C U. */
+static void film_voltage_is_what_the_resistance_leaves(void **state)
+{
+    (void)state;
+    for (int e = 0; e < 2; e++) {
+        char *text = read_case("columns_film_voltage");
+        judged j;
+        assert_true(judge_open(&j, text, 0));
+        j.scene.full = true;
+        dea_sample *rows = run_case(&j, e == 0 ? "ngspice" : "ida", 1e-4);
+        dea_dynamics film;
+        assert_int_equal(dea_dynamics_open(&j.scene, j.scene.models[0], &film, NULL), DEA_OK);
+        double most = 0.0;
+        for (size_t i = 0; i < j.layout.rows; i++) {
+            const double drop = j.scene.drive.series_resistance * rows[i].current;
+            assert_near(rows[i].film_voltage, rows[i].voltage - drop, 1e-9 * 4500.0);
+            const double capacitance = dea_dynamics_edge(&film, rows[i].displacement).capacitance;
+            assert_near(rows[i].charge, capacitance * rows[i].film_voltage, 1e-9 * capacitance * 4500.0);
+            most = fmax(most, fabs(drop));
+        }
+        assert_true(most > 10.0); /* volts: there is something to see */
+        dea_dynamics_close(&film);
+        free(rows);
+        judge_close(&j);
+        free(text);
+    }
+}
+
+/* Liquid of fixed volume under a lens: 22 mm at rest. */
+static void focal_length_shortens_with_the_voltage(void **state)
+{
+    (void)state;
+    static const double wanted[] = {22.0, 21.4708, 19.8397, 17.0122};
+    static const char *const engines[] = {"direct", "ngspice", "ida"};
+    char *text = read_case("lens_focal_sweep");
+    judged j;
+    assert_true(judge_open(&j, text, 0));
+    for (size_t e = 0; e < 3; e++) {
+        dea_error error = {0};
+        dea_row rows[4];
+        void *user[2] = {&j, rows};
+        const dea_run_options options = {.jobs = 1, .points = take_points, .user = user};
+        assert_int_equal(dea_study_run(&j.scene, dea_engine_find(engines[e]), &options, &error), DEA_OK);
+        for (size_t i = 0; i < 4; i++) {
+            assert_printed(1e3 * rows[i].focal_length, wanted[i], 4);
+        }
     }
     judge_close(&j);
     free(text);
@@ -272,6 +349,9 @@ int main(void)
         cmocka_unit_test(the_fastest_time_is_that_of_the_edge_or_of_the_film),
         cmocka_unit_test(a_scale_is_the_peak_unless_samples_miss_it),
         cmocka_unit_test(every_column_is_within_ten_times_the_accuracy),
+        cmocka_unit_test(every_column_at_rest_is_within_the_accuracy),
+        cmocka_unit_test(film_voltage_is_what_the_resistance_leaves),
+        cmocka_unit_test(focal_length_shortens_with_the_voltage),
         cmocka_unit_test(the_velocity_of_a_slow_film_has_its_sign_and_size),
         cmocka_unit_test(the_estimate_tells_the_error_of_a_rate),
         cmocka_unit_test(a_velocity_off_by_thirty_times_the_accuracy_is_found),

@@ -59,28 +59,35 @@ static void check_picture(const char *name)
     assert_int_equal(unlink(path), 0);
 }
 
-/* The last five cells of a line: four numbers, NAN where empty, and the state. */
-static dea_row parse_row(char *line)
+/* The last cells of a line: the numbers of the layout, NAN where empty, and the state. */
+static dea_row parse_row(const dea_layout *layout, char *line)
 {
     dea_row row = dea_row_failed();
-    double *const numbers[] = {&row.field, &row.force, &row.displacement, &row.strain};
     char *cell = strrchr(line, ',');
     for (int state = 0; state < DEA_STATE_COUNT; state++) {
         if (strcmp(cell + 1, dea_state_name((dea_state)state)) == 0) {
             row.state = (dea_state)state;
         }
     }
-    for (int i = 0; i < 4; i++) {
+    for (size_t i = layout->column_count; i-- > 0;) {
         *cell = '\0';
         cell = strrchr(line, ',');
-        *numbers[i] = cell[1] ? strtod(cell + 1, NULL) : (double)NAN;
+        const double number = cell[1] ? strtod(cell + 1, NULL) : (double)NAN;
+        memcpy((char *)&row + layout->columns[i].offset, &number, sizeof number);
     }
     return row;
 }
 
-static bool same(double a, double b)
+static bool same(const dea_layout *layout, const dea_row *a, const dea_row *b)
 {
-    return isnan(a) ? isnan(b) : a == b;
+    bool equal = a->state == b->state;
+    for (size_t i = 0; i < layout->column_count; i++) {
+        double one, other;
+        memcpy(&one, (const char *)a + layout->columns[i].offset, sizeof one);
+        memcpy(&other, (const char *)b + layout->columns[i].offset, sizeof other);
+        equal = equal && (isnan(one) ? isnan(other) : one == other);
+    }
+    return equal;
 }
 
 /* The program prints what the library found, to the last bit. */
@@ -88,15 +95,15 @@ static void compare_csv(void)
 {
     char path[PATH_LENGTH], line[LINE_LENGTH];
     size_t count = 0;
+    const dea_layout layout = dea_layout_of(&here.scene);
     snprintf(path, sizeof path, "%s/rows.csv", folder);
     FILE *file = fopen(path, "r");
     assert_non_null(file);
     assert_non_null(fgets(line, sizeof line, file));
     for (; fgets(line, sizeof line, file); count++) {
         line[strcspn(line, "\n")] = '\0';
-        const dea_row got = parse_row(line), wanted = here.rows[count];
-        if (got.state != wanted.state || !same(got.strain, wanted.strain) || !same(got.displacement, wanted.displacement) ||
-            !same(got.force, wanted.force) || !same(got.field, wanted.field)) {
+        const dea_row got = parse_row(&layout, line);
+        if (!same(&layout, &got, &here.rows[count])) {
             fail_msg("%s, row %zu: the program and the library differ", here.path, count);
         }
     }
@@ -449,11 +456,43 @@ static int leave(void **state)
     return rmdir(folder);
 }
 
+/* One cell: words to the letter, numbers to 12 digits. */
+static bool same_cell(const char *got, const char *wanted)
+{
+    char *after, *after_wanted;
+    const double number = strtod(got, &after), known = strtod(wanted, &after_wanted);
+    return after_wanted > wanted && *after_wanted == '\0' ? *after == '\0' && fabs(number - known) <= 1e-12 * fabs(known)
+                                                         : strcmp(got, wanted) == 0;
+}
+
+/* Rows that the program printed into a file, against the indented lines of a text. */
+static void compare_printed(const char *path, const char *text)
+{
+    char line[LINE_LENGTH], wanted[LINE_LENGTH];
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file)) {
+        char *left, *right;
+        snprintf(wanted, sizeof wanted, "%.*s", (int)strcspn(text, "\n"), text);
+        text += strcspn(text, "\n") + 1;
+        assert_int_equal(strncmp(wanted, "    ", 4), 0);
+        const char *got = strtok_r(line, ",\n", &left), *known = strtok_r(wanted + 4, ",", &right);
+        for (; got && known; got = strtok_r(NULL, ",\n", &left), known = strtok_r(NULL, ",", &right)) {
+            if (!same_cell(got, known)) {
+                fail_msg("the program prints %s, README %s", got, known);
+            }
+        }
+        assert_true(!got && !known);
+    }
+    assert_int_equal(*text, '\n');
+    assert_int_equal(fclose(file), 0);
+}
+
 /* README's scenes as a reader types them in: every block of YAML that has an actuator. */
 static void scenes_of_the_readme_run_as_written(void **state)
 {
     static char text[1 << 16];
-    size_t scenes = 0;
+    size_t scenes = 0, printed = 0;
     (void)state;
     FILE *file = fopen("README.md", "r");
     assert_non_null(file);
@@ -465,20 +504,26 @@ static void scenes_of_the_readme_run_as_written(void **state)
         assert_non_null(end);
         *end = '\0';
         if (strncmp(block, "actuator:", 9) == 0 || strstr(block, "\nactuator:")) {
-            char path[PATH_LENGTH], words[2 * PATH_LENGTH];
+            char path[PATH_LENGTH], rows[PATH_LENGTH], words[3 * PATH_LENGTH];
             snprintf(path, sizeof path, "%s/readme.yaml", folder);
             file = fopen(path, "w");
             assert_non_null(file);
             assert_true(fputs(block, file) >= 0);
             assert_int_equal(fclose(file), 0);
-            snprintf(words, sizeof words, "run --no-files %s", path);
+            snprintf(rows, sizeof rows, "%s/rows.csv", folder);
+            snprintf(words, sizeof words, "run --quiet --no-files %s -o %s", path, rows);
             run_program(words);
-            assert_int_equal(unlink(path), 0);
+            static const char prompt[] = "``\n\n    $ build/deaspice run dot.yaml\n"; /* and what it prints below */
+            if (strncmp(end + 1, prompt, sizeof prompt - 1) == 0) {
+                compare_printed(rows, end + sizeof prompt);
+                printed++;
+            }
+            assert_int_equal(unlink(path) + unlink(rows), 0);
             scenes++;
         }
         block = end + 1;
     }
-    assert_true(scenes > 0);
+    assert_true(scenes > 0 && printed > 0);
 }
 
 int main(void)

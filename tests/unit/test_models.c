@@ -278,6 +278,59 @@ static void capacitance_at_rest_is_the_size_of_the_paper_s_actuator(void **state
     assert_near(true_capacitance(&scene, 0.0), 252e-12, 0.5e-12);
 }
 
+/* A number that another program found. */
+static void charge_of_the_membrane_to_all_printed_digits(void **state)
+{
+    (void)state;
+    assert_printed(1e6 * solve_paper("field", DEA_DOT, 1.2, 0.5, 4500.0).charge, 1.354360, 6);
+}
+
+static void charge_is_what_the_film_takes_at_its_voltage(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < ALL_MODELS; i++) {
+        dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.4, 3000.0);
+        const dea_row plain = solve_direct(&scene, all_models[i]);
+        assert_relative(plain.charge, 3000.0 * plain.capacitance, 1e-15);
+        scene.drive = (dea_drive){.voltage = 4500.0, .series_resistance = 1e9, .leakage_resistance = 2e9};
+        const dea_row leaking = solve_direct(&scene, all_models[i]);
+        assert_relative(leaking.charge, plain.charge, 1e-15);
+        assert_relative(leaking.capacitance, plain.capacitance, 1e-15);
+    }
+}
+
+/* F_DEA = U^2/2 dC/du where the displacement alone tells the capacitance. */
+static void force_is_the_slope_of_the_capacitance_column(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lumped", "coverage", "lame"};
+    for (size_t i = 0; i < 3; i++) {
+        for (int kind = DEA_DOT; kind <= DEA_LENS; kind++) {
+            for (double b = 0.15; b < 1.0; b += 0.2) {
+                const dea_row low = solve_paper(models[i], (dea_kind)kind, 1.2, b, 2999.0);
+                const dea_row high = solve_paper(models[i], (dea_kind)kind, 1.2, b, 3001.0);
+                const dea_row row = solve_paper(models[i], (dea_kind)kind, 1.2, b, 3000.0);
+                const double slope = (high.capacitance - low.capacitance) / (high.displacement - low.displacement);
+                const double softening = strcmp(models[i], "lame") == 0 ? 0.3 : 1e-6; /* its force is that at rest */
+                assert_relative(row.force, 0.5 * 3000.0 * 3000.0 * slope, softening);
+            }
+        }
+    }
+}
+
+static void area_strain_is_that_of_the_electroded_film(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < LENS_MODELS; i++) {
+        const dea_row dot = solve_paper(lens_models[i], DEA_DOT, 1.2, 0.5, 4500.0);
+        const dea_row lens = solve_paper(lens_models[i], DEA_LENS, 1.2, 0.5, 4500.0);
+        assert_relative(1.0 + dot.area_strain, (1.0 + dot.strain) * (1.0 + dot.strain), 1e-15);
+        const double inner = 0.5 * (1.0 + lens.strain);
+        assert_relative(1.0 + lens.area_strain, (1.0 - inner * inner) / 0.75, 1e-15);
+        assert_true(dot.area_strain > 0.0 && lens.area_strain > 0.0);
+    }
+}
+
 static void strain_does_not_depend_on_size(void **state)
 {
     (void)state;
@@ -303,8 +356,10 @@ static void sign_of_the_voltage_does_not_matter(void **state)
     (void)state;
     for (size_t i = 0; i < ALL_MODELS; i++) {
         const dea_row plus = solve_paper(all_models[i], DEA_DOT, 1.2, 0.4, 3000.0);
-        const dea_row minus = solve_paper(all_models[i], DEA_DOT, 1.2, 0.4, -3000.0);
+        dea_row minus = solve_paper(all_models[i], DEA_DOT, 1.2, 0.4, -3000.0);
         assert_state(minus, DEA_STATE_OK);
+        assert_true(minus.charge < 0.0);
+        minus.charge = -minus.charge;
         assert_memory_equal(&plus, &minus, offsetof(dea_row, state));
         assert_true(minus.field > 0.0);
     }
@@ -788,6 +843,10 @@ int main(void)
         cmocka_unit_test(force_of_a_dot_is_the_slope_of_its_electric_energy),
         cmocka_unit_test(force_at_rest_is_the_slope_of_the_electric_energy),
         cmocka_unit_test(capacitance_at_rest_is_the_size_of_the_paper_s_actuator),
+        cmocka_unit_test(charge_of_the_membrane_to_all_printed_digits),
+        cmocka_unit_test(charge_is_what_the_film_takes_at_its_voltage),
+        cmocka_unit_test(force_is_the_slope_of_the_capacitance_column),
+        cmocka_unit_test(area_strain_is_that_of_the_electroded_film),
         cmocka_unit_test(strain_does_not_depend_on_size),
         cmocka_unit_test(sign_of_the_voltage_does_not_matter),
         cmocka_unit_test(no_voltage_gives_no_strain),

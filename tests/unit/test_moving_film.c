@@ -275,6 +275,37 @@ static void a_ring_of_too_many_steps_says_so(void **state)
     assert_non_null(strstr(error.message, "steps"));
 }
 
+/* An undamped film that bounces off its narrow annulus: what one tolerance is off by, the next is off by too. */
+static void a_film_that_bounces_keeps_its_accuracy(void **state)
+{
+    (void)state;
+    dea_scene scene = moving_scene("coverage", DEA_DOT, 0.0016988110582901819, 0.0);
+    scene.actuator = (dea_actuator){.kind = DEA_DOT,
+                                    .frame_radius = 0.0013793006894120407,
+                                    .coverage = 0.90996361472559584,
+                                    .divide_radius = (double)NAN,
+                                    .film_thickness = 0.00020965386804276223,
+                                    .prestretch = 1.0725777575308943,
+                                    .electrode_mass = (double)NAN,
+                                    .focal_length = (double)NAN,
+                                    .refractive_index = (double)NAN};
+    scene.material.constants[0] = 166711.18693636474;
+    scene.material.constants[1] = 8244.6926419412848;
+    scene.material.constants[2] = 0.0;
+    scene.material.permittivity = 3.142503678239164;
+    scene.material.density = 1156.4860494269196;
+    scene.drive.waveform.step.on = 0.00049864304210081958;
+    scene.drive.waveform.step.off = 0.0012366720119295713;
+    scene.drive.waveform.step.voltage = 46386.506593988168;
+    scene.transient.every = 0.1 * scene.transient.until;
+    scene.accuracy = 1e-7;
+    fly(&scene);
+    other = last;
+    scene.accuracy = 1e-6;
+    fly(&scene);
+    assert_true(distance(&last, &other) <= 0.5e-6);
+}
+
 /* A film without mass and branches follows its voltage through the equilibria, up to the fold. */
 static void a_film_that_pulls_in_keeps_the_rows_before(void **state)
 {
@@ -563,6 +594,7 @@ int main(void)
         cmocka_unit_test(a_stiff_film_charges_through_its_resistance),
         cmocka_unit_test(a_film_that_hardly_charges_keeps_its_digits),
         cmocka_unit_test(a_ring_of_too_many_steps_says_so),
+        cmocka_unit_test(a_film_that_bounces_keeps_its_accuracy),
         cmocka_unit_test(a_film_that_pulls_in_keeps_the_rows_before),
         cmocka_unit_test(a_film_at_its_bias_begins_with_its_own_velocity),
         cmocka_unit_test(an_edge_shows_behind_its_row),

@@ -627,7 +627,7 @@ static void a_scene_becomes_a_part_with_its_numbers_and_a_harmless_title(void **
     scene.title = title;
     scene.actuator.coverage = (double)NAN;
     scene.actuator.divide_radius = 0.012;
-    scene.material = *dea_material_find("vhb-4910");
+    scene.material = *dea_material_find("vhb-4910-neo-hookean");
     scene.material.instantaneous = true;
     FILE *file = child_open("scene.lib", "w");
     assert_int_equal(dea_part_of_scene(&scene, scene.models[0], NULL, dea_dialect_find("ngspice"), file, &error), DEA_OK);

@@ -180,6 +180,66 @@ static void uniform_axis_is_evenly_spaced_with_exact_ends(void **state)
     dea_scene_free(&it.scene);
 }
 
+/* What a reader of the scene would write down for a place on the axis, read by strtod() to the nearest double. */
+static void axis_values_are_the_decimals_meant(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *axis, *decimal; /* of step i: i times this many times 10^exponent */
+        long first, step;
+    } axes[] = {
+        {"coverage: {from: 0.05, to: 0.95, points: 181}", "e-3", 50, 5},
+        {"voltage: {from: 0 V, to: 4500 V, points: 451}", "e0", 0, 10},
+        {"voltage: {from: 4.5 kV, to: -4.5 kV, points: 91}", "e2", 45, -1},
+        {"film_thickness: {from: 1 um, to: 300 um, points: 300}", "e-6", 1, 1},
+        {"frame_radius: {from: 0.1 mm, to: 30 mm, points: 300}", "e-4", 1, 1},
+        {"prestretch: {from: 1.05, to: 2.35, points: 131}", "e-2", 105, 1},
+        {"material.yeoh.C1: {from: 0.123 MPa, to: 0.323 MPa, points: 2001}", "e2", 1230, 1},
+    };
+    for (size_t a = 0; a < sizeof axes / sizeof *axes; a++) {
+        char text[1024], decimal[64];
+        loaded it;
+        snprintf(text, sizeof text,
+                 "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+                 "material: {yeoh: {C1: 178426 Pa, C2: -6023 Pa, C3: 4234 Pa}, permittivity: 2.8}\nmodel: lumped\n"
+                 "drive: {voltage: 4500 V}\nstudy: {sweep: {%s}}\n",
+                 axes[a].axis);
+        load(&it, text, NULL);
+        for (size_t i = 0; i < it.scene.axes[0].count; i++) {
+            snprintf(decimal, sizeof decimal, "%ld%s", axes[a].first + axes[a].step * (long)i, axes[a].decimal);
+            if (it.scene.axes[0].values[i] != strtod(decimal, NULL)) {
+                fail_msg("%s: value %zu is %.17g, not %s", axes[a].axis, i, it.scene.axes[0].values[i], decimal);
+            }
+        }
+        dea_scene_free(&it.scene);
+    }
+}
+
+static void values_and_samples_are_the_decimals_meant(void **state)
+{
+    (void)state;
+    loaded it;
+    char decimal[64], text[4096] = DOT "study: {sweep: {film_thickness: [";
+    for (int i = 1; i < 100; i++) {
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%s0.%02d mm", i > 1 ? ", " : "", i);
+    }
+    strcat(text, "]}}\n");
+    load(&it, text, NULL);
+    for (int i = 1; i < 100; i++) {
+        snprintf(decimal, sizeof decimal, "%de-5", i);
+        assert_true(it.scene.axes[0].values[i - 1] == strtod(decimal, NULL));
+    }
+    dea_scene_free(&it.scene);
+    load(&it, FILM SWITCHED "study: {transient: {until: 25 s, every: 10 ms}}\n", NULL);
+    for (int i = 0; i <= 2500; i++) {
+        snprintf(decimal, sizeof decimal, "%de-2", i);
+        assert_true(dea_layout_place(&it.scene, (size_t)i) == strtod(decimal, NULL));
+    }
+    it.scene.transient.every = 1.0 / 3.0; /* not on the grid that was read */
+    assert_true(dea_layout_place(&it.scene, 7) == 7.0 * (1.0 / 3.0));
+    dea_scene_free(&it.scene);
+}
+
 static void logarithmic_axis_has_equal_ratios(void **state)
 {
     (void)state;
@@ -582,7 +642,7 @@ static void builtin_materials_carry_their_source(void **state)
         assert_true(strlen(material->source) > 10);
         assert_true(material->constants[0] > 0.0 && material->permittivity > 0.0);
     }
-    const dea_material *vhb = dea_material_find("vhb-4910");
+    const dea_material *vhb = dea_material_find("vhb-4910-neo-hookean");
     assert_non_null(vhb);
     assert_null(dea_material_builtin(dea_material_count()));
     assert_null(dea_material_find("vhb"));
@@ -594,11 +654,11 @@ static void lens_takes_its_own_keys(void **state)
     (void)state;
     loaded it;
     load(&it,
-         "actuator: {lens_radius: 10 mm, optics: {focal_length: 22 mm, refractive_index: 1.4}, kind: lens, frame_radius: 30 mm,\n"
+         "actuator: {lens_radius: 8 mm, optics: {focal_length: 22 mm, refractive_index: 1.4}, kind: lens, frame_radius: 30 mm,\n"
          "           film_thickness: 100 um, prestretch: 2}\nmaterial: vhb-4910\ndrive: {voltage: 0 V}\nmodel: field\n" ONE,
          NULL);
     assert_int_equal(it.scene.actuator.kind, DEA_LENS);
-    assert_true(it.scene.actuator.divide_radius == 0.01);
+    assert_true(it.scene.actuator.divide_radius == 0.008);
     assert_true(it.scene.actuator.focal_length == 0.022 && it.scene.actuator.refractive_index == 1.4);
     dea_scene_free(&it.scene);
 }
@@ -992,7 +1052,7 @@ static void model_argument_is_checked_against_the_study(void **state)
     dea_scene_free(&it.scene);
     assert_int_equal(parse(&it, FILM SWITCHED TRANSIENT, NULL, "lumped,field"), DEA_ERROR_SCENE);
     assert_string_equal(it.error.message,
-                        "--model: model: cannot do a transient (field); accepted: lumped, coverage, lame, auto");
+                        "--model: model: cannot do a transient (field); accepted: lumped, coverage, lame, ring, auto");
     dea_scene_free(&it.scene);
 }
 
@@ -1138,6 +1198,8 @@ int main(void)
         cmocka_unit_test(what_a_scene_leaves_out_has_its_default),
         cmocka_unit_test(axis_knows_its_key_column_unit_and_place),
         cmocka_unit_test(uniform_axis_is_evenly_spaced_with_exact_ends),
+        cmocka_unit_test(axis_values_are_the_decimals_meant),
+        cmocka_unit_test(values_and_samples_are_the_decimals_meant),
         cmocka_unit_test(logarithmic_axis_has_equal_ratios),
         cmocka_unit_test(axis_of_one_point_is_its_start),
         cmocka_unit_test(swept_key_counts_as_given),

@@ -3,12 +3,15 @@
  *
  *     dSigma/dx + (s1 - s2) = 0,   dd2/dx - (d1 - d2) = 0,   p1(lambda_1, lambda_2) - p_pre - k lambda_1 lambda_2^2 - Sigma = 0.
  *
+ *
  * IDA finds lambda_1 behind the edge itself, from the continuity of s1; KINSOL finds the edge, from d2 = 0 at the frame. Unknowns
- * are scaled by the load, so that no tolerance depends on its size. */
+ * are scaled by the load, so that no tolerance depends on its size. The capacitance of the annulus of a lens,
+ * (2 pi eps R_a^2/H) int (lambda_1 lambda_2)^2 exp(2 x) dx, is summed over IDA's own steps. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "engine/ida/sundials.h"
+#include "model/models.h"
 
 enum { SIGMA, HOOP, RADIAL, UNKNOWNS };
 
@@ -22,6 +25,11 @@ enum { MOST_STEPS = 3000 };
 static const double finest = 1e-13;
 /* Share of s11 at rest below which a film that cannot be followed any further has come to its end. */
 static const double nearly = 0.1;
+
+/* Integrand of the capacitance, q = (lambda_1 lambda_2)^2 exp(2 x), at one place. */
+typedef struct panel {
+    double x, value, slope;
+} panel;
 
 struct dea_shooting {
     dea_integrator integrator;
@@ -42,6 +50,8 @@ struct dea_shooting {
     double largest_area; /* largest lambda_1 lambda_2 of the electroded region [1] */
     double edge_force;   /* lambda_1 lambda_2^2 of the electroded side at r_a [1] */
     double radial;       /* lambda_1 behind r_a [1] */
+    panel end;           /* of the last step */
+    double charge;       /* int (lambda_1 lambda_2)^2 exp(2 x) dx up to there [1] */
 };
 
 /* p1(l + d1, l + d2) - p1(l, l) with l = lambda_pre. */
@@ -106,6 +116,24 @@ static void note(dea_shooting *s)
     }
 }
 
+static panel panel_at(const dea_shooting *s, double x)
+{
+    const sunrealtype *v = NV_DATA_S(s->integrator.y), *slope = NV_DATA_S(s->integrator.yp);
+    const double l1 = s->point->film.prestretch + s->strain * v[RADIAL];
+    const double l2 = s->point->film.prestretch + s->strain * v[HOOP];
+    const double area = l1 * l2, growth = s->strain * (slope[RADIAL] * l2 + l1 * slope[HOOP]), weight = exp(2.0 * x);
+    return (panel){x, area * area * weight, 2.0 * area * (growth + area) * weight};
+}
+
+/* Adds the step to @p x by the trapezoidal rule with its end correction, h/2 (q0 + q1) + h^2/12 (q0' - q1'). */
+static void add_charge(dea_shooting *s, double x)
+{
+    const panel from = s->end, to = panel_at(s, x);
+    const double h = to.x - from.x;
+    s->charge += h * (0.5 * (from.value + to.value) + h / 12.0 * (from.slope - to.slope));
+    s->end = to;
+}
+
 /* Jump of lambda_1 at the edge by its own Newton steps, only to start IDA's search near its goal. */
 static double jump_guess(const dea_shooting *s, double l)
 {
@@ -147,6 +175,8 @@ static bool start(dea_shooting *s, double edge)
     s->largest_area = lens ? l1 * l : l * l;
     s->radial = l1;
     s->edge_force = lens ? l1 * l * l : l * l * l;
+    s->charge = 0.0;
+    s->end = panel_at(s, 0.0);
     note(s);
     return true;
 }
@@ -165,6 +195,7 @@ static double miss_at_frame(dea_shooting *s, double edge)
         code = m->sun->IDASolve(m->ida, length, &x, m->y, m->yp, IDA_ONE_STEP);
         if (code >= 0) {
             note(s);
+            add_charge(s, x);
         }
     }
     return code == IDA_TSTOP_RETURN ? NV_DATA_S(m->y)[HOOP] : NAN;
@@ -415,7 +446,7 @@ void dea_shooting_solve(dea_shooting *s, const dea_point *point, double accuracy
     s->tolerance = fmin(1e-7, fmax(1e-6 * accuracy, finest));
     *row = dea_row_failed();
     if (s->pressure == 0.0) {
-        *row = (dea_row){0.0, 0.0, 0.0, 0.0, film->tension > 0.0 ? DEA_STATE_OK : DEA_STATE_SLACK};
+        dea_row_fill(row, point, (dea_found){.capacitance = dea_point_capacitance(point), .taut = film->tension > 0.0});
         return;
     }
     if (!(film->w11 > 0.0)) {
@@ -441,10 +472,12 @@ void dea_shooting_solve(dea_shooting *s, const dea_point *point, double accuracy
     }
     const double radius = point->coverage * point->frame_radius;
     const double strain = edge / film->prestretch;
-    const double field = fabs(nominal) * s->largest_area;
     const double force = sign * 2.0 * DEA_PI * point->film_thickness * s->pressure * s->edge_force * radius / film->prestretch;
-    *row = (dea_row){strain, strain * radius, force, field,
-                     field > film->breakdown ? DEA_STATE_BREAKDOWN
-                     : s->least_stress > 0.0 ? DEA_STATE_OK
-                                             : DEA_STATE_SLACK};
+    const double annulus = 2.0 * dea_point_full_capacitance(point) * b2 * s->charge / (film->square * film->square);
+    dea_row_fill(row, point,
+                 (dea_found){.strain = strain,
+                             .force = force,
+                             .stretch = s->largest_area,
+                             .capacitance = sign > 0.0 ? dea_point_disc_capacitance(point, strain) : annulus,
+                             .taut = s->least_stress > 0.0});
 }

@@ -121,7 +121,7 @@ static void check_measures_the_model_that_auto_chose(void **state)
     assert_says("model auto: ring, nothing cheaper is good enough");
     RUN("check", "--set", "voltage=100 V", "swing.yaml");
     assert_status(0);
-    assert_non_null(strstr(child_out, "lumped instead of ring (<= "));
+    assert_non_null(strstr(child_out, "lame instead of ring (<= "));
     assert_non_null(strstr(child_out, ", measured "));
 }
 

@@ -215,11 +215,11 @@ static void draw_ports(uint64_t *seed, dea_scene *scene, double time)
 
 static const char *draw_mover(uint64_t *seed, dea_scene *scene, bool heavy)
 {
-    static const char *const models[] = {"lumped", "lame", "coverage"};
+    static const char *const models[] = {"lumped", "lame", "coverage", "ring"};
     draw_film(seed, scene);
     scene->material.density = heavy ? random_between(seed, 900.0, 1200.0) : (double)NAN;
     scene->actuator.electrode_mass = heavy && random_chance(seed, 0.3) ? random_decades(seed, 1e-3, 0.1) : (double)NAN;
-    return models[(int)(3.0 * random_unit(seed))];
+    return models[(int)(4.0 * random_unit(seed))];
 }
 
 /* Squeezes the waveform into a period of which the run holds some. */

@@ -223,7 +223,7 @@ static void set_least(const judged *j, const column *chosen, size_t count, doubl
     const true_film film = film_of(&j->scene, j->scene.models[0]);
     const true_edge e = film_edge(&film, 0.0L);
     const double push = fabs((double)e.push.value) * volts * volts;
-    const double u = fmin(push / (double)(e.area.value * e.stress.slope), (double)fminl(film.divide, film.frame - film.divide));
+    const double u = fmin(push / (double)edge_viscous(&e), (double)fminl(film.divide, film.frame - film.divide));
     const dea_sample swing = {.displacement = u, .strain = u / (double)film.divide};
     for (size_t c = 0; c < count; c++) {
         least[c] = least_swing * number_at(&swing, chosen[c].offset);

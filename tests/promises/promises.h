@@ -31,11 +31,19 @@ typedef struct true_film {
     long double focal_length, index; /* NAN: no optics */
 } true_film;
 
-/* m u'' + A [S + tau S' u' + branches] = phi U^2. */
+/* m u'' + sum A [S + tau S' u' + branches] + G = phi U^2, with G what the stress at rest does by areas that change. */
+enum { TRUE_STRESSES = 3 };
+
 typedef struct true_edge {
-    jet area, stress, push;
+    int count; /* of the A and S */
+    jet area[TRUE_STRESSES], stress[TRUE_STRESSES];
+    jet tension, push;
     long double capacitance;
 } true_edge;
+
+/* sum A S', sum A S + G and the slope of that. */
+long double edge_viscous(const true_edge *edge);
+jet edge_relaxed(const true_edge *edge);
 
 /* Yeoh film under equal stretches: sigma and its derivatives over the stretch. */
 jet film_cauchy(const true_film *film, long double stretch);

@@ -31,8 +31,8 @@ static void the_truth_of_a_ring_is_its_closed_form(void **state)
         const dea_scene scene = ringing(retardations[i]);
         const true_film film = film_of(&scene, scene.models[0]);
         const true_edge e = film_edge(&film, 0.0L);
-        const long double square = e.stress.slope / film.mass, d = 0.5L * square * film.retardation;
-        const long double full = e.push.value * 4500.0L * 4500.0L / e.stress.slope, turn = sqrtl(fabsl(square - d * d));
+        const long double square = e.stress[0].slope / film.mass, d = 0.5L * square * film.retardation;
+        const long double full = e.push.value * 4500.0L * 4500.0L / e.stress[0].slope, turn = sqrtl(fabsl(square - d * d));
         true_run run = moving_truth(&scene, scene.models[0], 1.0);
         assert_null(run.why);
         assert_int_equal(run.good, run.count);

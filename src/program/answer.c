@@ -43,6 +43,14 @@ static bool keep_larger(dea_spot *spot, dea_spot here, bool sound)
     return takes;
 }
 
+/* In time the charge over the film's voltage, which is that of the source where nothing lies between them. */
+static double capacitance_of(const dea_layout *layout, const void *row, double charge)
+{
+    const double told = column_of(layout, row, "capacitance_F"), film = column_of(layout, row, "film_voltage_V");
+    const double voltage = isnan(film) ? column_of(layout, row, "voltage_V") : film;
+    return isnan(told) && voltage != 0.0 ? charge / voltage : told;
+}
+
 static void take_row(dea_answer *answer, const dea_layout *layout, dea_spot here, const void *row)
 {
     answer->states[here.state]++;
@@ -58,7 +66,7 @@ static void take_row(dea_answer *answer, const dea_layout *layout, dea_spot here
     keep_larger(&answer->field, here, false);
     here.value = column_of(layout, row, "charge_C");
     if (keep_larger(&answer->charge, here, false)) {
-        answer->capacitance = column_of(layout, row, "capacitance_F");
+        answer->capacitance = capacitance_of(layout, row, here.value);
     }
 }
 
@@ -82,10 +90,9 @@ static void print_quantity(double value, const char *unit, int digits)
     fputs(dea_quantity_digits(value, unit, digits, text), stderr);
 }
 
-/* " at coverage = 0.5, voltage = 4.5 kV, t = 2 s", nothing where there is one row only. */
-static void print_place(const dea_scene *scene, const dea_spot *spot)
+/* @p before, "coverage = 0.5, voltage = 4.5 kV"; what is to stand before a further number, @p before itself where there is no axis. */
+static const char *print_axes(const dea_scene *scene, const dea_spot *spot, const char *before)
 {
-    const char *before = " at ";
     size_t step = dea_scene_point_count(scene);
     for (size_t i = 0; i < scene->axis_count; i++) {
         const dea_axis *axis = &scene->axes[i];
@@ -95,6 +102,13 @@ static void print_place(const dea_scene *scene, const dea_spot *spot)
         print_quantity(axis->values[spot->number / step % axis->count], axis->unit, 6);
         before = ", ";
     }
+    return before;
+}
+
+/* " at coverage = 0.5, voltage = 4.5 kV, t = 2 s", nothing where there is one row only. */
+static void print_place(const dea_scene *scene, const dea_spot *spot)
+{
+    const char *before = print_axes(scene, spot, " at ");
     if (scene->study == DEA_STUDY_TRANSIENT) {
         fprintf(stderr, "%st = ", before);
         print_quantity(dea_layout_place(scene, spot->row), "s", 6);
@@ -167,10 +181,11 @@ static void print_charge(const dea_answer *answer, const dea_scene *scene)
     print_quantity(answer->charge.value, "C", digits);
     print_place(scene, &answer->charge);
     if (!isnan(answer->capacitance)) {
+        const int fewer = digits_of(30.0 * scene->accuracy); /* two columns, one of them squared */
         fputs(", capacitance ", stderr);
-        print_quantity(answer->capacitance, "F", digits);
+        print_quantity(answer->capacitance, "F", fewer);
         fputs(" and energy ", stderr);
-        print_quantity(0.5 * answer->charge.value * answer->charge.value / answer->capacitance, "J", digits);
+        print_quantity(0.5 * answer->charge.value * answer->charge.value / answer->capacitance, "J", fewer);
         fputs(" there", stderr);
     }
     fputc('\n', stderr);
@@ -189,7 +204,14 @@ static void print_rest(const dea_answer *answer, const dea_scene *scene, const d
     }
     const double capacitance = dea_point_capacitance(&point);
     const dea_swing swing = dea_swing_free(&here, model);
-    fputs(scene->axis_count > 0 ? "  there, at rest and 0 V: capacitance " : "  at rest and 0 V: capacitance ", stderr);
+    fputs("  ", stderr);
+    if (scene->axis_count > 0 && isnan(answer->displacement.value)) { /* no line before has named a place */
+        print_axes(scene, &answer->displacement, "at ");
+        fputs(", ", stderr);
+    } else if (scene->axis_count > 0) {
+        fputs("there, ", stderr);
+    }
+    fputs("at rest and 0 V: capacitance ", stderr);
     print_quantity(capacitance, "F", 4);
     if (!isnan(here.drive.series_resistance)) {
         fputs(", R_s C ", stderr);

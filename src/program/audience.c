@@ -24,6 +24,12 @@ void dea_audience_lost(void *user, size_t count)
     audience->lost += count;
 }
 
+void dea_audience_instead(void *user, const dea_engine *engine, size_t count)
+{
+    dea_audience *audience = user;
+    dea_findings_instead(&audience->findings, engine, count);
+}
+
 void dea_audience_log(void *user, const char *line)
 {
     const dea_audience *audience = user;

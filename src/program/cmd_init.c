@@ -49,7 +49,7 @@ static const start starts[] = {
      "title: tunable lens\n" ACTUATOR(
          "lens                 # the electrode is the annulus; dot: the disc",
          "lens_radius") "  optics:                    # optional: gives the focal length\n"
-                        "    focal_length: 22 mm      # at rest\n"
+                        "    focal_length: 60 mm      # at rest\n"
                         "    refractive_index: 1.4    # of the liquid\n" MATERIAL "drive:\n"
                         "  voltage: 4.5 kV\n"
                         "model: ring                  # or lumped, coverage, lame, field; or a list of them, or auto\n"

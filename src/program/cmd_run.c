@@ -13,6 +13,7 @@ static dea_exit run_scene(const dea_arguments *arguments, const dea_scene *scene
     const dea_run_options options = {.jobs = arguments->jobs ? arguments->jobs : dea_core_count(),
                                      .points = dea_audience_points,
                                      .lost = dea_audience_lost,
+                                     .instead = dea_audience_instead,
                                      .progress = dea_audience_progress,
                                      .log = dea_audience_log,
                                      .stop = dea_signals_stop,

@@ -117,6 +117,7 @@ const dea_law dea_law_arruda_boyce = {
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,
+    .starts = {8.0, 4.0, 2.0, 1.3},
     .locking = locking,
     .energy = energy,
     .stress = stress,

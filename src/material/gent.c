@@ -85,6 +85,7 @@ const dea_law dea_law_gent = {
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,
+    .starts = {300.0, 100.0, 30.0, 10.0},
     .locking = locking,
     .ends = true,
     .energy = energy,

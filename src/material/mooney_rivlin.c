@@ -104,6 +104,7 @@ const dea_law dea_law_mooney_rivlin = {
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,
+    .linear = true,
     .fault = fault,
     .energy = energy,
     .stress = stress,

@@ -179,6 +179,7 @@ const dea_law dea_law_ogden = {
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = TERMS,
+    .starts = {1.5, 4.0, -2.0, 8.0},
     .fault = fault,
     .energy = energy,
     .stress = stress,

@@ -62,7 +62,7 @@ static void print_law(const dea_material *material)
         const dea_constant *constant = &law->constants[i % law->constant_count];
         char name[DEA_NAME_LENGTH];
         snprintf(name, sizeof name, law->entries > 1 ? "%s %zu" : "%s", constant->name, i / law->constant_count + 1);
-        printf("%-22s %.9g%s%s\n", name, material->constants[i], constant->modulus ? " " : "", constant->modulus ? constant->unit : "");
+        print_number(name, material->constants[i], constant->modulus ? " Pa" : "");
     }
 }
 

@@ -62,6 +62,7 @@ typedef struct dea_arguments {
     bool force;       /**< targets may overwrite inputs */
     bool no_files;    /**< scenes may name no files */
     double tolerance; /**< NAN: not given */
+    const char *law;  /**< of a fit, or "auto"; NULL: yeoh */
     size_t terms;     /**< 0: not given */
     bool relative;
     const char *relaxation; /**< NULL: not given */

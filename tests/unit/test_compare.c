@@ -118,10 +118,10 @@ static void check_measures_the_model_that_auto_chose(void **state)
     file_write("swing.yaml", scene, strlen(scene));
     RUN("check", "swing.yaml");
     assert_status(0);
-    assert_says("model auto: coverage, nothing cheaper is good enough");
+    assert_says("model auto: ring, nothing cheaper is good enough");
     RUN("check", "--set", "voltage=100 V", "swing.yaml");
     assert_status(0);
-    assert_non_null(strstr(child_out, "lumped instead of coverage (<= "));
+    assert_non_null(strstr(child_out, "lumped instead of ring (<= "));
     assert_non_null(strstr(child_out, ", measured "));
 }
 

@@ -157,6 +157,14 @@ static listener truth(void)
     return heard_of(&(dea_engine){.name = "fake", .block = 16, .refuses = NULL, .begin = begin_never, .end = end_fine}, 1);
 }
 
+/* The rows but for what pads them. */
+static void assert_rows_equal(const dea_row *heard, const dea_row *wanted)
+{
+    for (size_t i = 0; i < POINTS; i++) {
+        assert_memory_equal(&heard[i], &wanted[i], offsetof(dea_row, state) + sizeof heard->state);
+    }
+}
+
 static void what_cannot_begin_is_passed_over(void **state)
 {
     (void)state;
@@ -176,7 +184,7 @@ static void what_is_refused_goes_to_the_next(void **state)
     const listener wanted = truth();
     for (size_t jobs = 1; jobs < 4; jobs += 2) {
         const listener heard = heard_of(&fake, jobs);
-        assert_memory_equal(heard.rows, wanted.rows, sizeof wanted.rows);
+        assert_rows_equal(heard.rows, wanted.rows);
         assert_non_null(strstr(heard.line, "singular matrix; direct was asked instead"));
     }
 }

@@ -263,9 +263,9 @@ static void energies_keep_their_digits_near_rest(void **state)
 static void models_keep_twelve_digits_at_tiny_strains(void **state)
 {
     (void)state;
-    static const char *const models[] = {"pelrine", "constant_force", "lumped", "coverage", "lame", "field"};
+    static const char *const models[] = {"pelrine", "constant_force", "lumped", "coverage", "lame", "ring", "field"};
     for (size_t i = 0; i < LAWS; i++) {
-        for (size_t m = 0; m < 6; m++) {
+        for (size_t m = 0; m < 7; m++) {
             for (int kind = DEA_DOT; kind <= DEA_LENS; kind++) {
                 const dea_model *model = dea_model_find(models[m]);
                 if (kind == DEA_LENS && !model->lens) {
@@ -294,9 +294,9 @@ static void models_keep_twelve_digits_at_tiny_strains(void **state)
 static void gent_ends_in_a_state_and_never_in_nan(void **state)
 {
     (void)state;
-    static const char *const models[] = {"pelrine", "constant_force", "lumped", "coverage", "lame", "field"};
+    static const char *const models[] = {"pelrine", "constant_force", "lumped", "coverage", "lame", "ring", "field"};
     for (double jm = 3.0; jm < 30.0; jm *= 1.7) {
-        for (size_t m = 0; m < 6; m++) {
+        for (size_t m = 0; m < 7; m++) {
             for (double voltage = 500.0; voltage < 2e5; voltage *= 1.7) {
                 dea_scene scene = film_of(3, DEA_DOT, 1.3, 0.3, voltage, 1e-4);
                 scene.material.constants[1] = jm;
@@ -336,6 +336,37 @@ static void long_term_share_scales_moduli_alone(void **state)
     }
 }
 
+static void scenes_settings_and_axes_name_the_constants_of_a_law(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 250 um, prestretch: 1.2}\n"
+        "material: {ogden: [{mu: 43.4 kPa, alpha: 1.445}, {mu: -2.4 kPa, alpha: -1.5}], permittivity: 4.7}\n"
+        "drive: {voltage: 4 kV}\nmodel: lumped\nstudy: {sweep: {ogden.1.mu: [-2 kPa, -1 kPa]}}\n";
+    const dea_setting one = {"material.ogden.0.alpha=1.5"};
+    const dea_setting other[] = {{"material.gent={mu: 45 kPa, Jm: 120}"}, {"Jm=30"}, {"study.sweep={gent.mu: [40 kPa, 50 kPa]}"}};
+    const dea_setting wrong = {"material.gent.mu=45 kPa"};
+    dea_scene scene;
+    dea_error error = {0};
+    assert_int_equal(dea_scene_parse(text, strlen(text), "scene", ".", &one, 1, NULL, &scene, &error), DEA_OK);
+    assert_ptr_equal(scene.material.law, dea_law_find("ogden"));
+    assert_int_equal(scene.material.entry_count, 2);
+    const double wanted[DEA_LAW_CONSTANTS] = {43.4e3, 1.5, -2.4e3, -1.5};
+    assert_memory_equal(scene.material.constants, wanted, sizeof wanted);
+    assert_int_equal(scene.axes[0].offset, offsetof(dea_scene, material.constants[2]));
+    assert_string_equal(scene.axes[0].column, "ogden_1_mu_Pa");
+    assert_true(scene.axes[0].changes_film);
+    dea_scene_free(&scene);
+    assert_int_equal(dea_scene_parse(text, strlen(text), "scene", ".", other, 3, NULL, &scene, &error), DEA_OK);
+    assert_ptr_equal(scene.material.law, dea_law_find("gent"));
+    assert_true(scene.material.constants[0] == 45e3 && scene.material.constants[1] == 30.0 && scene.material.constants[2] == 0.0);
+    assert_string_equal(scene.axes[0].column, "mu_Pa");
+    dea_scene_free(&scene);
+    assert_int_equal(dea_scene_parse(text, strlen(text), "scene", ".", &wrong, 1, NULL, &scene, &error), DEA_ERROR_SCENE);
+    assert_non_null(strstr(error.message, "--set material.gent.mu=45 kPa: material.gent.mu: belongs to the law gent, but that of the "
+                                          "material is ogden; accepted: constants of material.ogden, or all of material.gent as "));
+}
+
 static void constants_that_give_no_film_are_refused(void **state)
 {
     (void)state;
@@ -362,6 +393,7 @@ int main(void)
         cmocka_unit_test(models_keep_twelve_digits_at_tiny_strains),
         cmocka_unit_test(gent_ends_in_a_state_and_never_in_nan),
         cmocka_unit_test(long_term_share_scales_moduli_alone),
+        cmocka_unit_test(scenes_settings_and_axes_name_the_constants_of_a_law),
         cmocka_unit_test(constants_that_give_no_film_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -106,18 +106,30 @@ asan-run:
 	@JOBS=$(JOBS) DEASPICE=$(abspath $(BUILD))/deaspice ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 \
 	LSAN_OPTIONS=suppressions=$(abspath tests/leaks.supp):print_suppressions=0 tests/run asan $(UNIT_PROGRAMS)
 
-# libFuzzer on the scene reader; SECONDS=n for longer.
+# libFuzzer on the readers of scenes and of tables; FUZZ_SECONDS=n for longer.
 FUZZ_SECONDS ?= 60
-fuzz: $(BUILD)/fuzz/scene_fuzz
-	@mkdir -p $(BUILD)/fuzz/corpus
-	@UDUNITS2_XML_PATH=/nonexistent $(BUILD)/fuzz/scene_fuzz -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=2048 -verbosity=0 -print_final_stats=1 \
-	-artifact_prefix=$(BUILD)/fuzz/ $(BUILD)/fuzz/corpus tests/bad examples >$(BUILD)/fuzz/log 2>&1 \
-	&& { grep -h executed $(BUILD)/fuzz/log; echo "1 0" >>$${TALLY:-/dev/null}; } || { tail -n 40 $(BUILD)/fuzz/log; echo "0 1" >>$${TALLY:-/dev/null}; exit 1; }
+FUZZERS := scene table
+FUZZ = clang $(filter-out -MMD -MP,$(ALL_CFLAGS)) -O1 -g -fsanitize=fuzzer,address,undefined
+fuzz: $(FUZZERS:%=fuzz-%)
 
+fuzz-%: $(BUILD)/fuzz/%_fuzz
+	@mkdir -p $(BUILD)/fuzz/$*
+	@UDUNITS2_XML_PATH=/nonexistent $< -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=2048 -verbosity=0 -print_final_stats=1 \
+	-artifact_prefix=$(BUILD)/fuzz/ $(BUILD)/fuzz/$* $(FUZZ_SEEDS_$*) >$(BUILD)/fuzz/$*.log 2>&1 \
+	&& { grep -h executed $(BUILD)/fuzz/$*.log; echo "1 0" >>$${TALLY:-/dev/null}; } \
+	|| { tail -n 40 $(BUILD)/fuzz/$*.log; echo "0 1" >>$${TALLY:-/dev/null}; exit 1; }
+
+FUZZ_SEEDS_scene := tests/bad examples
 $(BUILD)/fuzz/scene_fuzz: tests/fuzz/scene_fuzz.c $(LIBRARY_SOURCES)
 	@mkdir -p $(@D)
 	@echo "CC $@"
-	@clang $(filter-out -MMD -MP,$(ALL_CFLAGS)) -O1 -g -fsanitize=fuzzer,address,undefined -DDEA_AXIS_VALUES_MAX=100000 $^ -o $@ $(LIBS)
+	@$(FUZZ) -DDEA_AXIS_VALUES_MAX=100000 $^ -o $@ $(LIBS)
+
+FUZZ_SEEDS_table := tests/fuzz/tables examples/data
+$(BUILD)/fuzz/table_fuzz: tests/fuzz/table_fuzz.c $(sort $(wildcard src/support/*.c))
+	@mkdir -p $(@D)
+	@echo "CC $@"
+	@$(FUZZ) $^ -o $@ $(LIBS)
 
 # Speed and error side by side, against the goals and against other programs where they are installed, then the diagrams of README and tests/README.
 # Takes about ten minutes.

@@ -90,6 +90,8 @@ typedef struct dea_run_options {
     /** Tells, before points() takes their block, that so many points of it are `failed` because their worker was lost or memory
      * ran out, which may go well in another run, and not by the engine's last word. */
     void (*lost)(void *user, size_t count);
+    /** Tells, before points() takes their block, that so many points of it were solved by an engine that was not asked first. */
+    void (*instead)(void *user, const dea_engine *engine, size_t count);
     bool any_order; /**< points() takes blocks as they are finished, not in order */
     /** Points handed over so far, of those that are wanted. */
     void (*progress)(void *user, size_t done, size_t total);

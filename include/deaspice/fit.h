@@ -12,8 +12,8 @@
 extern "C" {
 #endif
 
-/** Most Yeoh constants, fewest points of a relaxation test, most branches of a fit. */
-enum { DEA_YEOH_TERMS = 3, DEA_RELAXATION_LEAST = 3, DEA_RELAXATION_MOST = 10 };
+/** Most Yeoh constants, most terms that can be asked for, most laws that are compared, fewest points of a relaxation test, most branches of a fit. */
+enum { DEA_YEOH_TERMS = 3, DEA_LAW_TERMS = 4, DEA_FIT_CHOICES = 16, DEA_RELAXATION_LEAST = 3, DEA_RELAXATION_MOST = 10 };
 
 /** How a specimen was loaded. */
 typedef enum dea_load { DEA_LOAD_UNIAXIAL, DEA_LOAD_EQUIBIAXIAL, DEA_LOAD_COUNT, DEA_LOAD_UNKNOWN = DEA_LOAD_COUNT } dea_load;
@@ -45,13 +45,25 @@ typedef struct dea_fit_trial {
     double p;                 /**< chance that noise gains as much by the last constant (F test) [1], NAN: not testable */
 } dea_fit_trial;
 
+/** A law that was tried, with so many constants. */
+typedef struct dea_fit_choice {
+    const dea_law *law;
+    int terms;                /**< constants in use */
+    double residual_relative; /**< as in dea_fit [1] */
+    double criterion;         /**< Akaike's, n ln(S/n) + 2 K + 2 K (K + 1)/(n - K - 1) with n points, K = terms + 1 and the weighted sum of
+                                 squares S as a share of the weighted stresses: the least is the best; NAN: too few points */
+} dea_fit_choice;
+
 /** Fitted constants and how good they are. */
 typedef struct dea_fit {
-    int terms;                        /**< constants in use, 1 to DEA_YEOH_TERMS */
+    int terms;                        /**< constants in use, 1 to DEA_LAW_CONSTANTS */
     const dea_law *law;               /**< of the constants */
     double constants[DEA_LAW_CONSTANTS]; /**< C_i [Pa], 0 beyond terms */
-    double deviation[DEA_YEOH_TERMS]; /**< standard errors of C_i [Pa], given the terms; NAN where points = terms */
-    dea_fit_trial trials[DEA_YEOH_TERMS]; /**< 1 constant, 2, ... */
+    double deviation[DEA_LAW_CONSTANTS]; /**< standard errors of the constants, given the terms; NAN where points = terms */
+    dea_fit_trial trials[DEA_LAW_CONSTANTS]; /**< of a law that can do with fewer: 1 constant, 2, ... */
+    dea_fit_choice choices[DEA_FIT_CHOICES]; /**< laws, or numbers of terms, that were compared by the criterion */
+    size_t choice_count;                     /**< 0: none were */
+    double criterion;                        /**< of this fit, as in dea_fit_choice */
     double residual_rms;                  /**< root mean square of (measured - fitted) [Pa] */
     double residual_relative;             /**< residual_rms over the rms of the measured stress [1] */
     double r_squared;                     /**< 1 - sum of squared residuals / sum of squared deviations from the mean [1] */
@@ -96,6 +108,16 @@ DEA_API void dea_fit_data_free(dea_fit_data *data);
  * or strain; C1 is not positive by two standard errors), DEA_ERROR_MEMORY
  */
 DEA_API dea_status dea_fit_yeoh(const dea_fit_data *data, int terms, bool relative, dea_fit *fit, dea_error *error);
+/** Fits the constants of a law to all points: those that its stress is linear in by LAPACK, others by cminpack.
+ *
+ * @param terms of Yeoh the constants, of a list the entries; 0: as many as an F test finds significant at 5 %, of a list those
+ * with the least criterion of dea_fit_choice
+ * @return as dea_fit_yeoh(), and DEA_ERROR_MISSING (a library)
+ */
+DEA_API dea_status dea_fit_law(const dea_fit_data *data, const dea_law *law, int terms, bool relative, dea_fit *fit,
+                               dea_error *error);
+/** Fits every law and keeps the one with the least criterion; fit->choices has them all. @return as dea_fit_law() */
+DEA_API dea_status dea_fit_auto(const dea_fit_data *data, bool relative, dea_fit *fit, dea_error *error);
 /** Nominal stress of a material [Pa] at @p stretch under @p load. */
 DEA_API double dea_fit_stress(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], dea_load load, double stretch);
 

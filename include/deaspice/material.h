@@ -17,8 +17,8 @@ extern "C" {
 #define DEA_EPSILON_0 8.8541878128e-12
 #define DEA_PI 3.14159265358979323846
 
-/** Most constants of a law, most branches, lengths of texts. */
-enum { DEA_LAW_CONSTANTS = 8, DEA_PRONY_MAX = 64, DEA_NAME_LENGTH = 64, DEA_SOURCE_LENGTH = 256 };
+/** Most constants of a law, starts of a fit, most branches, lengths of texts. */
+enum { DEA_LAW_CONSTANTS = 8, DEA_LAW_STARTS = 4, DEA_PRONY_MAX = 64, DEA_NAME_LENGTH = 64, DEA_SOURCE_LENGTH = 256 };
 
 struct dea_film;
 struct dea_law_form;
@@ -64,6 +64,8 @@ typedef struct dea_law {
     const dea_constant *constants; /**< constant_count of them; where it is a list, those of one entry */
     size_t constant_count;         /**< >= 1 */
     size_t entries;                /**< 1: a mapping of constants; more: a list of at most so many such mappings */
+    bool linear;                   /**< its stresses are linear in the constants */
+    double starts[DEA_LAW_STARTS]; /**< where it is not: from where a fit looks for the constants that are no modulus [1] */
     /** What is wrong with constants that are each in range, NULL: nothing. NULL: nothing ever is. */
     const char *(*fault)(const double *constants);
     /** I1 - 3 at which the chains are straight [1]: no film is pre-stretched so far. NULL: never. */

@@ -207,10 +207,10 @@ static double start_once(const dea_plan *plan)
         until = dea_bench_now();
         plan->engine->end(session);
     } else {
-        dea_status report = DEA_ERROR_ENGINE;
+        dea_report report = {.status = DEA_ERROR_ENGINE};
         status = dea_worker_start(&worker, plan, NULL, 0, &error);
         status = status == DEA_OK && !dea_worker_receive(&worker, &report) ? DEA_ERROR_ENGINE : status;
-        status = status == DEA_OK ? report : status;
+        status = status == DEA_OK ? report.status : status;
         until = dea_bench_now();
         dea_worker_end(&worker);
     }

@@ -73,7 +73,7 @@ bool dea_attempt_over(const dea_attempt *attempt)
 
 static void try_next_range(dea_attempt *attempt)
 {
-    attempt->tries = 0;
+    attempt->tries = attempt->skip = 0;
     if (attempt->suspect > attempt->next) {
         size_t half = (attempt->suspect - attempt->next) / 2;
         attempt->end = attempt->next + (half > 0 ? half : 1);
@@ -83,13 +83,17 @@ static void try_next_range(dea_attempt *attempt)
     }
 }
 
-void dea_attempt_solved(dea_attempt *attempt, dea_damage *damage)
+void dea_attempt_solved(dea_attempt *attempt, const dea_hands *hands, dea_damage *damage)
 {
     damage->streak = 0;
+    attempt->again = attempt->again || attempt->skip > 0; /* with the first engine the whole would cost a worker again */
+    for (size_t i = 0; i < DEA_ENGINES; i++)
+        attempt->hands.by[i] += hands->by[i];
     attempt->next = attempt->end;
     if (dea_attempt_over(attempt) && attempt->cut && attempt->lost == 0 && !attempt->again) {
         attempt->again = true; /* no point was to blame: an answer may depend on where its range begins */
         attempt->next = attempt->suspect = 0;
+        attempt->hands = (dea_hands){0};
     }
     try_next_range(attempt);
 }
@@ -135,10 +139,19 @@ void dea_plan_place(const dea_scene *scene, size_t point, char *text, size_t siz
         snprintf(text + used, size - used, ")");
 }
 
-static const char *asked_first(const dea_plan *plan, const dea_model *model)
+/* Who was asked first for the range that is tried now. */
+static const char *asked_first(const dea_plan *plan, const dea_model *model, const dea_attempt *attempt)
 {
     const dea_crew crew = dea_crew_of(plan->scene, plan->engine, model);
-    return crew.count > 0 ? crew.engines[0]->name : "no engine";
+    return attempt->skip < crew.count ? crew.engines[attempt->skip]->name : "no engine";
+}
+
+/* Who is asked after that one, NULL: nobody. Of what an engine refuses, the whole crew was asked in one go. */
+static const dea_engine *asked_next(const dea_plan *plan, const dea_span *span, const dea_attempt *attempt, dea_fault fault)
+{
+    const dea_crew crew = dea_crew_of(plan->scene, plan->engine, span->model);
+    const bool fell = fault == DEA_FAULT_OVERDUE || fault == DEA_FAULT_CRASHED;
+    return fell && attempt->skip + 1 < crew.count ? crew.engines[attempt->skip + 1] : NULL;
 }
 
 static void log_failure(const dea_plan *plan, const dea_span *span, const dea_attempt *attempt, const char *why,
@@ -148,9 +161,9 @@ static void log_failure(const dea_plan *plan, const dea_span *span, const dea_at
     size_t first = span->first + attempt->next;
     if (attempt->end - attempt->next == 1) {
         dea_plan_place(plan->scene, first, place, sizeof place);
-        dea_plan_log(plan, damage, "%s, %s, point %zu%s: %s", asked_first(plan, span->model), span->model->name, first, place, why);
+        dea_plan_log(plan, damage, "%s, %s, point %zu%s: %s", asked_first(plan, span->model, attempt), span->model->name, first, place, why);
     } else {
-        dea_plan_log(plan, damage, "%s, %s, points %zu to %zu, not isolated after too many failures: %s", asked_first(plan, span->model),
+        dea_plan_log(plan, damage, "%s, %s, points %zu to %zu, not isolated after too many failures: %s", asked_first(plan, span->model, attempt),
                      span->model->name, first, span->first + attempt->end - 1, why);
     }
 }
@@ -163,11 +176,11 @@ void dea_attempt_remark(const dea_attempt *attempt, const dea_plan *plan, const 
     char place[256];
     const size_t first = span->first + attempt->next;
     if (plan->scene->study == DEA_STUDY_SWEEP) { /* of many points, it names its own */
-        dea_plan_log(plan, damage, "%s, %s: %s", asked_first(plan, span->model), span->model->name, why);
+        dea_plan_log(plan, damage, "%s, %s: %s", asked_first(plan, span->model, attempt), span->model->name, why);
         return;
     }
     dea_plan_place(plan->scene, first, place, sizeof place);
-    dea_plan_log(plan, damage, "%s, %s, point %zu%s: %s", asked_first(plan, span->model), span->model->name, first, place, why);
+    dea_plan_log(plan, damage, "%s, %s, point %zu%s: %s", asked_first(plan, span->model, attempt), span->model->name, first, place, why);
 }
 
 static char *point_at(const dea_plan *plan, void *points, size_t index)
@@ -217,16 +230,30 @@ void dea_attempt_failed(dea_attempt *attempt, const dea_plan *plan, const dea_sp
         damage->streak++;
     if (alone)
         damage->alone++;
+    const dea_engine *next = asked_next(plan, span, attempt, fault);
+    if (next) {
+        char both[LINE_LENGTH];
+        snprintf(both, sizeof both, "%s; %s is asked instead", why, next->name);
+        log_failure(plan, span, attempt, both, damage);
+        attempt->skip++;
+        attempt->tries = 0;
+        return;
+    }
     log_failure(plan, span, attempt, why, damage);
-    give_up(attempt, plan, points, alone && faults[fault].final);
+    give_up(attempt, plan, points, alone && faults[fault].final && attempt->skip == 0);
 }
 
-dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const void *points, size_t lost, size_t *done,
+dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const void *points, const dea_attempt *attempt, size_t *done,
                             dea_error *error)
 {
     const dea_run_options *options = plan->options;
-    if (lost > 0 && options->lost)
-        options->lost(options->user, lost);
+    const dea_crew crew = dea_crew_of(plan->scene, plan->engine, span->model);
+    if (attempt->lost > 0 && options->lost)
+        options->lost(options->user, attempt->lost);
+    for (size_t i = 1; i < crew.count && options->instead; i++) {
+        if (attempt->hands.by[i] > 0)
+            options->instead(options->user, crew.engines[i], attempt->hands.by[i]);
+    }
     dea_status status = options->points(options->user, span->place, points, span->count, error);
     *done += span->count;
     if (status == DEA_OK && options->progress)

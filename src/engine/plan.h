@@ -33,17 +33,24 @@ typedef enum dea_fault {
     DEA_FAULT_KILLED   /**< the worker was killed or stopped from outside, which says nothing about its points */
 } dea_fault;
 
+/** Points by who has delivered them: engines of the model's crew in its order. */
+typedef struct dea_hands {
+    size_t by[DEA_ENGINES];
+} dea_hands;
+
 /** Progress inside one block: points before `next` are settled, and `suspect` > next ends a range known to fail. A block of which
- * no point is lost comes from the same calls of the engine as in a run without a loss, so that it has the same bits. */
+ * no point is lost or left to the next engine comes from the same calls of the engine as in a run without a loss, so that it has the same bits. */
 typedef struct dea_attempt {
     size_t count;   /**< points of the block */
     size_t next;    /**< first point that is not settled */
     size_t end;     /**< end of the range that is tried now */
     size_t suspect; /**< end of a range from next on that failed as a whole, 0: none */
     size_t tries;   /**< of the range that is tried now, which failed */
+    size_t skip;    /**< engines of the crew that the range that is tried now has cost a worker */
     size_t lost;    /**< points that were given up without the engine's last word */
     bool cut;       /**< a range was halved that the engine had not refused */
     bool again;     /**< the whole is tried once more after it was cut without need */
+    dea_hands hands;
 } dea_attempt;
 
 /** What went wrong so far in a run; bounds the time that a broken engine can take. */
@@ -67,10 +74,10 @@ dea_attempt dea_attempt_start(size_t count);
 /** True when every point of the block is settled. */
 bool dea_attempt_over(const dea_attempt *attempt);
 /** The range next ... end - 1 was solved. */
-void dea_attempt_solved(dea_attempt *attempt, dea_damage *damage);
+void dea_attempt_solved(dea_attempt *attempt, const dea_hands *hands, dea_damage *damage);
 /** What a status that an engine returned says. */
 dea_fault dea_fault_of(dea_status status);
-/** The range next ... end - 1 failed for the reason @p why: tries it again, halves it, or marks its rows (in the @p points of the
+/** The range next ... end - 1 failed for the reason @p why: tries it again, halves it, leaves it to the next engine, or marks its rows (in the @p points of the
  * block) as failed and tells the log. */
 void dea_attempt_failed(dea_attempt *attempt, const dea_plan *plan, const dea_span *span, void *points, dea_fault fault,
                         const char *why, dea_damage *damage);
@@ -81,8 +88,8 @@ void dea_attempt_remark(const dea_attempt *attempt, const dea_plan *plan, const 
                         dea_damage *damage);
 /** True when the engine is past hope: nothing more is tried, the remaining rows are failed. */
 bool dea_damage_hopeless(const dea_damage *damage);
-/** Hands a block, @p lost points of which are lost, to the caller, adds its points to *@p done and tells progress. */
-dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const void *points, size_t lost, size_t *done,
+/** Hands a block that is over to the caller, adds its points to *@p done and tells progress. */
+dea_status dea_plan_deliver(const dea_plan *plan, const dea_span *span, const void *points, const dea_attempt *attempt, size_t *done,
                             dea_error *error);
 /** Time that a worker may take for so many points of a model before it hangs, beyond what every worker gets [s]. */
 double dea_plan_patience(const dea_plan *plan, const dea_model *model, size_t count);

@@ -226,6 +226,7 @@ static void pool_dispatch(dea_pool *pool)
         dea_order order = {.model = slot->span.model,
                            .first = slot->span.first + attempt->next,
                            .count = attempt->end - attempt->next,
+                           .skip = attempt->skip,
                            .points = slot->points + attempt->next * pool->plan->layout.point_size};
         if (!dea_worker_send(worker, &order)) {
             pool->damage.losses++;
@@ -271,13 +272,14 @@ static dea_status worker_gone(dea_pool *pool, dea_worker *worker, dea_error *err
 
 static dea_status worker_reported(dea_pool *pool, dea_worker *worker, dea_error *error)
 {
-    dea_status status;
-    if (!dea_worker_receive(worker, &status))
+    dea_report report;
+    if (!dea_worker_receive(worker, &report))
         return worker_gone(pool, worker, error);
     char why[DEA_ERROR_LENGTH]; /* a copy: the worker's memory may change at any time */
     size_t length = strnlen(worker->error->message, sizeof why - 1);
     memcpy(why, worker->error->message, length);
     why[length] = '\0';
+    const dea_status status = report.status;
     if (status != DEA_OK)
         return worker_failed(pool, worker, dea_fault_of(status), status, length > 0 ? why : dea_status_text(status), error);
     pool->false_starts = 0;
@@ -285,7 +287,7 @@ static dea_status worker_reported(dea_pool *pool, dea_worker *worker, dea_error 
         dea_slot *slot = &pool->slots[worker->slot];
         slot->busy = false;
         dea_attempt_remark(&slot->attempt, pool->plan, &slot->span, why, &pool->damage);
-        dea_attempt_solved(&slot->attempt, &pool->damage);
+        dea_attempt_solved(&slot->attempt, &report.hands, &pool->damage);
     }
     worker->state = DEA_WORKER_IDLE;
     return DEA_OK;
@@ -358,7 +360,7 @@ static dea_status pool_deliver(dea_pool *pool, dea_error *error)
             break;
         if (!settled || slot->given)
             continue;
-        const dea_status status = dea_plan_deliver(pool->plan, &slot->span, slot->points, slot->attempt.lost, &pool->done, error);
+        const dea_status status = dea_plan_deliver(pool->plan, &slot->span, slot->points, &slot->attempt, &pool->done, error);
         if (status != DEA_OK)
             return status;
         slot->given = true;

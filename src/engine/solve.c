@@ -197,15 +197,15 @@ static dea_status solve_first(const dea_plan *plan, dea_sessions *sessions, cons
 {
     dea_status status = dea_fail(error, DEA_ERROR_UNSUPPORTED, "no engine can do the model");
     dea_error first = {0};
-    for (*by = 0; *by < crew->count; ++*by) {
+    for (*by = range->skip; *by < crew->count; ++*by) {
         error->message[0] = '\0';
         status = solve_by(plan, sessions, crew->engines[*by], range, points, error);
         if (status == DEA_OK)
             break;
-        if (*by == 0)
+        if (*by == range->skip)
             first = *error;
     }
-    if (status == DEA_OK && *by > 0)
+    if (status == DEA_OK && *by > range->skip)
         dea_fail(error, DEA_OK, "%.*s; %s was asked instead", DEA_ERROR_LENGTH / 2,
                  first.message[0] ? first.message : dea_status_text(first.status), crew->engines[*by]->name);
     else if (status != DEA_OK && crew->count > 1)
@@ -213,17 +213,17 @@ static dea_status solve_first(const dea_plan *plan, dea_sessions *sessions, cons
     return status;
 }
 
-/* One point whose rows failed, by the rest of the crew; who solved it, NULL: nobody. */
-static const dea_engine *solve_point_again(const dea_plan *plan, dea_sessions *sessions, const dea_crew *crew, size_t by,
+/* One point whose rows failed, by the rest of the crew; the number of who solved it, @p by: nobody. */
+static size_t solve_point_again(const dea_plan *plan, dea_sessions *sessions, const dea_crew *crew, size_t by,
                                            const dea_errand *one, char *point)
 {
     char *room = malloc(plan->layout.point_size);
-    const dea_engine *solver = NULL;
-    for (size_t e = by + 1; room && e < crew->count && !solver; e++) {
+    size_t solver = by;
+    for (size_t e = by + 1; room && e < crew->count && solver == by; e++) {
         dea_error unheard = {0};
         if (solve_by(plan, sessions, crew->engines[e], one, room, &unheard) == DEA_OK && failed_rows(plan, room) == 0) {
             memcpy(point, room, plan->layout.point_size);
-            solver = crew->engines[e];
+            solver = e;
         }
     }
     free(room);
@@ -233,21 +233,22 @@ static const dea_engine *solve_point_again(const dea_plan *plan, dea_sessions *s
 /* What number @p by of the crew has left `failed`, by those behind it; the message, why it failed, then says how many of the
  * points were solved instead. */
 static void solve_again(const dea_plan *plan, dea_sessions *sessions, const dea_crew *crew, size_t by, const dea_errand *range,
-                        void *points, dea_error *error)
+                        void *points, dea_hands *hands, dea_error *error)
 {
-    size_t solved = 0;
-    const dea_engine *last = NULL;
+    size_t solved = 0, last = by;
     for (size_t i = 0; by + 1 < crew->count && i < range->count; i++) {
         const dea_errand one = {.model = range->model, .first = range->first + i, .count = 1};
         char *point = point_at(plan, points, i);
         const bool again = failed_rows(plan, point) > 0 && is_valid(plan, one.first);
-        const dea_engine *solver = again ? solve_point_again(plan, sessions, crew, by, &one, point) : NULL;
-        last = solver ? solver : last;
-        solved += solver ? 1 : 0;
+        const size_t solver = again ? solve_point_again(plan, sessions, crew, by, &one, point) : by;
+        last = solver != by ? solver : last;
+        solved += solver != by ? 1 : 0;
+        hands->by[solver]++;
+        hands->by[by]--;
     }
     const size_t used = strlen(error->message);
     if (solved > 0)
-        snprintf(error->message + used, sizeof error->message - used, "; solved by %s instead%s", last->name,
+        snprintf(error->message + used, sizeof error->message - used, "; solved by %s instead%s", crew->engines[last]->name,
                  range->count > solved ? " where that failed" : "");
 }
 
@@ -272,15 +273,18 @@ static void explain_rows(const dea_plan *plan, const dea_errand *range, const de
              why);
 }
 
-dea_status dea_plan_solve(const dea_plan *plan, dea_sessions *sessions, const dea_errand *range, void *points, dea_error *error)
+dea_status dea_plan_solve(const dea_plan *plan, dea_sessions *sessions, const dea_errand *range, void *points, dea_hands *hands,
+                          dea_error *error)
 {
     size_t by;
+    *hands = (dea_hands){0};
     const dea_crew crew = dea_crew_of(plan->scene, plan->engine, range->model);
     const dea_status status = solve_first(plan, sessions, &crew, range, &by, points, error);
     if (status != DEA_OK)
         return status;
     if (plan->scene->study == DEA_STUDY_SWEEP)
         explain_rows(plan, range, points, error);
-    solve_again(plan, sessions, &crew, by, range, points, error);
+    hands->by[by] = range->count;
+    solve_again(plan, sessions, &crew, by, range, points, hands, error);
     return DEA_OK;
 }

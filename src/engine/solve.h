@@ -11,6 +11,7 @@ typedef struct dea_errand {
     const dea_model *model;
     size_t first; /**< counted within the model */
     size_t count; /**< >= 1 */
+    size_t skip;  /**< so many engines of the model's crew are not asked */
 } dea_errand;
 
 /** A session that has begun, zeroed: none. */
@@ -30,7 +31,8 @@ dea_status dea_sessions_begin(const dea_plan *plan, dea_sessions *sessions, dea_
 void dea_sessions_end(dea_sessions *sessions);
 /** Solves a range into memory laid out as the plan says. A point whose numbers are out of range, as a
  * grid can hold, costs only its own rows where it is one of many. Points that an engine refuses or leaves `failed` go to the next
- * one of the model's crew; the message says so. */
-dea_status dea_plan_solve(const dea_plan *plan, dea_sessions *sessions, const dea_errand *range, void *points, dea_error *error);
+ * one of the model's crew; the message says so, and *@p hands who has solved how many. */
+dea_status dea_plan_solve(const dea_plan *plan, dea_sessions *sessions, const dea_errand *range, void *points, dea_hands *hands,
+                          dea_error *error);
 
 #endif

@@ -39,12 +39,13 @@ static dea_status solve_block(const dea_plan *plan, const dea_span *span, dea_se
             return DEA_OK;
         }
         dea_error reason = {0};
-        const dea_errand errand = {span->model, span->first + attempt->next, attempt->end - attempt->next};
+        const dea_errand errand = {span->model, span->first + attempt->next, attempt->end - attempt->next, attempt->skip};
+        dea_hands hands;
         dea_status status =
-            dea_plan_solve(plan, sessions, &errand, points + attempt->next * plan->layout.point_size, &reason);
+            dea_plan_solve(plan, sessions, &errand, points + attempt->next * plan->layout.point_size, &hands, &reason);
         if (status == DEA_OK) {
             dea_attempt_remark(attempt, plan, span, reason.message, damage);
-            dea_attempt_solved(attempt, damage);
+            dea_attempt_solved(attempt, &hands, damage);
             continue;
         }
         const char *why = reason.message[0] ? reason.message : dea_status_text(status);
@@ -70,7 +71,7 @@ static dea_status run_here(const dea_plan *plan, dea_error *error)
         dea_attempt attempt = dea_attempt_start(span.count);
         status = solve_block(plan, &span, &sessions, &attempt, points, &damage, error);
         if (status == DEA_OK)
-            status = dea_plan_deliver(plan, &span, points, attempt.lost, &done, error);
+            status = dea_plan_deliver(plan, &span, points, &attempt, &done, error);
     }
     dea_sessions_end(&sessions);
     free(points);

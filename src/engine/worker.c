@@ -41,9 +41,9 @@ static void leave_files(int socket)
         close(null);
 }
 
-static bool report(int socket, dea_status status)
+static bool send_report(int socket, const dea_report *report)
 {
-    return send(socket, &status, sizeof status, MSG_NOSIGNAL) == (ssize_t)sizeof status;
+    return send(socket, report, sizeof *report, MSG_NOSIGNAL) == (ssize_t)sizeof *report;
 }
 
 static ssize_t receive(int socket, void *data, size_t size)
@@ -59,12 +59,12 @@ static void work(const dea_plan *plan, int socket, dea_error *error)
 {
     dea_sessions sessions;
     error->message[0] = '\0';
-    dea_status status = dea_sessions_begin(plan, &sessions, error);
+    dea_report report = {.status = dea_sessions_begin(plan, &sessions, error)};
     dea_order order;
-    while (report(socket, status) && status == DEA_OK && receive(socket, &order, sizeof order) == (ssize_t)sizeof order) {
+    while (send_report(socket, &report) && report.status == DEA_OK && receive(socket, &order, sizeof order) == (ssize_t)sizeof order) {
         error->message[0] = '\0';
-        const dea_errand errand = {order.model, order.first, order.count};
-        status = dea_plan_solve(plan, &sessions, &errand, order.points, error);
+        const dea_errand errand = {order.model, order.first, order.count, order.skip};
+        report.status = dea_plan_solve(plan, &sessions, &errand, order.points, &report.hands, error);
     }
     dea_sessions_end(&sessions);
 }
@@ -126,9 +126,9 @@ bool dea_worker_send(const dea_worker *worker, const dea_order *order)
     return sent == (ssize_t)sizeof *order;
 }
 
-bool dea_worker_receive(const dea_worker *worker, dea_status *status)
+bool dea_worker_receive(const dea_worker *worker, dea_report *report)
 {
-    return receive(worker->socket, status, sizeof *status) == (ssize_t)sizeof *status;
+    return receive(worker->socket, report, sizeof *report) == (ssize_t)sizeof *report;
 }
 
 double dea_worker_used(const dea_worker *worker)

@@ -29,15 +29,22 @@ typedef struct dea_order {
     const dea_model *model; /**< same address in parent and worker */
     size_t first;           /**< point */
     size_t count;           /**< points */
+    size_t skip;            /**< engines of the model's crew that are not asked */
     void *points;           /**< shared memory for their results */
 } dea_order;
+
+/** What a worker says when it has begun, and after each order. */
+typedef struct dea_report {
+    dea_status status;
+    dea_hands hands; /**< who has solved what of the order */
+} dea_report;
 
 /** Forks a worker that begins a session of the engine and reports. @p others are closed in it. */
 dea_status dea_worker_start(dea_worker *worker, const dea_plan *plan, const dea_worker *others, size_t count, dea_error *error);
 /** Sends an order; false when the worker is gone. */
 bool dea_worker_send(const dea_worker *worker, const dea_order *order);
 /** Takes the worker's report; false when it is gone. */
-bool dea_worker_receive(const dea_worker *worker, dea_status *report);
+bool dea_worker_receive(const dea_worker *worker, dea_report *report);
 /** Processor time that the worker has taken since it was started, 0 where the system does not tell [s]. */
 double dea_worker_used(const dea_worker *worker);
 /** True while a signal has stopped it. */

@@ -80,6 +80,11 @@ static void change(const dea_film *film, size_t count, const double *strains, de
     }
 }
 
+static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
+{
+    return dea_invariant_biaxial(slopes, gain, film, e1, e2);
+}
+
 /* The chain stretch sqrt(I1/3) has come to lambda_m; the five terms go on. */
 static double locking(const double *c)
 {
@@ -112,11 +117,13 @@ const dea_law dea_law_arruda_boyce = {
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,
+    .starts = {8.0, 4.0, 2.0, 1.3},
     .locking = locking,
     .energy = energy,
     .stress = stress,
     .rise = rise,
     .prepare = prepare,
     .change = change,
+    .biaxial = biaxial,
     .form = form,
 };

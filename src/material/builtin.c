@@ -4,9 +4,16 @@
 
 #include "material/law.h"
 
-/* Long-term shear modulus and branches of VHB 4910 [Pa]; g_i = G_i/(G_inf + sum G_i), C1 = G_inf/2. */
-#define VHB_LONG_TERM 15.36e3
-#define VHB_INSTANTANEOUS (VHB_LONG_TERM + 26.06e3 + 26.53e3 + 10.83e3)
+/* Long-term shear moduli and those of the branches [Pa]; g_i = G_i/(G_inf + sum G_i). */
+#define VHB_4910_LONG_TERM 15.36e3
+#define VHB_4910_INSTANTANEOUS (VHB_4910_LONG_TERM + 26.06e3 + 26.53e3 + 10.83e3)
+#define VHB_4910_BRANCHES                                                                                                        \
+    {                                                                                                                            \
+        {26.06e3 / VHB_4910_INSTANTANEOUS, 0.6074}, {26.53e3 / VHB_4910_INSTANTANEOUS, 6.56},                                    \
+            {10.83e3 / VHB_4910_INSTANTANEOUS, 61.25},                                                                           \
+    }
+#define VHB_4905_LONG_TERM 13.4e3
+#define VHB_4905_INSTANTANEOUS (VHB_4905_LONG_TERM + 31.2e3 + 11.6e3)
 
 static const dea_material materials[] = {
     {
@@ -37,19 +44,60 @@ static const dea_material materials[] = {
     },
     {
         .name = "vhb-4910",
-        .source = "Wang et al., JMPS 2016: neo-Hookean equilibrium and three branches of VHB 4910",
-        .law = &dea_law_yeoh,
+        .source = "Wang, Decker, Henann, Chester, JMPS 2016, by the input decks of the authors: Arruda-Boyce equilibrium and three "
+                  "branches of VHB 4910",
+        .law = &dea_law_arruda_boyce,
         .entry_count = 1,
-        .constants = {VHB_LONG_TERM / 2.0},
+        .constants = {VHB_4910_LONG_TERM, 5.99},
         .permittivity = 4.8,
         .density = NAN,
         .retardation = NAN,
         .modulus = NAN,
         .breakdown = NAN,
         .prony_count = 3,
-        .prony = {{26.06e3 / VHB_INSTANTANEOUS, 0.6074},
-                  {26.53e3 / VHB_INSTANTANEOUS, 6.56},
-                  {10.83e3 / VHB_INSTANTANEOUS, 61.25}},
+        .prony = VHB_4910_BRANCHES,
+    },
+    {
+        .name = "vhb-4910-neo-hookean",
+        .source = "the same with chains that do not stiffen: neo-Hookean equilibrium (C1 = G/2) and three branches of VHB 4910",
+        .law = &dea_law_yeoh,
+        .entry_count = 1,
+        .constants = {VHB_4910_LONG_TERM / 2.0},
+        .permittivity = 4.8,
+        .density = NAN,
+        .retardation = NAN,
+        .modulus = NAN,
+        .breakdown = NAN,
+        .prony_count = 3,
+        .prony = VHB_4910_BRANCHES,
+    },
+    {
+        .name = "vhb-4905",
+        .source = "github.com/miguelmaso/2026-ViscousPolyconvex: neo-Hookean fit to uniaxial data of Hossain et al., Comput. Mater. "
+                  "Sci. 59 (2012), up to stretch 3; permittivity of VHB 4910",
+        .law = &dea_law_neo_hookean,
+        .entry_count = 1,
+        .constants = {VHB_4905_LONG_TERM},
+        .permittivity = 4.8,
+        .density = NAN,
+        .retardation = NAN,
+        .modulus = NAN,
+        .breakdown = NAN,
+        .stretches = {1.0, 3.0},
+        .prony_count = 2,
+        .prony = {{31.2e3 / VHB_4905_INSTANTANEOUS, 6.45}, {11.6e3 / VHB_4905_INSTANTANEOUS, 140.0}},
+    },
+    {
+        .name = "sylgard-186",
+        .source = "Gent constants and permittivity in use for castable Sylgard 186 films; the range of the data is not known",
+        .law = &dea_law_gent,
+        .entry_count = 1,
+        .constants = {0.59e6, 30.04},
+        .permittivity = 2.8,
+        .density = NAN,
+        .retardation = NAN,
+        .modulus = NAN,
+        .breakdown = NAN,
     },
 };
 

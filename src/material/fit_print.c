@@ -10,8 +10,26 @@ static void print_number(FILE *stream, const char *before, double value, int dig
     fprintf(stream, "%s%s%s", before, dea_number_text(text, value, digits), after);
 }
 
+/* What was compared, and by what. */
+static void print_choices(const dea_fit *fit, FILE *stream)
+{
+    if (fit->choice_count > 0) {
+        fputs("# Compared by Akaike's criterion for few points (AICc): the least is the best.\n", stream);
+    }
+    for (size_t i = 0; i < fit->choice_count; i++) {
+        const dea_fit_choice *choice = &fit->choices[i];
+        fprintf(stream, "#   %s, %d constant%s rms error ", choice->law->name, choice->terms, choice->terms == 1 ? ":" : "s:");
+        print_number(stream, "", 100.0 * choice->residual_relative, 4, " %");
+        print_number(stream, ", AICc ", choice->criterion, 5, "");
+        fputs(choice->law == fit->law && choice->terms == fit->terms ? "  <- taken\n" : "\n", stream);
+    }
+}
+
 static void print_terms_tried(const dea_fit *fit, FILE *stream)
 {
+    if (!isfinite(fit->trials[0].residual_relative)) {
+        return;
+    }
     fputs("# Tried, each against one constant less by an F test:\n", stream);
     for (int i = 0; i < DEA_YEOH_TERMS && isfinite(fit->trials[i].residual_relative); i++) {
         fprintf(stream, "#   %d constant%s rms error ", i + 1, i == 0 ? ": " : "s:");
@@ -23,11 +41,25 @@ static void print_terms_tried(const dea_fit *fit, FILE *stream)
     }
 }
 
-static void print_yeoh_quality(const dea_fit *fit, FILE *stream)
+/* "C1", of a list "mu 1". */
+static void print_name(const dea_fit *fit, int index, FILE *stream)
 {
-    static const char *const names[DEA_YEOH_TERMS] = {"C1", "C2", "C3"};
-    fprintf(stream, "# Fit of %d Yeoh constants to %zu uniaxial and %zu equi-biaxial points", fit->terms,
-            fit->count[DEA_LOAD_UNIAXIAL], fit->count[DEA_LOAD_EQUIBIAXIAL]);
+    const int stride = (int)fit->law->constant_count;
+    fputs(fit->law->constants[index % stride].name, stream);
+    if (fit->law->entries > 1) {
+        fprintf(stream, " %d", index / stride + 1);
+    }
+}
+
+static const char *unit_of(const dea_fit *fit, int index)
+{
+    return fit->law->constants[(size_t)index % fit->law->constant_count].modulus ? " Pa" : "";
+}
+
+static void print_law_quality(const dea_fit *fit, FILE *stream)
+{
+    fprintf(stream, "# Fit of %d %s constant%s to %zu uniaxial and %zu equi-biaxial points", fit->terms, fit->law->title,
+            fit->terms == 1 ? "" : "s", fit->count[DEA_LOAD_UNIAXIAL], fit->count[DEA_LOAD_EQUIBIAXIAL]);
     print_number(stream, ", stretch ", fit->stretch_min, 6, "");
     print_number(stream, " to ", fit->stretch_max, 6, ".\n");
     print_number(stream, "# Residual ", fit->residual_rms, 4, " Pa rms");
@@ -35,15 +67,17 @@ static void print_yeoh_quality(const dea_fit *fit, FILE *stream)
     print_number(stream, ", R^2 ", fit->r_squared, 6, "");
     print_number(stream, ", condition number ", fit->condition, 3, ".\n# Standard errors:");
     for (int i = 0; i < fit->terms; i++) {
-        fprintf(stream, "%s %s", i > 0 ? "," : "", names[i]);
+        fputs(i > 0 ? ", " : " ", stream);
+        print_name(fit, i, stream);
         if (isfinite(fit->deviation[i])) {
-            print_number(stream, " ", fit->deviation[i], 3, " Pa");
+            print_number(stream, " ", fit->deviation[i], 3, unit_of(fit, i));
         } else {
             fputs(" unknown (as many points as constants)", stream);
         }
     }
     fputs(".\n", stream);
     print_terms_tried(fit, stream);
+    print_choices(fit, stream);
     if (isfinite(fit->unloads_from)) {
         print_number(stream, "# WARNING: the data unload from stretch ", fit->unloads_from, 5,
                      " on: loading and unloading differ; the constants are of neither.\n");
@@ -53,14 +87,16 @@ static void print_yeoh_quality(const dea_fit *fit, FILE *stream)
     }
 }
 
-static void print_yeoh(const dea_fit *fit, FILE *stream)
+static void print_law(const dea_fit *fit, FILE *stream)
 {
-    static const char *const before[DEA_YEOH_TERMS] = {"C1: ", ", C2: ", ", C3: "};
-    fputs("yeoh: {", stream);
+    const int stride = (int)fit->law->constant_count;
+    const bool list = fit->law->entries > 1;
+    fprintf(stream, "%s: %s", fit->law->name, list ? "[" : "");
     for (int i = 0; i < fit->terms; i++) {
-        print_number(stream, before[i], fit->constants[i], 8, " Pa");
+        fprintf(stream, "%s%s: ", i == 0 ? "{" : i % stride == 0 ? "}, {" : ", ", fit->law->constants[i % stride].name);
+        print_number(stream, "", fit->constants[i], 8, unit_of(fit, i));
     }
-    fputs("}\n", stream);
+    fputs(list ? "}]\n" : "}\n", stream);
     print_number(stream, "stretches: [", fmin(fit->stretch_min, 1.0), 6, "");
     print_number(stream, ", ", fmax(fit->stretch_max, 1.0), 6, "]  # that the data cover\n");
 }
@@ -154,14 +190,14 @@ dea_status dea_fit_print(const dea_fit *fit, const dea_relaxation *relaxation, c
                          dea_error *error)
 {
     if (fit) {
-        print_yeoh_quality(fit, stream);
+        print_law_quality(fit, stream);
     }
     if (relaxation) {
         print_relaxation_quality(relaxation, stream);
     }
     print_use(fit, film, stream);
     if (fit) {
-        print_yeoh(fit, stream);
+        print_law(fit, stream);
     }
     if (fit && relaxation) {
         fputs("moduli: long-term  # instantaneous, where the stretch was measured faster than the film relaxes\n", stream);

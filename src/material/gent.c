@@ -54,6 +54,11 @@ static void change(const dea_film *film, size_t count, const double *strains, de
     }
 }
 
+static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
+{
+    return dea_invariant_biaxial(slopes, gain, film, e1, e2);
+}
+
 static double locking(const double *c)
 {
     return c[JM];
@@ -80,6 +85,7 @@ const dea_law dea_law_gent = {
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,
+    .starts = {300.0, 100.0, 30.0, 10.0},
     .locking = locking,
     .ends = true,
     .energy = energy,
@@ -87,5 +93,6 @@ const dea_law dea_law_gent = {
     .rise = rise,
     .prepare = prepare,
     .change = change,
+    .biaxial = biaxial,
     .form = form,
 };

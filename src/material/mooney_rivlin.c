@@ -1,6 +1,7 @@
 /* Mooney-Rivlin: W = C10 (I1 - 3) + C01 (I2 - 3): a neo-Hookean film, and what the second invariant adds,
  *
- *     P1 = 2 C01 (l1 l2^2 - l1^-3),  W11 = 2 C01 (l2^2 + 3 l1^-4),  W12 = 4 C01 l1 l2,  sigma = 2 C01 (y^2 - 1/y), y = lambda^2 */
+ *     P1 = 2 C01 (l1 l2^2 - l1^-3),  W11 = 2 C01 (l2^2 + 3 l1^-4),  W12 = 4 C01 l1 l2,  sigma = 2 C01 (y^2 - 1/y), y = lambda^2
+ */
 #include <math.h>
 
 #include "material/form.h"
@@ -50,8 +51,8 @@ static double rise(const double *c, double l, double d1, double d2)
 {
     const double l1 = l + d1;
     const double l2 = l + d2;
-    const double stretched = d1 * l2 * l2 + l * d2 * (l2 + l);                              /* l1 l2^2 - l^3 */
-    const double thinned = d1 * (l1 * l1 + l1 * l + l * l) / (l1 * l1 * l1 * l * l * l);    /* l^-3 - l1^-3 */
+    const double stretched = d1 * l2 * l2 + l * d2 * (l2 + l);                           /* l1 l2^2 - l^3 */
+    const double thinned = d1 * (l1 * l1 + l1 * l + l * l) / (l1 * l1 * l1 * l * l * l); /* l^-3 - l1^-3 */
     return dea_invariant_rise(slopes, gain, c, l, d1, d2) + 2.0 * c[C01] * (stretched + thinned);
 }
 
@@ -103,6 +104,7 @@ const dea_law dea_law_mooney_rivlin = {
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,
+    .linear = true,
     .fault = fault,
     .energy = energy,
     .stress = stress,

@@ -1,7 +1,8 @@
-/* Ogden: W = sum mu_k/alpha_k (l1^alpha_k + l2^alpha_k + l3^alpha_k - 3), l3 = 1/(l1 l2). (Abaqus writes 2 mu/alpha^2 in front, so
- * that its mu_k is mu_k alpha_k/2 of these.) With t = l3:
+/* Ogden: W = sum mu_k/alpha_k (l1^alpha_k + l2^alpha_k + l3^alpha_k - 3), l3 = 1/(l1 l2). (Abaqus writes 2 mu/alpha^2 in front,
+ * so that its mu_k is mu_k alpha_k/2 of these.) With t = l3:
  *
- *     P1 = sum mu (l1^alpha - t^alpha)/l1,  W11 = sum mu ((alpha - 1) l1^alpha + (alpha + 1) t^alpha)/l1^2,  W12 = sum mu alpha t^alpha
+ *     P1 = sum mu (l1^alpha - t^alpha)/l1,  W11 = sum mu ((alpha - 1) l1^alpha + (alpha + 1) t^alpha)/l1^2,  W12 = sum mu alpha
+ * t^alpha
  *     /(l1 l2),  sigma = sum mu (lambda^alpha - lambda^(-2 alpha)) */
 #include <math.h>
 
@@ -114,8 +115,8 @@ static dea_change change_at(const dea_film *film, double e)
         if (o.mu != 0.0) {
             const double s = expm1(o.alpha * x);
             const double shrink = 1.0 / ((1.0 + s) * (1.0 + s));
-            const double out = film->rest[k];          /* lambda_pre^alpha */
-            const double thin = 1.0 / (out * out);     /* lambda_pre^-2 alpha */
+            const double out = film->rest[k];      /* lambda_pre^alpha */
+            const double thin = 1.0 / (out * out); /* lambda_pre^-2 alpha */
             const double grown = out * (1.0 + s), thinned = thin * shrink;
             sum.value += o.mu * (out * s + thin * s * (2.0 + s) * shrink);
             sum.slope += o.mu * o.alpha * (grown + 2.0 * thinned) * over;
@@ -178,6 +179,7 @@ const dea_law dea_law_ogden = {
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = TERMS,
+    .starts = {1.5, 4.0, -2.0, 8.0},
     .fault = fault,
     .energy = energy,
     .stress = stress,

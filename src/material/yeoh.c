@@ -80,6 +80,7 @@ const dea_law dea_law_yeoh = {
     .constants = constants,
     .constant_count = sizeof constants / sizeof *constants,
     .entries = 1,
+    .linear = true,
     .energy = energy,
     .stress = stress,
     .fine_w11 = fine_w11,

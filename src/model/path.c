@@ -20,7 +20,8 @@ typedef struct reach {
 } reach;
 
 /* Looks for a fold on a reach that begins with a positive one. Returns true and in @p low, @p high a narrow bracket of the first
- * sample that is not positive. Samples lie so close that `fold` at most halves, or stretches move by 5 %, between two of them. */
+ * sample that is not positive. Samples lie so close that `fold` at most halves, or stretches move by 5 %, between two of them.
+ * Where the energy of the film ends `fold` is NAN: that counts as one, and just before it the film holds any load. */
 static bool find_fold(const dea_path *path, const reach *whole, double *low, double *high)
 {
     double at = whole->low, fold = whole->at_low;
@@ -34,7 +35,7 @@ static bool find_fold(const dea_path *path, const reach *whole, double *low, dou
             *high = next;
             return true;
         }
-        if (finest || (width <= trusted && fmin(fold, next_fold) > 0.5 * fmax(fold, next_fold))) {
+        if (finest || (width <= trusted && next_fold > 0.5 * fold && fold > 0.5 * next_fold)) { /* never NAN */
             at = next;
             fold = next_fold;
             next = fmin(whole->high, at + 2.0 * width);

@@ -45,10 +45,14 @@ typedef struct part {
     dea_network network; /* owned */
     dea_part_text text;  /* owned */
     /* expressions of the displacement and the symbols, the voltage taken out */
-    dea_expr area, stress, stress_slope; /* A, S, dS/du */
+    dea_network_stress stresses[DEA_NETWORK_STRESSES]; /* S_a and their levers B_a */
+    dea_expr slopes[DEA_NETWORK_STRESSES];             /* dS_a/du */
+    size_t stress_count;
+    dea_expr tension;                    /* what the stress at rest does by its levers, G(u) */
+    bool tense;                          /* there is a G */
     dea_expr push, push_slope;           /* phi = (1/2) dC/du [N/V^2] and its slope */
     dea_expr capacitance, c_rest;        /* C(u), C(0) */
-    dea_expr k_rest;                     /* d(A S)/du at rest [N/m] */
+    dea_expr k_rest;                     /* stiffness at rest [N/m] */
     dea_expr field;                      /* true field of 1 V */
     dea_expr mass;                       /* of film and electrodes */
     dea_expr divide, width;              /* r_a, r - r_a */
@@ -72,6 +76,7 @@ static const form *form_of(const dea_model *model)
         {"lumped", "", "two linear springs and a force, Eqs. 19-23", true, 1.0, 1.0},
         {"lame", "_lame", "Lame's disc and annulus with electrostatic softening", false, 1.0, 1e-6},
         {"coverage", "_hyper", "hyperelastic disc and annulus, Eq. 18, quasi-linear relaxation", false, 1e6, 1.0},
+        {"ring", "_ring", "hyperelastic disc and annulus, one ring of membrane each, quasi-linear relaxation", false, 1e6, 1.0},
     };
     for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
         if (strcmp(model->name, forms[i].model) == 0) {
@@ -153,12 +158,15 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
     const dea_expr pull = SUB(dea_network_load(network), MUL(dea_network_softening(network), network->edge));
     p->push = at_volts(pool, pull, 1.0);
     p->push_slope = dea_expr_slope(pool, p->push);
-    dea_network_stress stress[DEA_NETWORK_STRESSES];
-    (void)dea_network_stresses(network, stress);
-    p->area = stress[0].lever;
-    p->stress = stress[0].stress;
-    p->stress_slope = dea_expr_slope(pool, p->stress);
-    p->k_rest = SCALE(form_of(model)->stress, dea_expr_at_rest(pool, MUL(p->area, p->stress_slope)));
+    p->stress_count = (size_t)dea_network_stresses(network, p->stresses);
+    p->tension = dea_network_tension(network);
+    p->tense = dea_expr_constant(pool, p->tension) != 0.0;
+    dea_expr stiffness = dea_expr_slope(pool, p->tension);
+    for (size_t a = 0; a < p->stress_count; a++) {
+        p->slopes[a] = dea_expr_slope(pool, p->stresses[a].stress);
+        stiffness = ADD(stiffness, MUL(p->stresses[a].lever, p->slopes[a]));
+    }
+    p->k_rest = SCALE(form_of(model)->stress, dea_expr_at_rest(pool, stiffness));
     p->capacitance = network->capacitance;
     p->c_rest = dea_expr_at_rest(pool, p->capacitance);
     p->field = at_volts(pool, network->field, 1.0);
@@ -174,7 +182,7 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
         const dea_expr tension = SCALE(form_of(model)->tension, network->tension[i]);
         p->taut[i] = at_volts(pool, tension, 0.0);
         const dea_expr loaded = at_volts(pool, tension, 1.0);
-        p->loosen[i] = loaded == p->taut[i] ? NUM(0.0) : SUB(loaded, p->taut[i]);
+        p->loosen[i] = loaded == p->taut[i] ? NUM(0.0) : SCALE(1.0 / form_of(model)->stress, SUB(loaded, p->taut[i]));
     }
     return pool->exhausted ? dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is made") : DEA_OK;
 }
@@ -351,10 +359,14 @@ static void declare(part *p)
 {
     dea_part_text *text = &p->text;
     const dea_network *network = &p->network;
-    const dea_expr all[] = {p->area,  p->push, p->capacitance, p->c_rest, p->k_rest,
-                            p->field, p->mass, p->divide,      p->width,  p->linear ? p->push_slope : p->stress};
+    const dea_expr all[] = {p->push, p->capacitance, p->c_rest, p->k_rest, p->field,
+                            p->mass, p->divide,      p->width,  p->linear ? p->push_slope : p->tension};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         dea_part_text_use(text, all[i]);
+    }
+    for (size_t a = 0; a < p->stress_count && !p->linear; a++) {
+        dea_part_text_use(text, p->stresses[a].lever);
+        dea_part_text_use(text, p->stresses[a].stress);
     }
     for (int i = 0; i < network->range_count; i++) {
         if (is_made(p, network->range[i])) {
@@ -365,8 +377,8 @@ static void declare(part *p)
         dea_part_text_use(text, p->taut[i]);
         dea_part_text_use(text, p->loosen[i]);
     }
-    if (!p->linear) {
-        dea_part_text_use_as_factor(text, p->stress_slope);
+    for (size_t a = 0; a < p->stress_count && !p->linear; a++) {
+        dea_part_text_use_as_factor(text, p->slopes[a]);
     }
 }
 
@@ -409,13 +421,13 @@ static void write_numbers(const part *p)
 
 /* The current of the film is that of a capacitor, without a gain: what a simulator adds to nodes and pivots (gmin, rshunt,
  * cshunt) stays what it is. v(plate) makes it a voltage, whose tolerance, 1e-6, is one of 1 nA, which the digits of kilovolts can
- * keep in short steps; fed back into v(q), it leaves the capacitor its whole voltage. A conductance has no noise, as a resistor
+ * keep in short steps; fed back into v(film), it leaves the capacitor its whole voltage. A conductance has no noise, as a resistor
  * would. */
 static void write_port(const part *p)
 {
-    line(p, "* film: v(q) = charge/c_rest on a capacitor of c_rest, whose current is d(C U)/dt; v(plate) is this current [mA]");
-    source(p, DEA_VOLTAGE, "charge", "q", "0", "v(plate)+[ok]*v(p,n)*[]/[c_rest]", p->capacitance);
-    line(p, ".param i_film={1e-3*many}\ncfilm q plate {c_rest}\ngsense plate 0 plate 0 1e-3\ngfilm p n plate 0 {i_film}");
+    line(p, "* film: v(film) = charge/c_rest on a capacitor of c_rest, whose current is d(C U)/dt; v(plate) is this current [mA]");
+    source(p, DEA_VOLTAGE, "charge", "film", "0", "v(plate)+[ok]*v(p,n)*[]/[c_rest]", p->capacitance);
+    line(p, ".param i_film={1e-3*many}\ncfilm film plate {c_rest}\ngsense plate 0 plate 0 1e-3\ngfilm p n plate 0 {i_film}");
     line(p, "* conductance of the leakage [S], 0 without a resistance");
     line(p, ".param leak={many*r_leak/(r_leak*r_leak+1e-30)}\ngleak p n p n {leak}");
     line(p, "* electrostatic force [N] onto the edge, (1/2) U^2 dC/du");
@@ -448,10 +460,15 @@ static void write_displacement(const part *p)
 
 /* z relaxes to what the branch follows with its time. A branch without a share follows at once: its state would only be one more
  * pole. */
-static void write_relaxation(const part *p, size_t i, const char *follows)
+static void write_relaxation(const part *p, size_t i, const char *follows, const char *mark)
+{
+    line(p, "grelax%zu%s 0 z%zu%s %s z%zu%s 1\ncrelax%zu%s z%zu%s 0 {c_relax%zu}", i, mark, i, mark, follows, i, mark, i, mark, i, mark,
+         i);
+}
+
+static void write_relaxation_time(const part *p, size_t i)
 {
     line(p, ".param c_relax%zu={relax%zu*min(part%zu*1e30,1)+1e-30}", i, i, i);
-    line(p, "grelax%zu 0 z%zu %s z%zu 1\ncrelax%zu z%zu 0 {c_relax%zu}", i, i, follows, i, i, i, i);
 }
 
 static void write_linear_springs(const part *p)
@@ -463,26 +480,52 @@ static void write_linear_springs(const part *p)
     line(p, "gspring edge 0 u 0 {k_um}\ngdamp edge 0 edge 0 {r_damp}");
     for (size_t i = 1; i <= p->branches; i++) {
         line(p, ".param k_um%zu={share%zu*k_um}", i, i);
-        write_relaxation(p, i, "u");
+        write_relaxation_time(p, i);
+        write_relaxation(p, i, "u", "");
         line(p, "gbranch%zu edge 0 u z%zu {k_um%zu}", i, i, i);
     }
 }
 
+/* Stress number @p a with its branches and the forces of both and of the damper. */
+static void write_stress(const part *p, size_t a)
+{
+    char mark[16] = "", node[32], name[32], text[64];
+    if (p->stress_count > 1) { /* its nodes and elements bear a letter, those of a single stress none */
+        snprintf(mark, sizeof mark, "%c", 'a' + (int)a);
+    }
+    snprintf(node, sizeof node, "s%s", mark);
+    snprintf(name, sizeof name, "stress%s", mark);
+    source(p, DEA_VOLTAGE, name, node, "0", "[]", p->stresses[a].stress);
+    for (size_t i = 1; i <= p->branches; i++) {
+        if (a == 0) {
+            write_relaxation_time(p, i);
+        }
+        write_relaxation(p, i, node, mark);
+        line(p, "ebranch%zu%s b%zu%s b%zu%s %s z%zu%s {share%zu}", i, mark, i, mark, i - 1, mark, node, i, mark, i);
+    }
+    line(p, "ebranch0%s b0%s 0 %s 0 1\n* force of springs and branches, and of the damper, tau B dS/du times the velocity [N]", mark, mark,
+         node);
+    if (a == 0) {
+        line(p, ".param a_um={1e6*many}\n.param r_damp={damp*a_um}");
+    }
+    snprintf(name, sizeof name, "spring%s", mark);
+    snprintf(text, sizeof text, "[a_um]*[]*v(b%zu%s)", p->branches, mark);
+    source(p, DEA_CURRENT, name, "edge", "0", text, p->stresses[a].lever);
+    /* an iterate whose velocity runs away would overflow the product, which ends a run instead of shortening its step */
+    snprintf(name, sizeof name, "damper%s", mark);
+    source(p, DEA_CURRENT, name, "edge", "0", "[r_damp]*[]*[]*min(max(v(edge),-1e3),1e3)", p->stresses[a].lever, p->slopes[a]);
+}
+
 static void write_hyperelastic_springs(const part *p)
 {
-    line(p, "* s = stress of the springs [MPa] on the area A(u); branches: z relaxes to s with the time of the branch");
-    source(p, DEA_VOLTAGE, "stress", "s", "0", "[]", p->stress);
-    for (size_t i = 1; i <= p->branches; i++) {
-        write_relaxation(p, i, "s");
-        line(p, "ebranch%zu b%zu b%zu s z%zu {share%zu}", i, i, i - 1, i, i);
+    line(p, "* s = change of the stress of the springs [MPa] on the area B(u); branches: z relaxes to s with the time of the branch");
+    for (size_t a = 0; a < p->stress_count; a++) {
+        write_stress(p, a);
     }
-    line(p, "ebranch0 b0 0 s 0 1\n* force of springs and branches, and of the damper, tau A dS/du times the velocity [N]");
-    line(p, ".param a_um={1e6*many}\n.param r_damp={damp*a_um}");
-    char text[64];
-    snprintf(text, sizeof text, "[a_um]*[]*v(b%zu)", p->branches);
-    source(p, DEA_CURRENT, "spring", "edge", "0", text, p->area);
-    /* an iterate whose velocity runs away would overflow the product, which ends a run instead of shortening its step */
-    source(p, DEA_CURRENT, "damper", "edge", "0", "[r_damp]*[]*[]*min(max(v(edge),-1e3),1e3)", p->area, p->stress_slope);
+    if (p->tense) {
+        line(p, "* the stress at rest on the change of these areas [N]");
+        source(p, DEA_CURRENT, "tension", "edge", "0", "[a_um]*[]", p->tension);
+    }
 }
 
 /* v(bad) and v(slack) rise from 0 to 1 within a millionth of what they watch. */
@@ -491,6 +534,9 @@ static void write_outputs(const part *p)
     line(p, "* to be read: strain [1], true field [V/um]");
     line(p, "estrain strain 0 u 0 {per_um}");
     source(p, DEA_VOLTAGE, "field", "field", "0", "[ok]*1e-6*[]*v(p,n)", p->field);
+    line(p, "* capacitance [pF] and charge [nC] of all films side by side");
+    line(p, ".param c_scale={1e12*many}\n.param q_scale={1e9*many*c_rest}\nestored q 0 film plate {q_scale}");
+    source(p, DEA_VOLTAGE, "capacity", "c", "0", "[c_scale]*[]", p->capacitance);
     line(p, "* bad = 1: a parameter out of its range, or no stable equilibrium of the relaxed film here (pull-in)");
     source(p, DEA_VOLTAGE, "outside", "outside", "0", "max(v(u)-[u_high],[u_low]-v(u))");
     if (p->linear) {
@@ -669,7 +715,7 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
                           FILE *out, dea_error *error)
 {
     if (!form_of(model)) {
-        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is no circuit part: lumped, lame and coverage are",
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is no circuit part: lumped, lame, coverage and ring are",
                         model->name);
     }
     const size_t branches = defaults->material.prony_count;
@@ -732,7 +778,7 @@ static void write_preamble(const dea_dialect *dialect, const char *title, const 
         out,
         "* p, n: film. edge: v(edge) = velocity of the disc edge, outward [m/s], current = force [N]; the frame is node 0.\n"
         "* mass m [kg]: capacitor of m to 0. damper r [N s/m]: resistor of 1/r. spring: %s_spring. all parameters in SI units.\n"
-        "* to be read inside an instance x1, as v(x1%su): u [um], strain [1], force [N], field [V/um], bad, slack [0 or 1]\n",
+        "* to be read inside an instance x1, as v(x1%su): u [um], strain [1], force [N], field [V/um], c [pF], q [nC], bad,\n* slack [0 or 1]\n",
         prefix, dialect->inside);
 }
 

@@ -106,10 +106,12 @@ double dea_forces_stiffness(const dea_forces *f)
     return f->load == 0.0 ? f->elastic_slope : f->elastic_slope - f->elastic / f->load * f->load_slope;
 }
 
+/* Past the end of an energy, where forces are no numbers, nothing is stable. */
 static double stiffness_at(dea_balance *balance, double symbol, double u)
 {
     const dea_forces f = dea_balance_forces(balance, symbol, u);
-    return dea_forces_stiffness(&f);
+    const double stiffness = dea_forces_stiffness(&f);
+    return isnan(stiffness) ? -(double)INFINITY : stiffness;
 }
 
 double dea_balance_length(const dea_balance *balance)

@@ -247,7 +247,7 @@ void dea_name_plain(double value, char text[DEA_LABEL_LENGTH])
     if (value < 0.9e-2 || value >= 1e4) {
         dea_name_power(value, text);
     } else {
-        snprintf(text, DEA_LABEL_LENGTH, "%.3g", value);
+        snprintf(text, DEA_LABEL_LENGTH, "%.4g", value);
     }
 }
 

@@ -155,6 +155,9 @@ static void compose_transient(sheet *page, bool logarithmic)
     }
 }
 
+/* A film moves by micrometres per volt, whatever a sharp peak comes to. */
+static const double most_per_volt = 1e-4; /* [m/V] */
+
 /* A magnitude and the phase below it. */
 static void compose_pair(sheet *page, size_t magnitude, size_t phase, const char *words, const char *unit, const char *per)
 {
@@ -163,7 +166,7 @@ static void compose_pair(sheet *page, size_t magnitude, size_t phase, const char
         return;
     }
     const double largest = dea_runs_largest(page->runs, upper->quantity);
-    const dea_scale scale = dea_scale_choose(*per ? largest : 1.0, unit);
+    const dea_scale scale = dea_scale_choose(*per ? fmin(largest, most_per_volt) : 1.0, unit);
     upper->span.logarithmic = largest > 0.0; /* without a bias nothing moves */
     upper->factor = scale.factor;
     upper->name = *per ? dea_name_plain : dea_name_prefixed;

@@ -162,7 +162,7 @@ void dea_series_bar(const dea_series *series, FILE *script, dea_canvas canvas, i
     dea_plot_palette(script, bar_end);
     dea_span_write(script, "cb", &span, panel.height, dea_name_plain);
     dea_label_axis(axis, &series->scale, label);
-    fputs("set cblabel textcolor '#202020' ", script);
+    fputs("set cblabel offset 1.5,0 textcolor '#202020' ", script);
     dea_gnuplot_text(script, label);
     fputs("\nset colorbox vertical user origin screen ", script);
     dea_gnuplot_number(script, (canvas.width - DEA_BAR + 12.0) / canvas.width);

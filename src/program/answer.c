@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "model/models.h"
+#include "needs/nearness.h"
 #include "network/swing.h"
 #include "program/omissions.h"
 #include "support/number.h"
@@ -43,6 +44,14 @@ static bool keep_larger(dea_spot *spot, dea_spot here, bool sound)
     return takes;
 }
 
+/* In time the charge over the film's voltage, which is that of the source where nothing lies between them. */
+static double capacitance_of(const dea_layout *layout, const void *row, double charge)
+{
+    const double told = column_of(layout, row, "capacitance_F"), film = column_of(layout, row, "film_voltage_V");
+    const double voltage = isnan(film) ? column_of(layout, row, "voltage_V") : film;
+    return isnan(told) && voltage != 0.0 ? charge / voltage : told;
+}
+
 static void take_row(dea_answer *answer, const dea_layout *layout, dea_spot here, const void *row)
 {
     answer->states[here.state]++;
@@ -58,7 +67,7 @@ static void take_row(dea_answer *answer, const dea_layout *layout, dea_spot here
     keep_larger(&answer->field, here, false);
     here.value = column_of(layout, row, "charge_C");
     if (keep_larger(&answer->charge, here, false)) {
-        answer->capacitance = column_of(layout, row, "capacitance_F");
+        answer->capacitance = capacitance_of(layout, row, here.value);
     }
 }
 
@@ -82,10 +91,10 @@ static void print_quantity(double value, const char *unit, int digits)
     fputs(dea_quantity_digits(value, unit, digits, text), stderr);
 }
 
-/* " at coverage = 0.5, voltage = 4.5 kV, t = 2 s", nothing where there is one row only. */
-static void print_place(const dea_scene *scene, const dea_spot *spot)
+/* @p before, "coverage = 0.5, voltage = 4.5 kV"; what is to stand before a further number, @p before itself where there is no
+ * axis. */
+static const char *print_axes(const dea_scene *scene, const dea_spot *spot, const char *before)
 {
-    const char *before = " at ";
     size_t step = dea_scene_point_count(scene);
     for (size_t i = 0; i < scene->axis_count; i++) {
         const dea_axis *axis = &scene->axes[i];
@@ -95,6 +104,13 @@ static void print_place(const dea_scene *scene, const dea_spot *spot)
         print_quantity(axis->values[spot->number / step % axis->count], axis->unit, 6);
         before = ", ";
     }
+    return before;
+}
+
+/* " at coverage = 0.5, voltage = 4.5 kV, t = 2 s", nothing where there is one row only. */
+static void print_place(const dea_scene *scene, const dea_spot *spot)
+{
+    const char *before = print_axes(scene, spot, " at ");
     if (scene->study == DEA_STUDY_TRANSIENT) {
         fprintf(stderr, "%st = ", before);
         print_quantity(dea_layout_place(scene, spot->row), "s", 6);
@@ -167,10 +183,11 @@ static void print_charge(const dea_answer *answer, const dea_scene *scene)
     print_quantity(answer->charge.value, "C", digits);
     print_place(scene, &answer->charge);
     if (!isnan(answer->capacitance)) {
+        const int fewer = digits_of(30.0 * scene->accuracy); /* two columns, one of them squared */
         fputs(", capacitance ", stderr);
-        print_quantity(answer->capacitance, "F", digits);
+        print_quantity(answer->capacitance, "F", fewer);
         fputs(" and energy ", stderr);
-        print_quantity(0.5 * answer->charge.value * answer->charge.value / answer->capacitance, "J", digits);
+        print_quantity(0.5 * answer->charge.value * answer->charge.value / answer->capacitance, "J", fewer);
         fputs(" there", stderr);
     }
     fputc('\n', stderr);
@@ -189,7 +206,14 @@ static void print_rest(const dea_answer *answer, const dea_scene *scene, const d
     }
     const double capacitance = dea_point_capacitance(&point);
     const dea_swing swing = dea_swing_free(&here, model);
-    fputs(scene->axis_count > 0 ? "  there, at rest and 0 V: capacitance " : "  at rest and 0 V: capacitance ", stderr);
+    fputs("  ", stderr);
+    if (scene->axis_count > 0 && isnan(answer->displacement.value)) { /* no line before has named a place */
+        print_axes(scene, &answer->displacement, "at ");
+        fputs(", ", stderr);
+    } else if (scene->axis_count > 0) {
+        fputs("there, ", stderr);
+    }
+    fputs("at rest and 0 V: capacitance ", stderr);
     print_quantity(capacitance, "F", 4);
     if (!isnan(here.drive.series_resistance)) {
         fputs(", R_s C ", stderr);
@@ -214,16 +238,58 @@ static void print_states(const dea_answer *answer, const dea_scene *scene)
     }
 }
 
-void dea_answer_print(const dea_answer *answer, const dea_scene *scene, size_t model)
+/* A deviation in percent, its sign told: two digits, or what is left below a hundredth of a percent. */
+static const char *deviation_text(char *text, double deviation)
+{
+    char number[DEA_NUMBER_LENGTH];
+    const bool tiny = fabs(deviation) < 1e-4;
+    snprintf(text, DEA_NUMBER_LENGTH, "%s%s %%", tiny || deviation < 0.0 ? "" : "+",
+             tiny ? "0.00" : dea_number_text(number, 100.0 * deviation, 2));
+    return text;
+}
+
+/* How far the model is from the membrane, at rest under the drive of the study. */
+static void print_nearness(const dea_scene *scene, const dea_model *model)
+{
+    static const char *const drives[] = {
+        [DEA_STUDY_SWEEP] = "", [DEA_STUDY_TRANSIENT] = " at rest under the largest voltage", [DEA_STUDY_AC] = " at the bias"};
+    char low[DEA_NUMBER_LENGTH], high[DEA_NUMBER_LENGTH];
+    dea_nearness near;
+    if (model->membrane || dea_nearness_measure(scene, model, &near, NULL) != DEA_OK || near.compared + near.unlike == 0) {
+        return;
+    }
+    fprintf(stderr, "  against the membrane (field)%s:", drives[scene->study]);
+    if (near.compared > 0) {
+        fprintf(stderr, " strain off by %s", deviation_text(low, near.low));
+        if (strcmp(low, deviation_text(high, near.high)) != 0) {
+            fprintf(stderr, " to %s", high);
+        }
+    }
+    if (near.unlike > 0) {
+        fprintf(stderr, "%s pull-in of one alone at %zu", near.compared > 0 ? "," : "", near.unlike);
+    }
+    if (!near.whole) {
+        fprintf(stderr, ", %zu of %zu points compared", near.compared + near.unlike, dea_scene_point_count(scene));
+    }
+    fputc('\n', stderr);
+}
+
+void dea_answer_print(const dea_answer *answer, const dea_scene *scene, size_t model, bool truth)
 {
     if (scene->study == DEA_STUDY_AC) {
         print_rest(answer, scene, scene->models[model]);
+        if (truth) {
+            print_nearness(scene, scene->models[model]);
+        }
         return;
     }
     if (scene->model_count > 1) {
         fprintf(stderr, "%s: ", scene->models[model]->name);
     }
     print_stroke(answer, scene);
+    if (truth) {
+        print_nearness(scene, scene->models[model]);
+    }
     print_rest(answer, scene, scene->models[model]);
     print_field(answer, scene);
     print_charge(answer, scene);

@@ -24,6 +24,12 @@ void dea_audience_lost(void *user, size_t count)
     audience->lost += count;
 }
 
+void dea_audience_instead(void *user, const dea_engine *engine, size_t count)
+{
+    dea_audience *audience = user;
+    dea_findings_instead(&audience->findings, engine, count);
+}
+
 void dea_audience_log(void *user, const char *line)
 {
     const dea_audience *audience = user;
@@ -72,6 +78,7 @@ dea_status dea_audience_open(const dea_arguments *arguments, const dea_scene *sc
     const dea_status status = open_outputs(arguments, scene, audience, error);
     if (status == DEA_OK) {
         audience->findings = dea_findings_begin(scene, averages_stream(arguments));
+        audience->findings.alone = arguments->no_truth;
     }
     return status;
 }

@@ -28,6 +28,7 @@ dea_status dea_audience_try(const dea_arguments *arguments, const dea_scene *sce
 /** Callbacks of a run whose user is the audience. */
 dea_status dea_audience_points(void *user, size_t first, const void *points, size_t count, dea_error *error);
 void dea_audience_lost(void *user, size_t count);
+void dea_audience_instead(void *user, const dea_engine *engine, size_t count);
 void dea_audience_log(void *user, const char *line);
 void dea_audience_progress(void *user, size_t done, size_t total);
 /** Ends outputs: kept when @p status is DEA_OK, else removed. The first failure counts. */

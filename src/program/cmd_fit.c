@@ -14,9 +14,9 @@
 typedef struct work {
     dea_fit_data stretch;           /* owned */
     dea_relaxation_data relaxation; /* owned */
-    dea_fit yeoh;
+    dea_fit law;
     dea_relaxation prony;
-    const dea_fit *yeoh_given; /* NULL: no data of that kind */
+    const dea_fit *law_given; /* NULL: no data of that kind */
     const dea_relaxation *prony_given;
 } work;
 
@@ -26,8 +26,33 @@ static dea_load load_of(dea_given_mode mode)
     return loads[mode];
 }
 
+/* A name that is neither a law nor auto, or a number of terms that goes with neither. */
+static bool complain_law(const dea_arguments *arguments)
+{
+    const char *names[DEA_FIT_CHOICES];
+    size_t count = 0;
+    if (!arguments->law || dea_law_find(arguments->law)) {
+        return false;
+    }
+    if (strcmp(arguments->law, "auto") == 0) {
+        if (arguments->terms > 0) {
+            dea_complain("--terms does not go with --law auto");
+        }
+        return arguments->terms > 0;
+    }
+    for (; dea_law_at(count) && count + 1 < DEA_FIT_CHOICES; count++) {
+        names[count] = dea_law_at(count)->name;
+    }
+    names[count++] = "auto";
+    dea_complain_unknown("law", arguments->law, names, count);
+    return true;
+}
+
 static bool complain_mismatch(const dea_arguments *arguments)
 {
+    if (complain_law(arguments)) {
+        return true;
+    }
     const bool relaxation = arguments->relaxation != NULL;
     if (!relaxation && arguments->operand_count == 0) {
         dea_complain("fit needs a file; see deaspice fit --help");
@@ -58,8 +83,10 @@ static dea_status fit_stretch(const dea_arguments *arguments, work *w, dea_error
         tell_columns(arguments, arguments->operands[i].path, w->stretch.columns);
     }
     if (status == DEA_OK) {
-        status = dea_fit_yeoh(&w->stretch, (int)arguments->terms, arguments->relative, &w->yeoh, error);
-        w->yeoh_given = &w->yeoh;
+        const dea_law *law = dea_law_find(arguments->law ? arguments->law : "yeoh");
+        status = law ? dea_fit_law(&w->stretch, law, (int)arguments->terms, arguments->relative, &w->law, error)
+                     : dea_fit_auto(&w->stretch, arguments->relative, &w->law, error);
+        w->law_given = &w->law;
     }
     return status;
 }
@@ -89,7 +116,7 @@ static dea_status write_fit(const work *w, const dea_arguments *arguments, const
     if (!stream) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
-    dea_status status = dea_fit_print(w->yeoh_given, w->prony_given, &film, stream, error);
+    dea_status status = dea_fit_print(w->law_given, w->prony_given, &film, stream, error);
     if (fclose(stream) != 0 && status == DEA_OK) {
         status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
@@ -102,19 +129,19 @@ static dea_status write_fit(const work *w, const dea_arguments *arguments, const
 
 static void warn(const work *w)
 {
-    if (w->yeoh_given && !isnan(w->yeoh.unloads_from)) {
+    if (w->law_given && !isnan(w->law.unloads_from)) {
         dea_complain("warning: the data unload from stretch %.4g on: loading and unloading differ; fit the loading alone",
-                     w->yeoh.unloads_from);
+                     w->law.unloads_from);
     }
-    if (w->yeoh_given && w->yeoh.trials[w->yeoh.terms - 1].p > 0.05) {
-        dea_complain("warning: the data do not tell C%d from 0 (F test, p = %.2g)", w->yeoh.terms,
-                     w->yeoh.trials[w->yeoh.terms - 1].p);
+    if (w->law_given && w->law.trials[w->law.terms - 1].p > 0.05) {
+        dea_complain("warning: the data do not tell %s from 0 (F test, p = %.2g)", w->law.law->constants[w->law.terms - 1].name,
+                     w->law.trials[w->law.terms - 1].p);
     }
     if (w->prony_given && w->prony.prony_count > 0 && isnan(w->prony.long_term_deviation)) {
         dea_complain("warning: the points do not tell the standard errors of these branches");
     }
-    if (w->yeoh_given && !isnan(w->yeoh.unstable_stretch)) {
-        dea_complain("warning: a tangent modulus of the fit is not positive from stretch %.4g on", w->yeoh.unstable_stretch);
+    if (w->law_given && !isnan(w->law.unstable_stretch)) {
+        dea_complain("warning: a tangent modulus of the fit is not positive from stretch %.4g on", w->law.unstable_stretch);
     }
     if (w->prony_given && w->prony.prony_count == 0) {
         dea_complain("warning: the stress does not relax measurably; no branch");
@@ -128,8 +155,8 @@ static void warn(const work *w)
 static void tell_stretch(const dea_fit *fit)
 {
     fprintf(stderr,
-            "%d term%s from %zu uniaxial and %zu equi-biaxial points, stretch %.4g to %.4g: R^2 = %.6f, rms residual %.4g Pa\n",
-            fit->terms, fit->terms == 1 ? "" : "s", fit->count[DEA_LOAD_UNIAXIAL], fit->count[DEA_LOAD_EQUIBIAXIAL],
+            "%s, %d constant%s from %zu uniaxial and %zu equi-biaxial points, stretch %.4g to %.4g: R^2 = %.6f, rms residual %.4g Pa\n",
+            fit->law->name, fit->terms, fit->terms == 1 ? "" : "s", fit->count[DEA_LOAD_UNIAXIAL], fit->count[DEA_LOAD_EQUIBIAXIAL],
             fit->stretch_min, fit->stretch_max, fit->r_squared, fit->residual_rms);
 }
 
@@ -155,7 +182,7 @@ static dea_status work_out(const dea_arguments *arguments, work *w, dea_error *e
         status = write_fit(w, arguments, arguments->output ? arguments->output : "-", error);
     }
     if (status == DEA_OK && arguments->plot) {
-        status = dea_plot_fit(w->yeoh_given, &w->stretch, w->prony_given, &w->relaxation, arguments->plot,
+        status = dea_plot_fit(w->law_given, &w->stretch, w->prony_given, &w->relaxation, arguments->plot,
                               &arguments->picture, error);
     }
     return status;
@@ -163,7 +190,7 @@ static dea_status work_out(const dea_arguments *arguments, work *w, dea_error *e
 
 static dea_exit run(const dea_arguments *arguments)
 {
-    work w = {.yeoh_given = NULL};
+    work w = {.law_given = NULL};
     dea_error error = {0};
     dea_files files = {0};
     const bool fits = !complain_mismatch(arguments) && dea_inputs_note(arguments, &files) && dea_targets_free(arguments, &files);
@@ -177,13 +204,13 @@ static dea_exit run(const dea_arguments *arguments)
         warn(&w);
     }
     const bool talk = status == DEA_OK && !arguments->quiet && (arguments->output || arguments->plot);
-    if (talk && w.yeoh_given) {
-        tell_stretch(&w.yeoh);
+    if (talk && w.law_given) {
+        tell_stretch(&w.law);
     }
     if (talk && w.prony_given) {
         tell_relaxation(&w.prony);
     }
-    if (talk && arguments->output && w.yeoh_given && isnan(arguments->permittivity)) {
+    if (talk && arguments->output && w.law_given && isnan(arguments->permittivity)) {
         fprintf(stderr, "a scene needs a permittivity too: --permittivity 2.8 writes that of your film into %s\n",
                 arguments->output);
     }
@@ -197,7 +224,7 @@ const dea_command dea_command_fit = {
     .summary = "material constants from measured data",
     .help = "Usage: deaspice fit [OPTION]... [DATA]...\n"
             "\n"
-            "Fits Yeoh constants to measured stress over stretch, Prony branches to measured\n"
+            "Fits a law to measured stress over stretch, Prony branches to measured\n"
             "stress over time at a held stretch, or both, and prints them as a material for a\n"
             "scene. DATA is a table (comma, semicolon, tab or blanks between the fields, decimal\n"
             "point or comma) whose header names columns with their units, others are left alone:\n"
@@ -207,8 +234,11 @@ const dea_command dea_command_fit = {
             "\n"
             "      --uniaxial FILE     data of a uniaxial test; may be repeated\n"
             "      --equibiaxial FILE  data of an equi-biaxial test; may be repeated\n"
-            "      --terms N           1 (neo-Hookean), 2 or 3 constants; default: as many as an F\n"
-            "                          test finds significant at 5 %\n"
+            "      --law LAW           yeoh (default), neo_hookean, mooney_rivlin, gent, ogden,\n"
+            "                          arruda_boyce, or auto: the one with the least AICc\n"
+            "      --terms N           of Yeoh 1, 2 or 3 constants; default: as many as an F test\n"
+            "                          finds significant at 5 %. Of Ogden 1 to 4 terms; default:\n"
+            "                          as many as have the least AICc\n"
             "      --length LENGTH     of the specimen at rest, for a displacement, e.g. \"80 mm\"\n"
             "      --area AREA         its cross-section at rest, for a force, e.g. \"22 mm^2\"\n"
             "      --relaxation FILE   data of a relaxation test: time (since the end of the ramp, or\n"

@@ -40,7 +40,7 @@ static const start starts[] = {
                                       "electrode_radius") MATERIAL
      "drive:\n"
      "  voltage: 4.5 kV\n"
-     "model: coverage              # or pelrine, constant_force, lumped, lame, field; or a list of them, or auto\n"
+     "model: ring                  # or pelrine, constant_force, lumped, coverage, lame, field; or a list of them, or auto\n"
      "study:\n"
      "  sweep: {}                  # the scene as one point; deaspice init sweep has axes\n"},
     {"lens", "aperture of a tunable lens over voltage",
@@ -49,10 +49,10 @@ static const start starts[] = {
      "title: tunable lens\n" ACTUATOR(
          "lens                 # the electrode is the annulus; dot: the disc",
          "lens_radius") "  optics:                    # optional: gives the focal length\n"
-                        "    focal_length: 22 mm      # at rest\n"
+                        "    focal_length: 60 mm      # at rest\n"
                         "    refractive_index: 1.4    # of the liquid\n" MATERIAL "drive:\n"
                         "  voltage: 4.5 kV\n"
-                        "model: coverage              # or lumped, lame, field; or a list of them, or auto\n"
+                        "model: ring                  # or lumped, coverage, lame, field; or a list of them, or auto\n"
                         "study:\n"
                         "  sweep:\n"
                         "    voltage: {from: 0 V, to: 4.5 kV, points: 46}\n"},
@@ -64,7 +64,7 @@ static const start starts[] = {
      "  waveform:                  # in place of voltage; also points, sine, or file: drive.csv (time_s,voltage_V)\n"
      "    step: {on: 0.1 s, off: 0.6 s, voltage: 4.5 kV, rise: 1 ms}\n"
      "  series_resistance: 1 MOhm  # of source and electrodes; optional\n"
-     "model: lumped                # or coverage, lame\n"
+     "model: ring                  # or lumped, coverage, lame\n"
      "study:\n"
      "  transient:\n"
      "    until: 1 s\n"
@@ -77,7 +77,7 @@ static const start starts[] = {
      "title: frequency response\n" ACTUATOR("dot                  # or lens", "electrode_radius") MOVING
      "drive:\n"
      "  series_resistance: 1 MOhm  # of source and electrodes; optional\n"
-     "model: coverage              # or lumped, lame\n"
+     "model: ring                  # or lumped, coverage, lame\n"
      "study:\n"
      "  ac:\n"
      "    from: 1 Hz\n"
@@ -91,7 +91,7 @@ static const start starts[] = {
      "title: coverage and pre-stretch\n" ACTUATOR("dot                  # or lens", "electrode_radius") MATERIAL
      "drive:\n"
      "  voltage: 4.5 kV\n"
-     "model: [lumped, coverage]    # one model, or several to compare\n"
+     "model: [lumped, ring]        # one model, or several to compare\n"
      "study:\n"
      "  sweep:\n"
      "    coverage: {from: 0.05, to: 0.95, points: 91}   # with spacing: log where wanted\n"

@@ -150,6 +150,29 @@ static void print_states(const dea_findings *findings)
 }
 
 /* "12 points", "2501 samples", "6 runs of 2501 samples" */
+void dea_findings_instead(dea_findings *findings, const dea_engine *engine, size_t count)
+{
+    size_t place = 0;
+    while (place + 1 < DEA_ENGINES && findings->instead[place].engine && findings->instead[place].engine != engine) {
+        place++;
+    }
+    findings->instead[place].engine = engine;
+    findings->instead[place].count += count;
+}
+
+/* "(direct; 3 of 40 by ida instead)" */
+static void print_engines(const dea_findings *findings)
+{
+    char names[512];
+    dea_crew_names(findings->scene, NULL, names, sizeof names);
+    fprintf(stderr, " (%s", names);
+    for (size_t i = 0; i < DEA_ENGINES && findings->instead[i].engine; i++) {
+        fprintf(stderr, "%s %zu of %zu by %s instead", i == 0 ? ";" : ",", findings->instead[i].count, findings->points,
+                findings->instead[i].engine->name);
+    }
+    fputc(')', stderr);
+}
+
 static void print_amount(const dea_findings *findings)
 {
     static const char *const rows[] = {
@@ -359,10 +382,8 @@ static void print_responses(const dea_findings *findings)
 
 void dea_findings_print(const dea_findings *findings, double seconds)
 {
-    char names[512];
-    dea_crew_names(findings->scene, NULL, names, sizeof names);
     for (size_t i = 0; i < findings->scene->model_count && findings->points > 0; i++) {
-        dea_answer_print(&findings->answers[i], findings->scene, i);
+        dea_answer_print(&findings->answers[i], findings->scene, i, !findings->alone);
     }
     if (findings->scene->study == DEA_STUDY_TRANSIENT) {
         print_motions(findings);
@@ -370,7 +391,8 @@ void dea_findings_print(const dea_findings *findings, double seconds)
         print_responses(findings);
     }
     print_amount(findings);
-    fprintf(stderr, " in %.3g s (%s)", seconds, names);
+    fprintf(stderr, " in %.3g s", seconds);
+    print_engines(findings);
     print_states(findings);
     if (findings->scene->study == DEA_STUDY_TRANSIENT) {
         print_errors(findings);

@@ -15,7 +15,12 @@ typedef struct dea_findings {
     const dea_scene *scene;
     dea_layout layout;
     FILE *averages;                 /**< where they are printed, NULL: nowhere */
+    bool alone;                     /**< models are not held against the membrane */
     size_t points;                  /**< taken so far */
+    struct {
+        const dea_engine *engine; /**< NULL: none further */
+        size_t count;             /**< points */
+    } instead[DEA_ENGINES];       /**< who has solved what the first engine did not */
     size_t states[DEA_STATE_COUNT]; /**< rows in each state */
     double error, residual;         /**< the worst of all transients, NAN: none known */
     double velocity_error, current_error; /**< likewise */
@@ -36,6 +41,8 @@ typedef struct dea_findings {
 dea_findings dea_findings_begin(const dea_scene *scene, FILE *averages);
 /** Takes points as a run hands them over; prints their averages. */
 void dea_findings_take(dea_findings *findings, size_t first, const void *points, size_t count);
+/** Takes that an engine solved so many points which the first one did not. */
+void dea_findings_instead(dea_findings *findings, const dea_engine *engine, size_t count);
 /** Prints the summary of the run on standard error. */
 void dea_findings_print(const dea_findings *findings, double seconds);
 

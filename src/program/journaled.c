@@ -33,6 +33,12 @@ static void recorder_lost(void *user, size_t count)
     run->lost = count;
 }
 
+static void recorder_instead(void *user, const dea_engine *engine, size_t count)
+{
+    recorder *run = user;
+    dea_audience_instead(&run->audience, engine, count);
+}
+
 static dea_status recorder_points(void *user, size_t first, const void *points, size_t count, dea_error *error)
 {
     recorder *run = user;
@@ -168,6 +174,7 @@ static dea_status compute(recorder *run, dea_error *error)
                                      .points = recorder_points,
                                      .wanted = recorder_wanted,
                                      .lost = recorder_lost,
+                                     .instead = recorder_instead,
                                      .any_order = true,
                                      .progress = recorder_progress,
                                      .log = recorder_log,

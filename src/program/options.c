@@ -16,7 +16,7 @@
 #include "support/quantity.h"
 #include "support/text.h"
 
-_Static_assert(DEA_RELAXATION_MOST == 10 && DEA_YEOH_TERMS == 3, "the messages of --branches and --terms name them");
+_Static_assert(DEA_RELAXATION_MOST == 10 && DEA_LAW_TERMS == 4, "the messages of --branches and --terms name them");
 
 size_t dea_core_count(void)
 {
@@ -192,6 +192,13 @@ static const char *engine_word(size_t index, char room[DEA_NAME_LENGTH])
     return engine ? engine->name : index == dea_engine_count() ? "auto" : NULL;
 }
 
+static const char *law_word(size_t index, char room[DEA_NAME_LENGTH])
+{
+    (void)room;
+    const dea_law *law = dea_law_at(index);
+    return law ? law->name : index == dea_law_count() ? "auto" : NULL;
+}
+
 static const char *model_word(size_t index, char room[DEA_NAME_LENGTH])
 {
     (void)room;
@@ -282,11 +289,13 @@ static const dea_option entries[] = {
     COUNT("jobs", 'j', "N", DEA_TAKES_JOBS, take_jobs, jobs, 1024, "a whole number up to 1024, or auto", "worker processes"),
     FLAG("quiet", 'q', DEA_TAKES_QUIET, quiet, "no summary and no progress"),
     FLAG("full", 0, DEA_TAKES_FULL, full, "leave out nothing"),
+    FLAG("no-truth", 0, DEA_TAKES_LOG, no_truth, "do not hold models against the membrane"),
     NUMBER("tolerance", "T", DEA_TAKES_TOLERANCE, tolerance, "1", 0, false, 1, "a number between 0 and 1, for example 1e-6",
            "difference that still agrees"),
     TEXT("uniaxial", 0, "FILE", NULL, DEA_TAKES_FIT, take_uniaxial, operands, "data of a uniaxial test"),
     TEXT("equibiaxial", 0, "FILE", NULL, DEA_TAKES_FIT, take_equibiaxial, operands, "data of an equi-biaxial test"),
-    COUNT("terms", 0, "N", DEA_TAKES_FIT, take_count, terms, DEA_YEOH_TERMS, "1, 2 or 3", "Yeoh constants"),
+    TEXT("law", 0, "LAW", law_word, DEA_TAKES_FIT, take_text, law, "law that is fitted"),
+    COUNT("terms", 0, "N", DEA_TAKES_FIT, take_count, terms, DEA_LAW_TERMS, "1, 2, 3 or 4", "Yeoh constants or terms of Ogden"),
     TEXT("relaxation", 0, "FILE", NULL, DEA_TAKES_FIT, take_text, relaxation, "data of a relaxation test"),
     NUMBER("ramp", "TIME", DEA_TAKES_FIT, ramp, "s", 0, true, INFINITY,
            "a time, for example \"2 s\", or \"0 s\" for an ideal step", "duration of the ramp before the hold"),

@@ -65,3 +65,20 @@ column_error columns_error(const judged *j, size_t point, const dea_sample *rows
     }
     return worst;
 }
+
+column_error means_error(const judged *j, size_t point, const dea_summary *summary, double peak, double accuracy)
+{
+    column_error worst = {.column = ""};
+    const true_run *truth = &j->runs[point];
+    const dea_transient *run = &j->scene.transient;
+    const double last = truth->good > 0 ? truth->samples[truth->good - 1].time : -1.0;
+    for (size_t i = 0; i < run->average_count && truth->mean_error <= 0.1 * accuracy * peak; i++) {
+        const double got = summary->averages[i].displacement, gap = fabs(got - truth->means[i]);
+        const bool covered = truth->good == truth->count || (run->averages[i].to <= last && !isnan(got));
+        const double error = !covered || gap <= 0.0 ? 0.0 : isfinite(gap) ? gap / peak : (double)INFINITY;
+        if (error > worst.error) {
+            worst = (column_error){"mean", i, error};
+        }
+    }
+    return worst;
+}

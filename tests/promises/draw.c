@@ -100,7 +100,7 @@ static void draw_material(uint64_t *seed, dea_material *m)
 {
     random_material(seed, m);
     if (random_chance(seed, 0.2)) {
-        *m = *dea_material_find(random_chance(seed, 0.5) ? "vhb-4910" : "elastosil-2030");
+        *m = *dea_material_find(random_chance(seed, 0.5) ? "vhb-4910-neo-hookean" : "elastosil-2030");
     } else {
         const double factor = random_decades(seed, 0.1, 30.0);
         for (int i = 0; i < DEA_YEOH_TERMS; i++) {
@@ -215,11 +215,11 @@ static void draw_ports(uint64_t *seed, dea_scene *scene, double time)
 
 static const char *draw_mover(uint64_t *seed, dea_scene *scene, bool heavy)
 {
-    static const char *const models[] = {"lumped", "lame", "coverage"};
+    static const char *const models[] = {"lumped", "lame", "coverage", "ring"};
     draw_film(seed, scene);
     scene->material.density = heavy ? random_between(seed, 900.0, 1200.0) : (double)NAN;
     scene->actuator.electrode_mass = heavy && random_chance(seed, 0.3) ? random_decades(seed, 1e-3, 0.1) : (double)NAN;
-    return models[(int)(3.0 * random_unit(seed))];
+    return models[(int)(4.0 * random_unit(seed))];
 }
 
 /* Squeezes the waveform into a period of which the run holds some. */
@@ -247,6 +247,19 @@ static void lengthen(dea_waveform *w)
     }
 }
 
+/* Windows of means: none, or up to three, the whole run too. */
+static void put_windows(uint64_t *seed, paper *p, double until)
+{
+    const int count = (int)random_between(seed, -2.0, 4.0);
+    for (int i = 0; i < count; i++) {
+        const bool whole = random_chance(seed, 0.1);
+        const double from = whole ? 0.0 : until * random_between(seed, 0.0, 0.9);
+        const double to = whole ? until : from + (until - from) * random_decades(seed, 1e-2, 1.0);
+        put(p, "%s{from: %.17g s, to: %.17g s}", i == 0 ? ", average: [" : ", ", from, fmin(to, until));
+    }
+    put(p, "%s", count > 0 ? "]" : "");
+}
+
 static void draw_transient(uint64_t *seed, paper *p)
 {
     dea_scene scene;
@@ -270,8 +283,10 @@ static void draw_transient(uint64_t *seed, paper *p)
     put_actuator(p, &scene.actuator);
     put_material(p, &scene.material);
     put_drive(p, &scene);
-    put(p, "model: %s\nstudy:\n  transient: {until: %.17g s, every: %.17g s, start: %s}\n", model, run->until, run->every,
+    put(p, "model: %s\nstudy:\n  transient: {until: %.17g s, every: %.17g s, start: %s", model, run->until, run->every,
         run->from_bias ? "bias" : "rest");
+    put_windows(seed, p, run->until);
+    put(p, "}\n");
 }
 
 static void draw_response(uint64_t *seed, paper *p)

@@ -181,8 +181,9 @@ static true_edge edge_linear(const true_film *f, long double u, bool lame)
     const long double force = sign * unit * f->divide; /* Eq. 21 over the circumference, per U^2 */
     const long double soft = lame ? unit * (f->dot ? 3.0L : q - 2.0L) : 0.0L;
     const long double area = pi * (f->dot ? f->divide * f->divide : (f->frame - f->divide) * (f->frame + f->divide));
-    return (true_edge){.area = plain(1.0L),
-                       .stress = {stiffness * u, stiffness, 0.0L},
+    return (true_edge){.count = 1,
+                       .area = {plain(1.0L)},
+                       .stress = {{stiffness * u, stiffness, 0.0L}},
                        .push = {force + soft * u, soft, 0.0L},
                        .capacitance = f->permittivity * l2 / f->thickness * area + u * (2.0L * force + soft * u)};
 }
@@ -196,8 +197,8 @@ static true_edge edge_hyperelastic(const true_film *f, long double u)
     const long double section = 2.0L * pi * f->divide * f->thickness / (l * l);
     const long double unit = f->permittivity * l * l * l * l / (f->thickness * f->thickness);
     const jet area = times(section, inverse(disc)), active = f->dot ? disc : annulus, square = by(active, active);
-    true_edge e = {.area = area, .stress = plus(inner, times(-1.0L, outer))};
-    e.stress.value = film_cauchy_change(f, s.value) - film_cauchy_change(f, -p * s.value);
+    true_edge e = {.count = 1, .area = {area}, .stress = {plus(inner, times(-1.0L, outer))}};
+    e.stress[0].value = film_cauchy_change(f, s.value) - film_cauchy_change(f, -p * s.value);
     e.push = times(f->dot ? unit : -unit, by(area, by(square, square)));
     const long double rest = f->permittivity * l * l / f->thickness * pi;
     if (f->dot) {
@@ -209,8 +210,96 @@ static true_edge edge_hyperelastic(const true_film *f, long double u)
     return e;
 }
 
+/* sigma_1 = 2 w (y1 - v) at two stretches, J = y1 + y2 + v - 3, y = l^2, v = 1/(y1 y2). */
+static jet principal(const true_film *f, jet l1, jet l2)
+{
+    const jet y1 = by(l1, l1), y2 = by(l2, l2), v = inverse(by(y1, y2));
+    const jet j = plus(plain(-3.0L), plus(plus(y1, y2), v));
+    const jet w = plus(plain(f->yeoh[0]), plus(times(2.0L * f->yeoh[1], j), times(3.0L * f->yeoh[2], by(j, j))));
+    return times(2.0L, by(plus(y1, times(-1.0L, v)), w));
+}
+
+/* Its change from rest by relative changes of the stretches, factored as film_cauchy_change(). */
+static long double principal_change(const true_film *f, long double e1, long double e2)
+{
+    const long double rest = f->prestretch * f->prestretch, d1 = rest * e1 * (2.0L + e1), d2 = rest * e2 * (2.0L + e2);
+    const long double sum = rest * (d1 + d2) + d1 * d2; /* of y1 y2 */
+    const long double dv = -sum / ((rest + d1) * (rest + d2) * rest * rest), dj = d1 + d2 + dv;
+    const long double j = 2.0L * rest + 1.0L / (rest * rest) - 3.0L;
+    const long double w = f->yeoh[0] + 2.0L * f->yeoh[1] * (j + dj) + 3.0L * f->yeoh[2] * (j + dj) * (j + dj);
+    const long double dw = dj * (2.0L * f->yeoh[1] + 3.0L * f->yeoh[2] * (2.0L * j + dj));
+    return 2.0L * ((d1 - dv) * w + (rest - 1.0L / (rest * rest)) * dw);
+}
+
+/* Section 7: relative changes of the stretches of disc, and radial and hoop of the annulus. */
+typedef struct ring_strains {
+    jet disc, radial, hoop;
+} ring_strains;
+
+static ring_strains rings_at(const true_film *f, long double u)
+{
+    const long double width = f->frame - f->divide, sum = f->frame + f->divide;
+    return (ring_strains){
+        {u / f->divide, 1.0L / f->divide, 0.0L}, {-u / width, -1.0L / width, 0.0L}, {u / sum, 1.0L / sum, 0.0L}};
+}
+
+/* Area stretch of the electroded film over that at rest. */
+static jet ring_area(const true_film *f, const ring_strains *at)
+{
+    const jet one = plain(1.0L), disc = plus(one, at->disc);
+    return f->dot ? by(disc, disc) : by(plus(one, at->radial), plus(one, at->hoop));
+}
+
+static true_edge edge_ring(const true_film *f, long double u)
+{
+    const long double l = f->prestretch, section = pi * f->thickness / (l * l), rest = film_cauchy(f, l).value;
+    const jet one = plain(1.0L), lever = {-u, -1.0L, 0.0L};
+    const ring_strains at = rings_at(f, u);
+    const jet disc = plus(one, at.disc), radial = plus(one, at.radial), hoop = plus(one, at.hoop);
+    const jet l0 = times(l, disc), l1 = times(l, radial), l2 = times(l, hoop);
+    const long double outer = f->frame + f->divide, inner = f->frame - f->divide;
+    true_edge e = {.count = 3,
+                   .area = {times(2.0L * section * f->divide, inverse(disc)), times(section * outer, inverse(radial)),
+                            times(section * inner, inverse(hoop))},
+                   .stress = {principal(f, l0, l0), times(-1.0L, principal(f, l1, l2)), principal(f, l2, l1)}};
+    e.stress[0].value = principal_change(f, at.disc.value, at.disc.value);
+    e.stress[1].value = -principal_change(f, at.radial.value, at.hoop.value);
+    e.stress[2].value = principal_change(f, at.hoop.value, at.radial.value);
+    /* 2 r_a/(1 + e) - (r + r_a)/(1 + e1) + (r - r_a)/(1 + e2), which is 0 at rest, over -u */
+    const jet fall =
+        plus(times(2.0L, inverse(disc)), plus(times(outer / inner, inverse(radial)), times(inner / outer, inverse(hoop))));
+    e.tension = times(section * rest, by(lever, fall));
+    const jet area = ring_area(f, &at);
+    const long double unit = 2.0L * pi * f->divide * f->permittivity * l * l / f->thickness;
+    e.push = times(f->dot ? unit : -unit, by(disc, area));
+    const long double electrode = pi * (f->dot ? f->divide * f->divide : outer * inner);
+    e.capacitance = f->permittivity * l * l / f->thickness * electrode * area.value * area.value;
+    return e;
+}
+
+long double edge_viscous(const true_edge *e)
+{
+    long double sum = 0.0L;
+    for (int a = 0; a < e->count; a++) {
+        sum += e->area[a].value * e->stress[a].slope;
+    }
+    return sum;
+}
+
+jet edge_relaxed(const true_edge *e)
+{
+    jet sum = e->tension;
+    for (int a = 0; a < e->count; a++) {
+        sum = plus(sum, by(e->area[a], e->stress[a]));
+    }
+    return sum;
+}
+
 true_edge film_edge(const true_film *f, long double u)
 {
+    if (strcmp(f->model, "ring") == 0) {
+        return edge_ring(f, u);
+    }
     if (strcmp(f->model, "coverage") == 0) {
         return edge_hyperelastic(f, u);
     }
@@ -234,6 +323,18 @@ static long double lame_tension(const true_film *f, long double strain, long dou
     const long double rest = at.tension - o * l;
     t = least(t, rest + least(o1 * in + o2 * c, o2 * in + o1 * c));
     return least(t, rest + least(o1 * rim, o2 * rim));
+}
+
+/* Smallest in-plane Cauchy stress of the two rings. */
+static long double ring_tension(const true_film *f, long double u, long double m)
+{
+    const ring_strains at = rings_at(f, u);
+    const true_edge e = edge_ring(f, u);
+    const long double rest = film_cauchy(f, f->prestretch).value,
+                      l4 = f->prestretch * f->prestretch * f->prestretch * f->prestretch;
+    const long double area = ring_area(f, &at).value, pull = m * l4 * area * area;
+    const long double disc = e.stress[0].value - (f->dot ? pull : 0.0L);
+    return rest + least(disc, least(-e.stress[1].value, e.stress[2].value) - (f->dot ? 0.0L : pull));
 }
 
 static long double electroded_area(const true_film *f, long double radius)
@@ -262,14 +363,17 @@ dea_row film_row(const true_film *f, long double u, long double voltage)
 {
     const long double l = f->prestretch, s = u / f->divide, p = f->divide / (f->frame - f->divide);
     const long double b = f->coverage, nominal = voltage / f->thickness, m = f->permittivity * nominal * nominal;
-    const bool lame = strcmp(f->model, "lame") == 0, hyper = strcmp(f->model, "coverage") == 0;
+    const bool lame = strcmp(f->model, "lame") == 0, hyper = strcmp(f->model, "coverage") == 0,
+               ring = strcmp(f->model, "ring") == 0;
     const long double active = f->dot ? 1.0L + s : 1.0L - p * s;
     long double area = active * active;
     if (!f->dot && !hyper) {
         area = (1.0L - b * b * (1.0L + s) * (1.0L + s)) / (1.0L - b * b);
     }
-    const true_edge e = film_edge(f, hyper ? u : 0.0L);
-    const bool taut = lame ? lame_tension(f, s, m) > 0.0L : l * (f->dot ? 1.0L - p * s : 1.0L + s) > 1.0L;
+    const true_edge e = film_edge(f, hyper || ring ? u : 0.0L);
+    const bool taut = ring   ? ring_tension(f, u, m) > 0.0L
+                      : lame ? lame_tension(f, s, m) > 0.0L
+                             : l * (f->dot ? 1.0L - p * s : 1.0L + s) > 1.0L;
     const long double field = fabsl(nominal * l * l * area);
     const long double capacitance = film_edge(f, u).capacitance;
     dea_row row = film_state(f, (true_numbers){s, e.push.value * voltage * voltage, field, capacitance, voltage, taut});

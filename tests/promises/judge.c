@@ -223,9 +223,8 @@ static void set_least(const judged *j, const column *chosen, size_t count, doubl
     const true_film film = film_of(&j->scene, j->scene.models[0]);
     const true_edge e = film_edge(&film, 0.0L);
     const double push = fabs((double)e.push.value) * volts * volts;
-    const double u = fmin(push / (double)(e.area.value * e.stress.slope), (double)fminl(film.divide, film.frame - film.divide));
-    const dea_sample swing = {.displacement = u,
-                              .strain = u / (double)film.divide};
+    const double u = fmin(push / (double)edge_viscous(&e), (double)fminl(film.divide, film.frame - film.divide));
+    const dea_sample swing = {.displacement = u, .strain = u / (double)film.divide};
     for (size_t c = 0; c < count; c++) {
         least[c] = least_swing * number_at(&swing, chosen[c].offset);
     }
@@ -250,6 +249,16 @@ static bool states_agree(const judged *j, size_t point, size_t row, dea_state go
     return (sampled && got != DEA_STATE_PULL_IN && wanted != DEA_STATE_PULL_IN &&
             near_sample(j, point, row, got, u_peak, accuracy)) ||
            near_limit(j, point, row, got, accuracy);
+}
+
+static void take_column(found *worst, size_t point, column_error other)
+{
+    if (other.error > worst->error) {
+        worst->error = other.error;
+        worst->column = other.column;
+        worst->point = point;
+        worst->row = other.row;
+    }
 }
 
 static found compare(const judged *j, const void *points, double accuracy)
@@ -301,12 +310,12 @@ static found compare(const judged *j, const void *points, double accuracy)
         }
     }
     for (size_t p = 0; p < j->points && j->scene.study == DEA_STUDY_TRANSIENT && !worst.state; p++) {
-        const column_error other = columns_error(j, p, (const dea_sample *)(const void *)row_of(j, points, p, 0), accuracy);
-        if (other.error > worst.error) {
-            worst.error = other.error;
-            worst.column = other.column;
-            worst.point = p;
-            worst.row = other.row;
+        const dea_sample *rows = (const dea_sample *)(const void *)row_of(j, points, p, 0);
+        take_column(&worst, p, columns_error(j, p, rows, accuracy));
+        if (worst.failed == 0) {
+            const dea_summary *summary = (const dea_summary *)(const void *)row_of(j, points, p, j->layout.rows);
+            const size_t at = offsetof(dea_sample, displacement);
+            take_column(&worst, p, means_error(j, p, summary, fmax(least[0], peak_of(j, p, at)), accuracy));
         }
     }
     return worst;

@@ -27,7 +27,8 @@ typedef struct method {
 
 typedef struct state {
     long double u, v, w, q; /* displacement, velocity, film voltage, charge */
-    long double z[DEA_PRONY_MAX];
+    long double z[TRUE_STRESSES][DEA_PRONY_MAX];
+    long double area; /* int u dt from the begin of the run [m s] */
 } state;
 
 typedef struct motion {
@@ -42,6 +43,7 @@ typedef struct motion {
     long double largest_u, largest_v;
     dea_sample *samples;
     size_t rows, done;
+    long double edges[DEA_WINDOWS][2]; /* areas at the edges of the windows, NAN before they are passed [m s] */
     double steps;
     const char *why;
     bool gone; /* pulled in */
@@ -234,7 +236,7 @@ static lag lag_of(const motion *m, long double pace)
 /* What Newton's method works on: changes of u from the begin of the step, film voltages, and what follows from them. */
 typedef struct stages {
     long double change[STAGES], volts[STAGES], source[STAGES];
-    long double z[DEA_PRONY_MAX][STAGES], v[STAGES], a[STAGES];
+    long double z[TRUE_STRESSES][DEA_PRONY_MAX][STAGES], v[STAGES], a[STAGES];
     true_edge edge[STAGES];
 } stages;
 
@@ -253,22 +255,45 @@ static void follow_stages(const motion *m, const state *from, long double h, con
         for (int j = 0; j < STAGES; j++) {
             s->a[i] += m->radau.slope.at[i][j] * (s->v[j] - from->v) / h;
         }
-        for (size_t b = 0; b < f->branches; b++) {
-            s->z[b][i] = 0.0L;
-            for (int j = 0; j < STAGES; j++) {
-                s->z[b][i] += lags[b].rest.at[i][j] * from->z[b] + lags[b].gain.at[i][j] * s->edge[j].stress.value;
+        for (int k = 0; k < s->edge[0].count; k++) {
+            for (size_t b = 0; b < f->branches; b++) {
+                s->z[k][b][i] = 0.0L;
+                for (int j = 0; j < STAGES; j++) {
+                    s->z[k][b][i] += lags[b].rest.at[i][j] * from->z[k][b] + lags[b].gain.at[i][j] * s->edge[j].stress[k].value;
+                }
             }
         }
     }
 }
 
-static long double held_stress(const true_film *f, long double stress, const stages *s, int i)
+static long double held_stress(const true_film *f, const stages *s, int i, int k)
 {
+    const long double stress = s->edge[i].stress[k].value;
     long double sum = stress;
     for (size_t b = 0; b < f->branches; b++) {
-        sum += f->share[b] * (stress - s->z[b][i]);
+        sum += f->share[b] * (stress - s->z[k][b][i]);
     }
     return sum;
+}
+
+/* What a stress adds to a residual and its derivatives. */
+static void add_stress(const motion *m, long double h, const lag *lags, const stages *s, int i, int k,
+                       long double a[UNKNOWNS][UNKNOWNS], long double *r)
+{
+    const true_film *f = &m->film;
+    const jet *area = &s->edge[i].area[k], *stress = &s->edge[i].stress[k];
+    const long double damp = f->retardation, force = held_stress(f, s, i, k) + damp * stress->slope * s->v[i];
+    r[i] += area->value * force;
+    for (int j = 0; j < STAGES; j++) {
+        long double branch = 0.0L;
+        for (size_t b = 0; b < f->branches; b++) {
+            branch += f->share[b] * lags[b].gain.at[i][j];
+        }
+        a[i][j] +=
+            area->value * damp * stress->slope * m->radau.slope.at[i][j] / h - area->value * branch * s->edge[j].stress[k].slope;
+    }
+    a[i][i] += area->slope * force + area->value * (1.0L + f->total_share) * stress->slope +
+               area->value * damp * stress->curve * s->v[i];
 }
 
 /* Residuals and their derivatives; the unknowns are the changes, then the film voltages. */
@@ -280,22 +305,19 @@ static void equations(const motion *m, const state *from, long double h, const l
     const square *d = &m->radau.slope;
     for (int i = 0; i < STAGES; i++) {
         const true_edge *e = &s->edge[i];
-        const long double w = s->volts[i], damp = f->retardation, all = held_stress(f, e->stress.value, s, i);
-        const long double force = all + damp * e->stress.slope * s->v[i];
-        r[i] = f->mass * s->a[i] + e->area.value * force - e->push.value * w * w;
+        const long double w = s->volts[i];
+        r[i] = f->mass * s->a[i] + e->tension.value - e->push.value * w * w;
         for (int j = 0; j < STAGES; j++) {
-            long double inertia = 0.0L, branch = 0.0L;
+            long double inertia = 0.0L;
             for (int k = 0; k < STAGES; k++) {
                 inertia += d->at[i][k] * d->at[k][j];
             }
-            for (size_t b = 0; b < f->branches; b++) {
-                branch += f->share[b] * lags[b].gain.at[i][j];
-            }
-            a[i][j] = f->mass * inertia / (h * h) + e->area.value * damp * e->stress.slope * d->at[i][j] / h -
-                      e->area.value * branch * s->edge[j].stress.slope;
+            a[i][j] = f->mass * inertia / (h * h);
         }
-        a[i][i] += e->area.slope * force + e->area.value * (1.0L + f->total_share) * e->stress.slope +
-                   e->area.value * damp * e->stress.curve * s->v[i] - e->push.slope * w * w;
+        a[i][i] += e->tension.slope - e->push.slope * w * w;
+        for (int k = 0; k < e->count; k++) {
+            add_stress(m, h, lags, s, i, k, a, r);
+        }
         if (series) {
             const int row = STAGES + i;
             a[i][row] = -2.0L * e->push.value * w;
@@ -375,19 +397,35 @@ static bool step_by(const motion *m, const state *from, long double time, long d
     const int last = STAGES - 1;
     *to = (state){.u = from->u + s.change[last], .v = s.v[last], .w = s.volts[last]};
     to->q = s.edge[last].capacitance * to->w;
-    for (size_t b = 0; b < f->branches; b++) {
-        to->z[b] = s.z[b][last];
+    to->area = from->area;
+    for (int i = 0; i < STAGES; i++) { /* the weights of the last stage are those of the step */
+        to->area += h * m->radau.weight.at[last][i] * (from->u + s.change[i]);
+    }
+    for (int k = 0; k < s.edge[last].count; k++) {
+        for (size_t b = 0; b < f->branches; b++) {
+            to->z[k][b] = s.z[k][b][last];
+        }
     }
     return true;
 }
 
 /* ---- a run */
 
-static long double branch_stress(const true_film *f, const true_edge *e, const state *s)
+static long double branch_stress(const true_film *f, const true_edge *e, const state *s, int k)
 {
-    long double sum = e->stress.value;
+    long double sum = e->stress[k].value;
     for (size_t b = 0; b < f->branches; b++) {
-        sum += f->share[b] * (e->stress.value - s->z[b]);
+        sum += f->share[b] * (e->stress[k].value - s->z[k][b]);
+    }
+    return sum;
+}
+
+/* What springs and branches hold. */
+static long double held_force(const true_film *f, const true_edge *e, const state *s)
+{
+    long double sum = e->tension.value;
+    for (int k = 0; k < e->count; k++) {
+        sum += e->area[k].value * branch_stress(f, e, s, k);
     }
     return sum;
 }
@@ -396,8 +434,11 @@ static long double branch_stress(const true_film *f, const true_edge *e, const s
 static long double held_stiffness(const true_film *f, const state *s)
 {
     const true_edge e = film_edge(f, s->u);
-    return e.area.slope * branch_stress(f, &e, s) + e.area.value * (1.0L + f->total_share) * e.stress.slope -
-           e.push.slope * s->w * s->w;
+    long double sum = e.tension.slope - e.push.slope * s->w * s->w;
+    for (int k = 0; k < e.count; k++) {
+        sum += e.area[k].slope * branch_stress(f, &e, s, k) + e.area[k].value * (1.0L + f->total_share) * e.stress[k].slope;
+    }
+    return sum;
 }
 
 /* What holds a film without mass and damper: its branches and, behind a series resistance, its charge. */
@@ -438,7 +479,7 @@ static bool jump(motion *m, state *s, long double to)
         for (int k = 0; k < 30 && fabsl(step) > 1e-19L * m->size[0]; k++) {
             const true_edge e = film_edge(f, s->u);
             const long double stiffness = held_stiffness(f, s);
-            step = (e.area.value * branch_stress(f, &e, s) - e.push.value * load) / stiffness;
+            step = (held_force(f, &e, s) - e.push.value * load) / stiffness;
             if (!(stiffness > 0.0L)) {
                 return false;
             }
@@ -457,8 +498,8 @@ static bool is_free(const true_film *f)
     return f->mass == 0.0L && f->retardation == 0.0L;
 }
 
-/* Velocity: of the mass, the state's. Without one it follows from the balance of forces, with neither mass nor damper from the rate
- * of that balance: the stages of a step tell an algebraic displacement, not its slope. */
+/* Velocity: of the mass, the state's. Without one it follows from the balance of forces, with neither mass nor damper from the
+ * rate of that balance: the stages of a step tell an algebraic displacement, not its slope. */
 static long double velocity_of(const motion *m, long double time, const state *s)
 {
     const true_film *f = &m->film;
@@ -467,13 +508,15 @@ static long double velocity_of(const motion *m, long double time, const state *s
         return s->v;
     }
     if (f->retardation > 0.0L) {
-        const long double rest = e.push.value * s->w * s->w - e.area.value * branch_stress(f, &e, s);
-        return rest / (e.area.value * f->retardation * e.stress.slope);
+        const long double rest = e.push.value * s->w * s->w - held_force(f, &e, s);
+        return rest / (f->retardation * edge_viscous(&e));
     }
     const long double pull = 2.0L * e.push.value * s->w; /* dF/dU */
     long double rate = 0.0L, slope = source_slope(m, time);
     for (size_t b = 0; b < f->branches; b++) {
-        rate += e.area.value * f->share[b] * (e.stress.value - s->z[b]) / f->tau[b];
+        for (int k = 0; k < e.count; k++) {
+            rate += e.area[k].value * f->share[b] * (e.stress[k].value - s->z[k][b]) / f->tau[b];
+        }
     }
     if (f->series > 0.0L) { /* U' = (i - U/R_p - C' U v)/C */
         slope = ((source_at(m, time) - s->w) / f->series - s->w * f->conductance) / e.capacitance;
@@ -489,8 +532,7 @@ static long double current_of(const motion *m, long double time, const state *s)
         return (source_at(m, time) - s->w) / f->series;
     }
     const true_edge e = film_edge(f, s->u);
-    return e.capacitance * source_slope(m, time) + 2.0L * e.push.value * velocity_of(m, time, s) * s->w +
-           s->w * f->conductance;
+    return e.capacitance * source_slope(m, time) + 2.0L * e.push.value * velocity_of(m, time, s) * s->w + s->w * f->conductance;
 }
 
 /* A sample, the time behind the begin of the segment. */
@@ -538,6 +580,28 @@ static bool record_step(motion *m, const state *from, long double time, long dou
     return true;
 }
 
+/* Areas at the edges of windows within a step. */
+static bool pass_edges(motion *m, const state *from, long double time, long double h, const state *to)
+{
+    const dea_transient *transient = &m->scene->transient;
+    const long double begin = m->segment->from;
+    for (size_t i = 0; i < 2 * transient->average_count; i++) {
+        const dea_window *window = &transient->averages[i / 2];
+        const double edge = i % 2 == 0 ? window->from : window->to;
+        const long double here = fminl((long double)edge - begin, h + time);
+        const bool ends = edge >= m->segment->to && time + h >= (long double)m->segment->to - begin;
+        state s = here > time ? *to : *from;
+        if (edge > m->segment->to || !isnan(m->edges[i / 2][i % 2]) || ((long double)edge - begin > time + h && !ends)) {
+            continue;
+        }
+        if (here > time && here < time + h && !step_by(m, from, time, here - time, &s)) {
+            return false;
+        }
+        m->edges[i / 2][i % 2] = s.area;
+    }
+    return true;
+}
+
 static long double distance(const motion *m, const state *a, const state *b)
 {
     const long double u = fabsl(a->u - b->u) / m->size[0], w = fabsl(a->w - b->w) / m->size[2];
@@ -563,7 +627,7 @@ static long double first_step(const motion *m)
     const true_film *f = &m->film;
     const true_edge e = film_edge(f, 0.0L);
     long double h = (long double)m->segment->to - m->segment->from;
-    const long double stiffness = e.area.value * e.stress.slope * (1.0L + f->total_share);
+    const long double stiffness = edge_viscous(&e) * (1.0L + f->total_share);
     if (f->mass > 0.0L && stiffness > 0.0L) {
         h = fminl(h, sqrtl(f->mass / stiffness));
     }
@@ -582,7 +646,7 @@ static long double first_step(const motion *m)
 static bool run_segment(motion *m, state *s)
 {
     const long double width = (long double)m->segment->to - m->segment->from;
-    const bool linear = strcmp(m->film.model, "coverage") != 0;
+    const bool linear = strcmp(m->film.model, "coverage") != 0 && strcmp(m->film.model, "ring") != 0;
     long double time = 0.0L, h = first_step(m);
     while (time < width) {
         state whole, half, two;
@@ -616,7 +680,7 @@ static bool run_segment(motion *m, state *s)
             m->gone = true;
             return false;
         }
-        if (!record_step(m, s, time, h, &two)) {
+        if (!pass_edges(m, s, time, h, &two) || !record_step(m, s, time, h, &two)) {
             m->gone = true;
             return false;
         }
@@ -642,8 +706,10 @@ static bool start(motion *m, state *s)
         }
         const true_edge e = film_edge(f, s->u);
         s->q = e.capacitance * s->w;
-        for (size_t b = 0; b < f->branches; b++) {
-            s->z[b] = e.stress.value;
+        for (int k = 0; k < e.count; k++) {
+            for (size_t b = 0; b < f->branches; b++) {
+                s->z[k][b] = e.stress[k].value;
+            }
         }
     }
     return true;
@@ -655,6 +721,9 @@ static void run(motion *m, long double tolerance)
     m->tolerance = tolerance;
     m->done = 0;
     m->steps = 0.0;
+    for (size_t i = 0; i < 2 * DEA_WINDOWS; i++) {
+        m->edges[i / 2][i % 2] = (long double)NAN;
+    }
     m->gone = !start(m, &s);
     for (size_t i = 0; !m->gone && i < m->signal.count; i++) {
         m->segment = &m->signal.segments[i];
@@ -680,15 +749,14 @@ static void set_sizes(motion *m, long double share)
 {
     const true_film *f = &m->film;
     const true_edge e = film_edge(f, 0.0L);
-    const long double volts = fmaxl(m->signal.largest, 1e-30L),
-                      still = fabsl(e.push.value / e.stress.slope / e.area.value) * volts * volts;
+    const long double volts = fmaxl(m->signal.largest, 1e-30L), still = fabsl(e.push.value / edge_viscous(&e)) * volts * volts;
     m->size[0] = share * fminl(still, fminl(f->divide, f->frame - f->divide));
     m->size[2] = share * volts;
     for (size_t i = 0; share < 1.0L && i < m->done; i++) {
         m->size[0] = fmaxl(m->size[0], fabs(m->samples[i].displacement));
         m->size[2] = fmaxl(m->size[2], fabs(m->samples[i].voltage));
     }
-    const long double pace = f->mass > 0.0L ? sqrtl(fabsl(e.area.value * e.stress.slope / f->mass)) : 1.0L;
+    const long double pace = f->mass > 0.0L ? sqrtl(fabsl(edge_viscous(&e) / f->mass)) : 1.0L;
     m->size[1] = share < 1.0L ? fmaxl(m->largest_v, m->size[0] * pace * 0.01L) : m->size[0] * pace;
 }
 
@@ -713,6 +781,23 @@ static double apart(const motion *m, const dea_sample *a, size_t count, size_t o
     return most;
 }
 
+/* Mean of u over a window, NAN where the motion ends before it [m]. */
+static double mean(const motion *m, size_t window)
+{
+    const dea_window *w = &m->scene->transient.averages[window];
+    return (double)((m->edges[window][1] - m->edges[window][0]) / ((long double)w->to - w->from));
+}
+
+/* Means of the last run, and how far those of the one before, in them so far, were off. */
+static void take_means(const motion *m, true_run *run_out)
+{
+    for (size_t i = 0; i < m->scene->transient.average_count; i++) {
+        const double now = mean(m, i);
+        run_out->mean_error = fmax(run_out->mean_error, fabs(now - run_out->means[i]));
+        run_out->means[i] = now;
+    }
+}
+
 static void solve_twice(motion *m, true_run *run_out)
 {
     dea_sample *first = malloc(m->rows * sizeof *first), *second = m->samples;
@@ -723,11 +808,14 @@ static void solve_twice(motion *m, true_run *run_out)
     if (!m->why) {
         run(m, 1e-12L);
     }
+    take_means(m, run_out);
+    run_out->mean_error = 0.0;
     const size_t count = m->done;
     m->samples = second;
     if (!m->why) {
         run(m, 1e-15L);
     }
+    take_means(m, run_out);
     run_out->good = m->done;
     run_out->error = count == m->done ? 1e-16 + gap(m, first, count) : (double)INFINITY;
     run_out->velocity_error = apart(m, first, count, offsetof(dea_sample, velocity));

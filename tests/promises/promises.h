@@ -31,11 +31,19 @@ typedef struct true_film {
     long double focal_length, index; /* NAN: no optics */
 } true_film;
 
-/* m u'' + A [S + tau S' u' + branches] = phi U^2. */
+/* m u'' + sum A [S + tau S' u' + branches] + G = phi U^2, with G what the stress at rest does by areas that change. */
+enum { TRUE_STRESSES = 3 };
+
 typedef struct true_edge {
-    jet area, stress, push;
+    int count; /* of the A and S */
+    jet area[TRUE_STRESSES], stress[TRUE_STRESSES];
+    jet tension, push;
     long double capacitance;
 } true_edge;
+
+/* sum A S', sum A S + G and the slope of that. */
+long double edge_viscous(const true_edge *edge);
+jet edge_relaxed(const true_edge *edge);
 
 /* Yeoh film under equal stretches: sigma and its derivatives over the stretch. */
 jet film_cauchy(const true_film *film, long double stretch);
@@ -75,6 +83,7 @@ typedef struct true_run {
     size_t count, good;  /* rows, and those before a pull-in */
     double error;
     double velocity_error, current_error; /* [m/s], [A] */
+    double means[DEA_WINDOWS], mean_error; /* of u over the windows, NAN behind the end of the motion [m] */
     double steps;
     const char *why; /* NULL: judged, else why the truth was not found */
 } true_run;
@@ -140,6 +149,9 @@ typedef struct column_error {
 
 /* Worst of them in the rows of a point, of those whose truth is good to a tenth of what it judges. */
 column_error columns_error(const judged *j, size_t point, const dea_sample *rows, double accuracy);
+
+/* Worst mean of a point's windows that its rows cover, over the peak; INFINITY where a film that never ends has none. */
+column_error means_error(const judged *j, size_t point, const dea_summary *summary, double peak, double accuracy);
 
 /* The tightest accuracy that the engine promises for such a study. */
 double best_accuracy(const dea_engine *engine, const dea_scene *scene);

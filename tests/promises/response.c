@@ -13,13 +13,12 @@ static double degrees(number z)
     return (double)(cargl(z) * 180.0L / pi);
 }
 
-/* (-m w^2 + d(A S - phi U^2)/du + A S' [s tau + sum c s tau_i/(1 + s tau_i)]) u = 2 phi U dU; q = C U. */
+/* (-m w^2 + d(sum A S + G - phi U^2)/du + sum A S' [s tau + sum c s tau_i/(1 + s tau_i)]) u = 2 phi U dU; q = C U. */
 static dea_response response_at(const true_film *f, const true_edge *e, long double u_bias, long double frequency)
 {
     const number s = I * (2.0L * pi * frequency);
-    const long double spring = e->area.value * e->stress.slope;
-    number stiffness = f->mass * s * s + spring * (1.0L + s * f->retardation) + e->area.slope * e->stress.value -
-                       e->push.slope * u_bias * u_bias;
+    const long double spring = edge_viscous(e);
+    number stiffness = f->mass * s * s + spring * s * f->retardation + edge_relaxed(e).slope - e->push.slope * u_bias * u_bias;
     for (size_t i = 0; i < f->branches; i++) {
         stiffness += spring * f->share[i] * (s * f->tau[i] / (1.0L + s * f->tau[i]));
     }

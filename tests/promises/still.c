@@ -108,6 +108,13 @@ static long double first_place(branch *b, share_function *share, long double ste
     return none;
 }
 
+/* Share of U^2 that holds a film of rings at u. */
+static long double ring_share(branch *b, long double u)
+{
+    const true_edge e = film_edge(b->film, u);
+    return edge_relaxed(&e).value / (e.push.value * b->load);
+}
+
 static long double balance(const true_film *f, long double ratio, long double voltage)
 {
     const long double l2 = f->prestretch * f->prestretch, nominal = voltage / f->thickness;
@@ -157,7 +164,15 @@ long double still_displacement(const true_film *f, long double voltage)
         const long double active = balance(f, ratio, voltage);
         return f->divide * (f->dot ? active : -ratio * active);
     }
-    const long double square = voltage * voltage, net = e.stress.slope - e.push.slope * square;
+    if (strcmp(f->model, "ring") == 0) {
+        branch b = {.film = f, .load = voltage * voltage};
+        const long double end = f->dot ? f->frame - f->divide : -f->divide;
+        if (b.load == 0.0L || !(edge_relaxed(&e).slope > 0.0L)) {
+            return b.load == 0.0L ? 0.0L : none;
+        }
+        return first_place(&b, ring_share, end / 8000.0L, end * (1.0L - 1e-9L));
+    }
+    const long double square = voltage * voltage, net = e.stress[0].slope - e.push.slope * square;
     return net > 0.0L || square == 0.0L ? e.push.value * square / net : none;
 }
 

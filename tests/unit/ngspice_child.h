@@ -9,7 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { CHILD_VECTORS = 640, CHILD_NAME = 192, CHILD_PATH = 512, CHILD_LOG = 1 << 16 };
+enum { CHILD_VECTORS = 960, CHILD_NAME = 192, CHILD_PATH = 512, CHILD_LOG = 1 << 16 };
 
 /* What a run left: point p of vector v is values[width (p vectors + v)], width 2 (real, imaginary) where complex. */
 typedef struct child_run {
@@ -92,7 +92,7 @@ static inline void child_start(const char *file, child_run *run)
 {
     char command[4 * CHILD_PATH];
     *run = (child_run){.width = 1};
-    snprintf(command, sizeof command, "cd '%s' && rm -f out.raw && timeout 100 ngspice -b -r out.raw '%s' >log 2>&1",
+    snprintf(command, sizeof command, "cd '%s' && rm -f out.raw && timeout 300 ngspice -b -r out.raw '%s' >log 2>&1",
              child_folder, file);
     const int ended = system(command);
     run->status = WIFEXITED(ended) ? WEXITSTATUS(ended) : -1;

@@ -86,8 +86,8 @@ static inline double random_voltage(uint64_t *seed, dea_scene *scene, const char
  * which a ring overshoots up to twice. The scene owns nothing; its waveform is valid until the next one is made. */
 static inline void random_transient(uint64_t *seed, dea_scene *scene)
 {
-    static const char *const models[] = {"lumped", "lame", "coverage"};
-    const char *model = models[(int)(3.0 * random_unit(seed))];
+    static const char *const models[] = {"lumped", "lame", "coverage", "ring"};
+    const char *model = models[(int)(4.0 * random_unit(seed))];
     *scene = random_scene(seed);
     scene->actuator.coverage = random_between(seed, 0.1, 0.9);
     scene->actuator.prestretch = random_between(seed, 1.05, 2.0);

@@ -118,11 +118,27 @@ static void check_measures_the_model_that_auto_chose(void **state)
     file_write("swing.yaml", scene, strlen(scene));
     RUN("check", "swing.yaml");
     assert_status(0);
-    assert_says("model auto: coverage, nothing cheaper is good enough");
+    assert_says("model auto: ring, nothing cheaper is good enough");
     RUN("check", "--set", "voltage=100 V", "swing.yaml");
     assert_status(0);
-    assert_non_null(strstr(child_out, "lumped instead of coverage (<= "));
+    assert_non_null(strstr(child_out, "lame instead of ring (<= "));
     assert_non_null(strstr(child_out, ", measured "));
+}
+
+/* A ring without damping has more periods than ngspice can follow at that accuracy. */
+static void a_summary_names_who_solved(void **state)
+{
+    (void)state;
+    static const char scene[] =
+        "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+        "material: {base: elastosil-2030, density: 1080 kg/m^3}\n"
+        "drive: {waveform: {step: {on: 1 ms, voltage: 3 kV, rise: 1 us}}}\n"
+        "model: lumped\nstudy: {transient: {until: 200 s, every: 100 ms}}\n";
+    file_write("long.yaml", scene, strlen(scene));
+    RUN("run", "--engine", "ngspice,direct", "long.yaml", "-o", "long.csv");
+    assert_status(0);
+    assert_says("direct was asked instead");
+    assert_says("(ngspice; 1 of 1 by direct instead)");
 }
 
 int main(void)
@@ -131,6 +147,7 @@ int main(void)
         cmocka_unit_test(phase_of_a_zero_is_any),
         cmocka_unit_test(engines_agree_about_a_film_without_bias),
         cmocka_unit_test(check_measures_the_model_that_auto_chose),
+        cmocka_unit_test(a_summary_names_who_solved),
         cmocka_unit_test(states_on_two_sides_of_a_limit_are_no_disagreement),
     };
     return cmocka_run_group_tests(tests, child_enter, child_leave);

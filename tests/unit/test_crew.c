@@ -1,6 +1,7 @@
 /* Who is asked to solve what, and what becomes of points that the first cannot solve. */
 #include "scenes.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -118,8 +119,22 @@ static dea_status sweep_gaps(void *session, const dea_scene *scene, const dea_mo
     return DEA_OK;
 }
 
+/* Brings its worker down at every EVERYth point. */
+static dea_status sweep_crash(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count,
+                              dea_row *rows, dea_error *error)
+{
+    sweep_gaps(session, scene, model, first, count, rows, error);
+    for (size_t i = 0; i < count; i++) {
+        if (rows[i].state == DEA_STATE_FAILED) {
+            raise(SIGSEGV);
+        }
+    }
+    return DEA_OK;
+}
+
 typedef struct listener {
     dea_row rows[POINTS];
+    size_t instead; /* points that direct solved */
     char line[1024];
 } listener;
 
@@ -129,6 +144,13 @@ static dea_status take_rows(void *user, size_t first, const void *points, size_t
     (void)error;
     memcpy(heard->rows + first, points, count * sizeof *heard->rows);
     return DEA_OK;
+}
+
+static void take_instead(void *user, const dea_engine *engine, size_t count)
+{
+    listener *heard = user;
+    assert_string_equal(engine->name, "direct");
+    heard->instead += count;
 }
 
 static void take_line(void *user, const char *line)
@@ -142,7 +164,7 @@ static listener heard_of(const dea_engine *fake, size_t jobs)
     static listener heard;
     dea_error error = {0};
     dea_scene scene = scene_read(DEA_STUDY_SWEEP, "engine: [ida, direct]\n");
-    const dea_run_options options = {.jobs = jobs, .points = take_rows, .log = take_line, .user = &heard};
+    const dea_run_options options = {.jobs = jobs, .points = take_rows, .instead = take_instead, .log = take_line, .user = &heard};
     scene.engines[0] = fake;
     heard = (listener){.line = ""};
     if (dea_study_run(&scene, NULL, &options, &error) != DEA_OK) {
@@ -155,6 +177,14 @@ static listener heard_of(const dea_engine *fake, size_t jobs)
 static listener truth(void)
 {
     return heard_of(&(dea_engine){.name = "fake", .block = 16, .refuses = NULL, .begin = begin_never, .end = end_fine}, 1);
+}
+
+/* The rows but for what pads them. */
+static void assert_rows_equal(const dea_row *heard, const dea_row *wanted)
+{
+    for (size_t i = 0; i < POINTS; i++) {
+        assert_memory_equal(&heard[i], &wanted[i], offsetof(dea_row, state) + sizeof heard->state);
+    }
 }
 
 static void what_cannot_begin_is_passed_over(void **state)
@@ -176,8 +206,9 @@ static void what_is_refused_goes_to_the_next(void **state)
     const listener wanted = truth();
     for (size_t jobs = 1; jobs < 4; jobs += 2) {
         const listener heard = heard_of(&fake, jobs);
-        assert_memory_equal(heard.rows, wanted.rows, sizeof wanted.rows);
+        assert_rows_equal(heard.rows, wanted.rows);
         assert_non_null(strstr(heard.line, "singular matrix; direct was asked instead"));
+        assert_int_equal(heard.instead, POINTS);
     }
 }
 
@@ -193,6 +224,23 @@ static void points_that_fail_go_to_the_next_and_only_they(void **state)
             assert_true(heard.rows[i].strain == (i % EVERY == 0 ? wanted.rows[i].strain : 7.0));
         }
         assert_non_null(strstr(heard.line, "; solved by direct instead where that failed"));
+        assert_int_equal(heard.instead, (POINTS + EVERY - 1) / EVERY);
+    }
+}
+
+static void points_that_cost_a_worker_go_to_the_next_and_only_they(void **state)
+{
+    (void)state;
+    static const dea_engine fake = {
+        .name = "fake", .isolated = true, .block = 256, .patience = 1.0, .begin = begin_fine, .sweep = sweep_crash, .end = end_fine};
+    const listener wanted = truth();
+    for (size_t jobs = 1; jobs < 4; jobs += 2) {
+        const listener heard = heard_of(&fake, jobs);
+        for (size_t i = 0; i < POINTS; i++) {
+            assert_true(heard.rows[i].strain == (i % EVERY == 0 ? wanted.rows[i].strain : 7.0));
+        }
+        assert_non_null(strstr(heard.line, "; direct is asked instead"));
+        assert_int_equal(heard.instead, (POINTS + EVERY - 1) / EVERY);
     }
 }
 
@@ -205,6 +253,7 @@ int main(void)
         cmocka_unit_test(what_cannot_begin_is_passed_over),
         cmocka_unit_test(what_is_refused_goes_to_the_next),
         cmocka_unit_test(points_that_fail_go_to_the_next_and_only_they),
+        cmocka_unit_test(points_that_cost_a_worker_go_to_the_next_and_only_they),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

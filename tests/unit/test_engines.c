@@ -189,6 +189,10 @@ static bool balances(const dea_scene *scene, const dea_row *row)
     if (!strcmp(model, "lumped") || !strcmp(model, "lame")) {
         return judge_linear(scene, row, !strcmp(model, "lame")) < 2e-9;
     }
+    if (!strcmp(model, "ring")) {
+        const judged_balance rings = judged_ring_of(scene);
+        return is_close((double)judged_share(&rings, fabs(row->strain)), 1.0, 1e-8 + 1e-14 / fabs(row->strain), 0.0);
+    }
     const judged_balance balance = judged_balance_of(scene, !strcmp(model, "constant_force"));
     const double active = scene->actuator.kind == DEA_DOT ? row->strain : -row->strain * b / (1.0 - b);
     return is_close((double)judged_share(&balance, active), 1.0, 1e-8 + 1e-14 / fabs(active), 0.0);
@@ -255,10 +259,11 @@ static void ngspice_solves_plane_elasticity_as_the_equation_does(void **state)
     compare_engines("ngspice", "lame", 1e-9, 20);
 }
 
-static void ngspice_solves_coverage_as_the_equation_does(void **state)
+static void ngspice_solves_coverage_and_ring_as_the_equation_does(void **state)
 {
     (void)state;
     compare_engines("ngspice", "coverage", 1e-8, 20);
+    compare_engines("ngspice", "ring", 1e-8, 20);
 }
 
 static void ngspice_solves_constant_force_as_the_equation_does(void **state)
@@ -278,6 +283,7 @@ static void ida_solves_hyperelastic_models_as_the_equation_does(void **state)
 {
     (void)state;
     compare_engines("ida", "coverage", 1e-9, 20);
+    compare_engines("ida", "ring", 1e-9, 20);
     compare_engines("ida", "constant_force", 1e-9, 20);
 }
 
@@ -288,8 +294,8 @@ static void ida_solves_the_field_as_shooting_does(void **state)
 }
 
 static const char *const engines[] = {"direct", "ngspice", "ida"};
-static const char *const swept_models[] = {"lumped", "coverage", "lame", "constant_force", "field"};
-enum { ENGINES = 3, SWEPT_MODELS = 5 };
+static const char *const swept_models[] = {"lumped", "coverage", "lame", "ring", "constant_force", "field"};
+enum { ENGINES = 3, SWEPT_MODELS = 6 };
 
 static bool does(const char *engine, const dea_scene *scene)
 {
@@ -453,7 +459,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ngspice_solves_lumped_as_the_equation_does),
         cmocka_unit_test(ngspice_solves_plane_elasticity_as_the_equation_does),
-        cmocka_unit_test(ngspice_solves_coverage_as_the_equation_does),
+        cmocka_unit_test(ngspice_solves_coverage_and_ring_as_the_equation_does),
         cmocka_unit_test(ngspice_solves_constant_force_as_the_equation_does),
         cmocka_unit_test(ida_solves_lumped_and_plane_elasticity_as_the_equation_does),
         cmocka_unit_test(ida_solves_hyperelastic_models_as_the_equation_does),

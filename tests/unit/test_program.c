@@ -246,7 +246,7 @@ static void bash_completes(void **state)
         {"export --as kic", "kicad"},
         {"export --dialect x", "xyce"},
         {"init ''", "dot lens transient ac sweep"},
-        {"materials vhb", "vhb-4910"},
+        {"materials vhb-4910-", "vhb-4910-neo-hookean"},
         {"completion ''", "bash zsh fish"},
         {"check --resu", ""},
     };

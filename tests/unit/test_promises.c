@@ -31,8 +31,8 @@ static void the_truth_of_a_ring_is_its_closed_form(void **state)
         const dea_scene scene = ringing(retardations[i]);
         const true_film film = film_of(&scene, scene.models[0]);
         const true_edge e = film_edge(&film, 0.0L);
-        const long double square = e.stress.slope / film.mass, d = 0.5L * square * film.retardation;
-        const long double full = e.push.value * 4500.0L * 4500.0L / e.stress.slope, turn = sqrtl(fabsl(square - d * d));
+        const long double square = e.stress[0].slope / film.mass, d = 0.5L * square * film.retardation;
+        const long double full = e.push.value * 4500.0L * 4500.0L / e.stress[0].slope, turn = sqrtl(fabsl(square - d * d));
         true_run run = moving_truth(&scene, scene.models[0], 1.0);
         assert_null(run.why);
         assert_int_equal(run.good, run.count);
@@ -170,6 +170,37 @@ static void an_engine_that_is_off_by_three_times_the_accuracy_is_found(void **st
     assert_true(counted.worst > 2.9 && counted.worst < 3.1);
     assert_non_null(strstr(line, "strain"));
     assert_false(judge_engine(&j, dea_engine_find("direct"), 1e-6, &counted, line, sizeof line));
+    judge_close(&j);
+}
+
+static dea_status average_badly(void *session, const dea_scene *scene, const dea_model *model, dea_sample *samples,
+                                dea_summary *summary, dea_error *error)
+{
+    const dea_status status = dea_engine_find("direct")->transient(session, scene, model, samples, summary, error);
+    summary->averages[1].displacement *= 1.0 + 30.0 * scene->accuracy;
+    return status;
+}
+
+/* The second window holds the film's rise, from 0 to its rest. */
+static void a_mean_that_is_off_is_found(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+        "material: {base: elastosil-2030, density: 1080 kg/m^3, retardation: 0.1 ms, prony: [{g: 0.2, tau: 1 ms}]}\n"
+        "drive: {waveform: {step: {on: 1 ms, voltage: 4 kV}}}\nmodel: lumped\n"
+        "study: {transient: {until: 10 ms, every: 0.7 ms, average: [{from: 0 s, to: 10 ms}, {from: 1 ms, to: 2.3 ms}]}}\n";
+    dea_engine bad = *dea_engine_find("direct");
+    bad.transient = average_badly;
+    judged j;
+    tally counted = {0};
+    char line[LINE] = "";
+    assert_true(judge_open(&j, text, 0));
+    assert_false(judge_engine(&j, dea_engine_find("direct"), 1e-10, &counted, line, sizeof line));
+    assert_false(judge_engine(&j, dea_engine_find("ida"), 1e-6, &counted, line, sizeof line));
+    assert_true(judge_engine(&j, &bad, 1e-6, &counted, line, sizeof line));
+    assert_non_null(strstr(line, "mean of point 0, row 1"));
+    assert_int_equal(counted.delivered, 3);
     judge_close(&j);
 }
 
@@ -311,6 +342,7 @@ int main(void)
         cmocka_unit_test(a_branch_without_fold_is_slack_and_not_pulled_in),
         cmocka_unit_test(a_branch_folds_at_its_critical_voltage),
         cmocka_unit_test(an_engine_that_is_off_by_three_times_the_accuracy_is_found),
+        cmocka_unit_test(a_mean_that_is_off_is_found),
         cmocka_unit_test(a_draw_is_a_valid_scene),
         cmocka_unit_test(engines_keep_the_promises_that_were_broken),
         cmocka_unit_test(engines_keep_their_promises_on_random_scenes),

@@ -155,6 +155,20 @@ static size_t rows_of(const outcome *o, dea_state state)
     return count;
 }
 
+/* A ring of 1e4 periods that is not linear: the begin of it tells that its phase takes too many steps. */
+static void a_ring_that_loses_its_phase_is_refused_by_its_begin(void **state)
+{
+    (void)state;
+    static const char text[] = "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+                               "material: {base: elastosil-2030, density: 1080 kg/m^3, retardation: 30 ns}\n"
+                               "drive: {waveform: {step: {on: 1 ms, voltage: 3000 V, rise: 0.1 ms}}}\nmodel: coverage\n"
+                               "study: {transient: {until: 15 s, every: 0.37 ms}}\n";
+    run_text(text, "ngspice", 1e-6, &found);
+    assert_int_equal(found.samples[found.count - 1].state, DEA_STATE_FAILED);
+    assert_non_null(strstr(found.log, "the ring of this film would lose a phase"));
+    assert_non_null(strstr(found.log, "at most"));
+}
+
 /* The mass carries a dot through its fold into slack, where it turns back before the frame and swings. */
 static void a_film_is_followed_past_its_fold(void **state)
 {
@@ -204,6 +218,7 @@ int main(void)
         cmocka_unit_test(random_stalls_are_solved),
         cmocka_unit_test(a_bridge_of_short_edges_is_solved),
         cmocka_unit_test(what_takes_too_long_is_refused_at_once),
+        cmocka_unit_test(a_ring_that_loses_its_phase_is_refused_by_its_begin),
         cmocka_unit_test(a_film_is_followed_past_its_fold),
         cmocka_unit_test(a_film_that_runs_away_is_pulled_in),
     };

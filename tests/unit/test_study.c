@@ -733,7 +733,7 @@ static void halving_finds_every_bad_point(void **state)
             if (bad)
                 dea_attempt_failed(&attempt, &plan, &span, rows, DEA_FAULT_REFUSED, "bad", &damage);
             else
-                dea_attempt_solved(&attempt, &damage);
+                dea_attempt_solved(&attempt, &(dea_hands){{0}}, &damage);
         }
         assert_true(tries <= 2 * 8 + 1);
         for (size_t i = 0; i < 64; i++)

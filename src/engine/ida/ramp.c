@@ -1,4 +1,5 @@
-/* Equilibrium of a network as an index-1 problem along its displacement: with u = x l, l the linear answer,
+/* Equilibrium of a network as an index-1 problem along its displacement: with u = x l, l the linear answer or the size of the
+ * film, whichever is smaller,
  *
  *     dx/dtau = 1,   [ R(u) - t F(u) ] / F(0) = 0,
  *
@@ -18,6 +19,7 @@ struct dea_ramp {
     dea_integrator integrator;
     dea_balance *balance; /* borrowed for one solve, as all below */
     double symbol;
+    double accuracy;  /* of u, relative [1] */
     double length;    /* l, signed as u [m] */
     double load;      /* F(0) [N] */
     double stiffness; /* K_0 = R'(0) [N/m] */
@@ -87,25 +89,46 @@ void dea_ramp_close(dea_ramp *ramp)
     }
 }
 
-/* Starts at rest, where a linear film has dt/dx = 1; steps move the stretch by 5 %, or u by 0.1 % of the linear answer, at
- * most, so that no fold is stepped over. */
+/* Starts at rest, where dt/dx is K_0 l/F(0); steps move the stretch by 5 % at most, so that no fold is stepped over. */
 static bool start(dea_ramp *ramp, double tolerance, double end)
 {
     dea_integrator *m = &ramp->integrator;
     const dea_sundials *sun = m->sun;
-    const double longest = fmax(0.05 * dea_balance_length(ramp->balance) / fabs(ramp->length), 1e-3);
+    const double longest = 0.05 * dea_balance_length(ramp->balance) / fabs(ramp->length);
     sun->N_VConst(0.0, m->y);
     sun->N_VConst(1.0, m->yp);
+    NV_DATA_S(m->yp)[SHARE] = ramp->stiffness * ramp->length / ramp->load;
     sun->N_VConst(tolerance, m->tolerance);
     return sun->IDAReInit(m->ida, 0.0, m->y, m->yp) == IDA_SUCCESS &&
            sun->IDASVtolerances(m->ida, tolerance, m->tolerance) == IDA_SUCCESS &&
            sun->IDASetMaxStep(m->ida, longest) == IDA_SUCCESS && sun->IDASetStopTime(m->ida, end) == IDA_SUCCESS;
 }
 
+/* From rest to the answer, a fold or the end; false where IDA gives up, as where the load turns so steeply, just before the
+ * chains are straight, that the rounding of u outweighs the tolerance of its share. A coarser one then does: what it leaves open
+ * of u is little, which the network itself confirms. */
+static bool follow(dea_ramp *ramp, double tolerance, double end, dea_row *row)
+{
+    dea_integrator *m = &ramp->integrator;
+    double tau = 0.0;
+    int found[ROOTS] = {0, 0};
+    const int code = start(ramp, tolerance, end) ? m->sun->IDASolve(m->ida, end, &tau, m->y, m->yp, IDA_NORMAL) : IDA_ILL_INPUT;
+    if (code == IDA_ROOT_RETURN && m->sun->IDAGetRootInfo(m->ida, found) == IDA_SUCCESS && found[FULL_LOAD]) {
+        const double u = NV_DATA_S(m->y)[PLACE] * ramp->length;
+        if (tolerance <= ramp->accuracy) {
+            dea_balance_fill(ramp->balance, ramp->symbol, u, row);
+        } else {
+            (void)dea_balance_accept(ramp->balance, ramp->symbol, u, ramp->accuracy, row);
+        }
+    } else if (code >= 0) {
+        row->state = DEA_STATE_PULL_IN; /* a fold, or the end of the film */
+    }
+    return code >= 0;
+}
+
 void dea_ramp_solve(dea_ramp *ramp, dea_balance *balance, double symbol, double accuracy, dea_row *row)
 {
     const double tolerance = fmin(1e-6, fmax(2e-5 * accuracy, 1e-12));
-    dea_integrator *m = &ramp->integrator;
     *row = dea_row_failed();
     if (!dea_balance_valid(balance, symbol)) {
         return;
@@ -121,16 +144,13 @@ void dea_ramp_solve(dea_ramp *ramp, dea_balance *balance, double symbol, double 
     }
     ramp->balance = balance;
     ramp->symbol = symbol;
+    ramp->accuracy = accuracy;
     ramp->load = rest.load;
     ramp->stiffness = rest.elastic_slope;
-    ramp->length = rest.load / rest.elastic_slope;
+    const double linear = rest.load / rest.elastic_slope;
+    ramp->length = copysign(fmin(fabs(linear), dea_balance_length(balance)), linear);
     const double end = dea_balance_end(balance) / fabs(ramp->length);
-    double tau = 0.0;
-    int found[ROOTS] = {0, 0};
-    const int code = start(ramp, tolerance, end) ? m->sun->IDASolve(m->ida, end, &tau, m->y, m->yp, IDA_NORMAL) : IDA_ILL_INPUT;
-    if (code == IDA_ROOT_RETURN && m->sun->IDAGetRootInfo(m->ida, found) == IDA_SUCCESS && found[FULL_LOAD]) {
-        dea_balance_fill(balance, symbol, NV_DATA_S(m->y)[PLACE] * ramp->length, row);
-    } else if (code >= 0) {
-        row->state = DEA_STATE_PULL_IN; /* a fold, or the end of the film */
+    if (!follow(ramp, tolerance, end, row) && !follow(ramp, 1e3 * tolerance, end, row)) {
+        (void)follow(ramp, 1e6 * tolerance, end, row);
     }
 }

@@ -110,13 +110,23 @@ static double next_share(double error, double accuracy)
     return fmin(first_share, fmax(1e-3, pow(accuracy / (2.0 * safety * error), 1.0 / order)));
 }
 
+/* What the estimate of two runs must lie below: an undamped film that bounces off its narrow annulus errs by bursts there, which
+ * hardly fall from one tolerance to the next, so that both runs share some of it too. */
+static double bar(const dea_flight *flight, double accuracy)
+{
+    const dea_dynamics *d = flight->motion.dynamics;
+    return d->mass > 0.0 && !d->linear && accuracy > fine ? margin * accuracy : accuracy;
+}
+
 /* Leaves the better run of the last two in traces[1]; false where the accuracy was not reached. A run that broke off is good up
  * to there. */
 static bool refine(dea_flight *flight, const dea_scales *scales, double accuracy, dea_trace traces[2], dea_summary *summary,
                    dea_rate_errors *rates)
 {
     double tolerance = first_tolerance(flight, scales, accuracy);
+    const double enough = bar(flight, accuracy);
     double share = first_share;
+    bool good = false;
     flight->loosest = tolerance;
     dea_flight_run(flight, tolerance, &traces[1], NULL);
     for (int i = 0; i < MOST_FITS && dea_flight_fit(flight); i++) {
@@ -139,12 +149,13 @@ static bool refine(dea_flight *flight, const dea_scales *scales, double accuracy
         const double worst = fmax(apart.answer * trust, least);
         summary->error = fmax(apart.displacement * trust, least);
         *rates = (dea_rate_errors){apart.rates.velocity * trust, apart.rates.current * trust};
-        if ((comparable && worst <= accuracy && !doubtful) || failed) {
-            return worst <= accuracy;
+        good = worst <= accuracy && (failed || (comparable && !doubtful));
+        if ((good && worst <= enough) || failed) {
+            return good;
         }
-        share = doubtful ? towards : comparable ? next_share(apart.answer * shrinks, accuracy) : first_share;
+        share = doubtful ? towards : comparable ? next_share(apart.answer * shrinks, enough) : first_share;
     }
-    return false;
+    return good;
 }
 
 /* Rows of a trace; where it ended, or a row is past the film, all that follow are refused. */

@@ -340,7 +340,79 @@ static dea_status refine_once(const dea_route *route, levels *l, double fineness
     return status;
 }
 
-static dea_status refine(const dea_route *route, levels *l, dea_summary *summary, dea_error *error)
+/* A trial of the begin of a run whose ring is not linear: the phase that it loses shows in two runs, and how it grows is known. Time
+ * steps of its first run, work of two whole runs from which on it is worth that, and what its estimate may be too large by. */
+static const double trial_steps = 1.5e4;
+static const double trial_work = 5e5;
+static const double trial_doubt = 3.0;
+
+/* The begin of the pieces with so many points, in @p pieces, which has room for all; the time that it rings [s]. */
+static double cut_trial(const dea_pieces *all, double points, dea_pieces *begin)
+{
+    begin->points = 0.0;
+    begin->count = 0;
+    while (begin->count < all->count && begin->points < points) {
+        dea_piece piece = all->pieces[begin->count];
+        const double length = fmin(piece.to - piece.from, (points - begin->points) * piece.step);
+        piece.to = length < piece.to - piece.from ? piece.from + length : piece.to;
+        begin->points += length / piece.step;
+        begin->pieces[begin->count++] = piece;
+    }
+    return dea_pieces_ringing(begin);
+}
+
+/* Error of two runs over the begin. */
+static dea_status try_begin(const dea_route *route, double fineness, levels *l, dea_error *error)
+{
+    dea_status status = dea_track_run(route, fineness, &l->coarse, error);
+    if (status == DEA_OK) {
+        status = dea_track_run(route, 0.5 * fineness, &l->fine, error);
+    }
+    if (status == DEA_OK) {
+        l->runs = 2;
+        judge(route, l);
+    }
+    free(l->coarse.points);
+    free(l->fine.points);
+    return status;
+}
+
+/* Refuses a ring that is not linear where its begin tells that it takes too long: of two runs the phase error grows with the time
+ * that it rings, at most that in which its energy falls to 1/e, and every finer run takes 16 times off. */
+static dea_status afford_ring(const dea_route *route, levels *l, const dea_pace *pace, double fineness, double *spent, dea_error *error)
+{
+    const double wanted = route->scene->accuracy, two = work_of(route, fineness) + work_of(route, 0.5 * fineness);
+    if (route->dynamics->linear || pace->omega == 0.0 || two < trial_work) {
+        return DEA_OK;
+    }
+    dea_pieces begin = {.pieces = malloc(route->pieces->count * sizeof *begin.pieces)};
+    if (!begin.pieces) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for the pieces of a run");
+    }
+    const double life = pace->decay > 0.0 ? 0.5 / pace->decay : (double)INFINITY;
+    const double rung = fmin(life, cut_trial(route->pieces, trial_steps * fineness, &begin));
+    const double grows = rung > 0.0 ? fmin(life, dea_pieces_ringing(route->pieces)) / rung : 1.0;
+    dea_route trial = *route;
+    trial.pieces = &begin;
+    dea_status status = try_begin(&trial, fineness, l, error);
+    *spent += work_of(&trial, fineness) + work_of(&trial, 0.5 * fineness);
+    const double expected = l->error * fmax(grows, 1.0);
+    const double runs = 2.0 + (isfinite(expected) ? fmax(0.0, ceil(log(expected / trial_doubt / wanted) / log(16.0))) : 0.0);
+    const bill b = {.steps = route->pieces->points / fineness * exp2(runs - 1.0),
+                    .work = *spent + work_of(route, fineness) * (exp2(runs) - 1.0)};
+    if (status == DEA_OK && !is_affordable(&b, *spent)) {
+        char why[200];
+        snprintf(why, sizeof why, "the ring of this film would lose a phase of some %.1g at %.2g time steps, the scene wants %g", expected,
+                 2.0 * route->pieces->points / fineness, wanted);
+        status = refuse(&b, why, error);
+    }
+    free(begin.pieces);
+    l->coarse = l->fine = (dea_track){0};
+    l->error = INFINITY;
+    return status;
+}
+
+static dea_status refine(const dea_route *route, levels *l, const dea_pace *pace, dea_summary *summary, dea_error *error)
 {
     double fineness = first_fineness(route->scene);
     double spent = 0.0;
@@ -350,6 +422,7 @@ static dea_status refine(const dea_route *route, levels *l, dea_summary *summary
     if (!l->before.points) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for the samples of a run");
     }
+    status = afford_ring(route, l, pace, fineness, &spent, error);
     for (l->runs = 1; status == DEA_OK && !done; l->runs++) {
         status = afford(route, l, fineness, spent, error);
         if (status == DEA_OK) {
@@ -542,7 +615,7 @@ static dea_status run_on(dea_route *route, dea_sample *samples, dea_summary *sum
         status = can_see_branches(route, error);
     }
     if (status == DEA_OK) {
-        status = refine(route, &l, summary, error);
+        status = refine(route, &l, &pace, summary, error);
     }
     if (status == DEA_OK) {
         fill_samples(route, &l, samples);

@@ -106,11 +106,12 @@ asan-run:
 	@JOBS=$(JOBS) DEASPICE=$(abspath $(BUILD))/deaspice ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 \
 	LSAN_OPTIONS=suppressions=$(abspath tests/leaks.supp):print_suppressions=0 tests/run asan $(UNIT_PROGRAMS)
 
-# libFuzzer on the readers of scenes and of tables; FUZZ_SECONDS=n for longer.
+# libFuzzer on the readers of scenes and of tables, side by side; FUZZ_SECONDS=n for longer.
 FUZZ_SECONDS ?= 60
 FUZZERS := scene table
 FUZZ = clang $(filter-out -MMD -MP,$(ALL_CFLAGS)) -O1 -g -fsanitize=fuzzer,address,undefined
-fuzz: $(FUZZERS:%=fuzz-%)
+fuzz:
+	@$(MAKE) --no-print-directory -j$(JOBS) $(FUZZERS:%=fuzz-%)
 
 fuzz-%: $(BUILD)/fuzz/%_fuzz
 	@mkdir -p $(BUILD)/fuzz/$*

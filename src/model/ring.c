@@ -181,19 +181,27 @@ static ring_strains strains_of(const dea_symbols *symbols, dea_expr disc)
     return e;
 }
 
-/* The Cauchy stress at rest on levers that change: with sigma = sigma_pre everywhere their forces at rest cancel, and
- *
- *     G = -u pi H sigma_pre/lambda_pre^2 [ 2/(1 + e) + c/(1 + e1) + 1/(c (1 + e2)) ],   c = (1 + B)/(1 - B). */
-static dea_expr tension_of(const dea_symbols *symbols, const ring_strains *e)
+/* Levers of the three stresses: 2 pi A H/lambda and pi H (F +- A)/lambda_a [m^2]. */
+typedef struct ring_levers {
+    dea_expr disc, radial, hoop;
+} ring_levers;
+
+static ring_levers levers_of(const dea_symbols *symbols, const ring_strains *e)
 {
     dea_pool *pool = symbols->pool;
     const dea_expr one = NUM(1.0);
-    const dea_expr c = DIV(ADD(one, symbols->coverage), SUB(one, symbols->coverage));
-    const dea_expr rest = DIV(dea_symbols_rest_stress(symbols), SQUARE(symbols->prestretch)); /* sigma_pre/lambda_pre^2 */
-    const dea_expr front = SCALE(DEA_PI, MUL(symbols->film_thickness, rest));
-    const dea_expr sum =
-        ADD(DIV(NUM(2.0), ADD(one, e->disc)), ADD(DIV(c, ADD(one, e->radial)), DIV(one, MUL(c, ADD(one, e->hoop)))));
-    return NEG(MUL(MUL(front, sum), dea_expr_node(pool, 0)));
+    const dea_expr unit = SCALE(DEA_PI, DIV(MUL(symbols->frame_radius, symbols->film_thickness), SQUARE(symbols->prestretch)));
+    return (ring_levers){dea_hyperelastic_area(symbols, e->disc),
+                         DIV(MUL(unit, ADD(one, symbols->coverage)), ADD(one, e->radial)),
+                         DIV(MUL(unit, SUB(one, symbols->coverage)), ADD(one, e->hoop))};
+}
+
+/* sigma_pre on levers that change: at rest their forces cancel, and B = B_0/(1 + e) leaves -B e of each. */
+static dea_expr tension_of(const dea_symbols *symbols, const ring_strains *e, const ring_levers *lever)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_expr annulus = SUB(MUL(lever->radial, e->radial), MUL(lever->hoop, e->hoop));
+    return MUL(dea_symbols_rest_stress(symbols), SUB(annulus, MUL(lever->disc, e->disc)));
 }
 
 static void limit_tension(const dea_symbols *symbols, dea_network *network, const ring_strains *e)
@@ -210,22 +218,21 @@ static void limit_tension(const dea_symbols *symbols, dea_network *network, cons
     dea_network_taut(network, dot ? hoop : SUB(hoop, pull));
 }
 
-/* The principal Cauchy stresses with their levers, 2 pi A H/lambda and pi H (F +- A)/lambda_a. */
+/* The principal Cauchy stresses with their levers. */
 static void build(const dea_symbols *symbols, dea_network *network)
 {
     dea_pool *pool = symbols->pool;
     const dea_expr one = NUM(1.0);
     const ring_strains e = strains_of(symbols, network->strain);
-    const dea_expr unit = SCALE(DEA_PI, DIV(MUL(symbols->frame_radius, symbols->film_thickness), SQUARE(symbols->prestretch)));
-    const dea_expr outer = MUL(unit, ADD(one, symbols->coverage)), inner = MUL(unit, SUB(one, symbols->coverage));
+    const ring_levers lever = levers_of(symbols, &e);
     dea_network_add_stress(network, "n_disc", "disc, sigma - sigma_pre [Pa] on 2 pi A H/lambda",
-                           dea_hyperelastic_change(symbols, e.disc), dea_hyperelastic_area(symbols, e.disc));
+                           dea_hyperelastic_change(symbols, e.disc), lever.disc);
     dea_network_add_stress(network, "n_radial", "annulus, radial sigma_pre - sigma [Pa] on pi H (F + A)/lambda",
-                           NEG(dea_hyperelastic_principal(symbols, e.radial, e.hoop)), DIV(outer, ADD(one, e.radial)));
+                           NEG(dea_hyperelastic_principal(symbols, e.radial, e.hoop)), lever.radial);
     dea_network_add_stress(network, "n_hoop", "annulus, hoop sigma - sigma_pre [Pa] on pi H (F - A)/lambda",
-                           dea_hyperelastic_principal(symbols, e.hoop, e.radial), DIV(inner, ADD(one, e.hoop)));
+                           dea_hyperelastic_principal(symbols, e.hoop, e.radial), lever.hoop);
     dea_network_add(network, DEA_ROLE_TENSION, "n_tension", "pre-stress sigma_pre on the change of these areas [N]",
-                    tension_of(symbols, &e));
+                    tension_of(symbols, &e, &lever));
     const dea_expr rest = MUL(dea_symbols_pressure(symbols), SQUARE(SQUARE(symbols->prestretch)));
     const dea_expr force = MUL(MUL(dea_symbols_cross_section(symbols), rest), MUL(ADD(one, e.disc), e.area));
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force U^2/2 dC/du of the true area [N]",

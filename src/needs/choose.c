@@ -5,6 +5,7 @@
 
 #include "deaspice/needs.h"
 #include "engine/line.h"
+#include "needs/probes.h"
 #include "needs/trial.h"
 
 static const double safety = 1.5;       /* bound over the largest error of the probes */
@@ -12,50 +13,18 @@ static const double trial_share = 0.03; /* of the model error: what a run may be
 
 enum { VOLTAGES = 4, MOST_MODELS = 16 };
 
-/* ---- probes: places spread evenly over every axis, its ends included */
-
-static size_t probes_of_axis(const dea_scene *scene, size_t axis)
+/* Most probes of an axis. */
+static size_t most_probes(const dea_scene *scene)
 {
     static const size_t many[] = {17, 17, 9, 5};
-    const size_t wanted = scene->axis_count < 4 ? many[scene->axis_count] : scene->axis_count < 7 ? 3 : 2;
-    return wanted < scene->axes[axis].count ? wanted : scene->axes[axis].count;
-}
-
-static size_t probe_count(const dea_scene *scene)
-{
-    size_t count = 1;
-    for (size_t i = 0; i < scene->axis_count; i++) {
-        count *= probes_of_axis(scene, i);
-    }
-    return count;
-}
-
-/* The scene at a probe; shares what the scene owns. */
-static dea_scene scene_at(const dea_scene *scene, size_t probe)
-{
-    dea_scene here = *scene;
-    for (size_t i = scene->axis_count; i-- > 0;) {
-        const dea_axis *axis = &scene->axes[i];
-        const size_t count = probes_of_axis(scene, i);
-        const size_t place = count > 1 ? probe % count * (axis->count - 1) / (count - 1) : 0;
-        dea_axis_set(axis, &here, axis->values[place]);
-        probe /= count;
-    }
-    return here;
+    return scene->axis_count < 4 ? many[scene->axis_count] : scene->axis_count < 7 ? 3 : 2;
 }
 
 /* ---- statics */
 
 static dea_row row_of(const dea_scene *scene, const dea_model *model)
 {
-    dea_point point;
-    dea_row row = dea_row_failed();
-    dea_film_prepare(scene, &point.film);
-    dea_point_place(scene, &point);
-    if (dea_point_valid(&point)) {
-        model->solve(&point, 1e-3 * scene->model_error, &row);
-    }
-    return row;
+    return dea_probe_row(scene, model, 1e-3 * scene->model_error);
 }
 
 /* Relative error of the strain; infinite where the states differ. */
@@ -214,11 +183,11 @@ static dea_status error_at(const dea_scene *here, const dea_model *model, const 
 static dea_status bound_of(const dea_scene *scene, const dea_model *model, const dea_model *truth, double enough, double *bound,
                            dea_error *error)
 {
-    const size_t count = probe_count(scene);
+    const size_t count = dea_probe_count(scene, most_probes(scene));
     *bound = 0.0;
     for (size_t i = 0; model != truth && i < count && *bound <= enough; i++) {
         double change = 0.0;
-        const dea_scene here = scene_at(scene, i);
+        const dea_scene here = dea_probe_scene(scene, most_probes(scene), i);
         const dea_status status = error_at(&here, model, truth, enough, &change, error);
         if (status != DEA_OK && status != DEA_ERROR_USAGE) {
             return status;

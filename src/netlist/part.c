@@ -421,13 +421,13 @@ static void write_numbers(const part *p)
 
 /* The current of the film is that of a capacitor, without a gain: what a simulator adds to nodes and pivots (gmin, rshunt,
  * cshunt) stays what it is. v(plate) makes it a voltage, whose tolerance, 1e-6, is one of 1 nA, which the digits of kilovolts can
- * keep in short steps; fed back into v(q), it leaves the capacitor its whole voltage. A conductance has no noise, as a resistor
+ * keep in short steps; fed back into v(film), it leaves the capacitor its whole voltage. A conductance has no noise, as a resistor
  * would. */
 static void write_port(const part *p)
 {
-    line(p, "* film: v(q) = charge/c_rest on a capacitor of c_rest, whose current is d(C U)/dt; v(plate) is this current [mA]");
-    source(p, DEA_VOLTAGE, "charge", "q", "0", "v(plate)+[ok]*v(p,n)*[]/[c_rest]", p->capacitance);
-    line(p, ".param i_film={1e-3*many}\ncfilm q plate {c_rest}\ngsense plate 0 plate 0 1e-3\ngfilm p n plate 0 {i_film}");
+    line(p, "* film: v(film) = charge/c_rest on a capacitor of c_rest, whose current is d(C U)/dt; v(plate) is this current [mA]");
+    source(p, DEA_VOLTAGE, "charge", "film", "0", "v(plate)+[ok]*v(p,n)*[]/[c_rest]", p->capacitance);
+    line(p, ".param i_film={1e-3*many}\ncfilm film plate {c_rest}\ngsense plate 0 plate 0 1e-3\ngfilm p n plate 0 {i_film}");
     line(p, "* conductance of the leakage [S], 0 without a resistance");
     line(p, ".param leak={many*r_leak/(r_leak*r_leak+1e-30)}\ngleak p n p n {leak}");
     line(p, "* electrostatic force [N] onto the edge, (1/2) U^2 dC/du");
@@ -534,6 +534,9 @@ static void write_outputs(const part *p)
     line(p, "* to be read: strain [1], true field [V/um]");
     line(p, "estrain strain 0 u 0 {per_um}");
     source(p, DEA_VOLTAGE, "field", "field", "0", "[ok]*1e-6*[]*v(p,n)", p->field);
+    line(p, "* capacitance [pF] and charge [nC] of all films side by side");
+    line(p, ".param c_scale={1e12*many}\n.param q_scale={1e9*many*c_rest}\nestored q 0 film plate {q_scale}");
+    source(p, DEA_VOLTAGE, "capacity", "c", "0", "[c_scale]*[]", p->capacitance);
     line(p, "* bad = 1: a parameter out of its range, or no stable equilibrium of the relaxed film here (pull-in)");
     source(p, DEA_VOLTAGE, "outside", "outside", "0", "max(v(u)-[u_high],[u_low]-v(u))");
     if (p->linear) {
@@ -775,7 +778,7 @@ static void write_preamble(const dea_dialect *dialect, const char *title, const 
         out,
         "* p, n: film. edge: v(edge) = velocity of the disc edge, outward [m/s], current = force [N]; the frame is node 0.\n"
         "* mass m [kg]: capacitor of m to 0. damper r [N s/m]: resistor of 1/r. spring: %s_spring. all parameters in SI units.\n"
-        "* to be read inside an instance x1, as v(x1%su): u [um], strain [1], force [N], field [V/um], bad, slack [0 or 1]\n",
+        "* to be read inside an instance x1, as v(x1%su): u [um], strain [1], force [N], field [V/um], c [pF], q [nC], bad,\n* slack [0 or 1]\n",
         prefix, dialect->inside);
 }
 

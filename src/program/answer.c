@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "model/models.h"
+#include "needs/nearness.h"
 #include "network/swing.h"
 #include "program/omissions.h"
 #include "support/number.h"
@@ -90,7 +91,8 @@ static void print_quantity(double value, const char *unit, int digits)
     fputs(dea_quantity_digits(value, unit, digits, text), stderr);
 }
 
-/* @p before, "coverage = 0.5, voltage = 4.5 kV"; what is to stand before a further number, @p before itself where there is no axis. */
+/* @p before, "coverage = 0.5, voltage = 4.5 kV"; what is to stand before a further number, @p before itself where there is no
+ * axis. */
 static const char *print_axes(const dea_scene *scene, const dea_spot *spot, const char *before)
 {
     size_t step = dea_scene_point_count(scene);
@@ -236,16 +238,58 @@ static void print_states(const dea_answer *answer, const dea_scene *scene)
     }
 }
 
-void dea_answer_print(const dea_answer *answer, const dea_scene *scene, size_t model)
+/* A deviation in percent, its sign told: two digits, or what is left below a hundredth of a percent. */
+static const char *deviation_text(char *text, double deviation)
+{
+    char number[DEA_NUMBER_LENGTH];
+    const bool tiny = fabs(deviation) < 1e-4;
+    snprintf(text, DEA_NUMBER_LENGTH, "%s%s %%", tiny || deviation < 0.0 ? "" : "+",
+             tiny ? "0.00" : dea_number_text(number, 100.0 * deviation, 2));
+    return text;
+}
+
+/* How far the model is from the membrane, at rest under the drive of the study. */
+static void print_nearness(const dea_scene *scene, const dea_model *model)
+{
+    static const char *const drives[] = {
+        [DEA_STUDY_SWEEP] = "", [DEA_STUDY_TRANSIENT] = " at rest under the largest voltage", [DEA_STUDY_AC] = " at the bias"};
+    char low[DEA_NUMBER_LENGTH], high[DEA_NUMBER_LENGTH];
+    dea_nearness near;
+    if (model->membrane || dea_nearness_measure(scene, model, &near, NULL) != DEA_OK || near.compared + near.unlike == 0) {
+        return;
+    }
+    fprintf(stderr, "  against the membrane (field)%s:", drives[scene->study]);
+    if (near.compared > 0) {
+        fprintf(stderr, " strain off by %s", deviation_text(low, near.low));
+        if (strcmp(low, deviation_text(high, near.high)) != 0) {
+            fprintf(stderr, " to %s", high);
+        }
+    }
+    if (near.unlike > 0) {
+        fprintf(stderr, "%s pull-in of one alone at %zu", near.compared > 0 ? "," : "", near.unlike);
+    }
+    if (!near.whole) {
+        fprintf(stderr, ", %zu of %zu points compared", near.compared + near.unlike, dea_scene_point_count(scene));
+    }
+    fputc('\n', stderr);
+}
+
+void dea_answer_print(const dea_answer *answer, const dea_scene *scene, size_t model, bool truth)
 {
     if (scene->study == DEA_STUDY_AC) {
         print_rest(answer, scene, scene->models[model]);
+        if (truth) {
+            print_nearness(scene, scene->models[model]);
+        }
         return;
     }
     if (scene->model_count > 1) {
         fprintf(stderr, "%s: ", scene->models[model]->name);
     }
     print_stroke(answer, scene);
+    if (truth) {
+        print_nearness(scene, scene->models[model]);
+    }
     print_rest(answer, scene, scene->models[model]);
     print_field(answer, scene);
     print_charge(answer, scene);

@@ -31,7 +31,8 @@ typedef struct dea_answer {
 dea_answer dea_answer_begin(void);
 /** Takes the rows of point number @p number, counted within its model. */
 void dea_answer_take(dea_answer *answer, const dea_layout *layout, size_t number, const void *point);
-/** Prints what model number @p model has shown on standard error; nothing of a frequency response but its electrical side. */
-void dea_answer_print(const dea_answer *answer, const dea_scene *scene, size_t model);
+/** Prints what model number @p model has shown on standard error, of a frequency response its electrical side only, and with
+ * @p truth how far the model is from the membrane. */
+void dea_answer_print(const dea_answer *answer, const dea_scene *scene, size_t model, bool truth);
 
 #endif

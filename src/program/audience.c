@@ -78,6 +78,7 @@ dea_status dea_audience_open(const dea_arguments *arguments, const dea_scene *sc
     const dea_status status = open_outputs(arguments, scene, audience, error);
     if (status == DEA_OK) {
         audience->findings = dea_findings_begin(scene, averages_stream(arguments));
+        audience->findings.alone = arguments->no_truth;
     }
     return status;
 }

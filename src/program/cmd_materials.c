@@ -96,6 +96,10 @@ static void print_moduli(const dea_material *material, double to)
     for (size_t i = 0; i < sizeof stretches / sizeof stretches[0] && stretches[i] <= to; i++) {
         double stretch = stretches[i];
         const dea_stress stress = dea_law_stress(material->law, constants, stretch, stretch);
+        if (!isfinite(stress.p1)) {
+            printf("%10g %12s\n", stretch, "past the end of the energy: no film");
+            break;
+        }
         printf("%10g %12.1f %12.1f %12.1f %12.1f\n", stretch, stress.p1, dea_law_modulus(material->law, constants, stretch),
                stress.w11, stress.w12);
     }

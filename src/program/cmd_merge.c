@@ -106,6 +106,7 @@ const dea_command dea_command_merge = {
             "      --model M         as in the runs\n"
             "      --set KEY=VALUE   as in the runs\n"
             "      --full            as in the runs\n"
+            "      --no-truth        do not hold the models against the membrane (field)\n"
             "      --force           a target may overwrite a file that was read\n"
             "      --no-files        refuse a scene that names other files (material, waveform)\n"
             "  -q, --quiet           no summary and no progress\n"

@@ -79,6 +79,7 @@ const dea_command dea_command_run = {
             "      --set KEY=VALUE   change a value of the scene, e.g. actuator.prestretch=1.3;\n"
             "                        may be repeated\n"
             "      --full            a transient leaves out nothing, whatever its accuracy\n"
+            "      --no-truth        do not hold the models against the membrane (field)\n"
             "  -j, --jobs N          worker processes, default auto: one per core\n"
             "      --shard I/N       solve only part I of N and write it to FILE, which deaspice\n"
             "                        merge joins with the others\n"

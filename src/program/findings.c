@@ -383,7 +383,7 @@ static void print_responses(const dea_findings *findings)
 void dea_findings_print(const dea_findings *findings, double seconds)
 {
     for (size_t i = 0; i < findings->scene->model_count && findings->points > 0; i++) {
-        dea_answer_print(&findings->answers[i], findings->scene, i);
+        dea_answer_print(&findings->answers[i], findings->scene, i, !findings->alone);
     }
     if (findings->scene->study == DEA_STUDY_TRANSIENT) {
         print_motions(findings);

@@ -15,6 +15,7 @@ typedef struct dea_findings {
     const dea_scene *scene;
     dea_layout layout;
     FILE *averages;                 /**< where they are printed, NULL: nowhere */
+    bool alone;                     /**< models are not held against the membrane */
     size_t points;                  /**< taken so far */
     struct {
         const dea_engine *engine; /**< NULL: none further */

@@ -289,6 +289,7 @@ static const dea_option entries[] = {
     COUNT("jobs", 'j', "N", DEA_TAKES_JOBS, take_jobs, jobs, 1024, "a whole number up to 1024, or auto", "worker processes"),
     FLAG("quiet", 'q', DEA_TAKES_QUIET, quiet, "no summary and no progress"),
     FLAG("full", 0, DEA_TAKES_FULL, full, "leave out nothing"),
+    FLAG("no-truth", 0, DEA_TAKES_LOG, no_truth, "do not hold models against the membrane"),
     NUMBER("tolerance", "T", DEA_TAKES_TOLERANCE, tolerance, "1", 0, false, 1, "a number between 0 and 1, for example 1e-6",
            "difference that still agrees"),
     TEXT("uniaxial", 0, "FILE", NULL, DEA_TAKES_FIT, take_uniaxial, operands, "data of a uniaxial test"),

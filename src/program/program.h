@@ -34,7 +34,7 @@ typedef enum dea_takes {
     DEA_TAKES_FULL = 1 << 11,    /**< --full */
     DEA_TAKES_BENCH = 1 << 12,   /**< --runs, --budget */
     DEA_TAKES_CURVES = 1 << 13,  /**< --to */
-    DEA_TAKES_LOG = 1 << 14      /**< --log */
+    DEA_TAKES_LOG = 1 << 14      /**< --log, --no-truth */
 } dea_takes;
 
 /** Mode of a data file as the command line gives it. */
@@ -58,7 +58,7 @@ typedef struct dea_arguments {
     dea_plot_options picture; /**< --size, --log; zeroed: not given */
     size_t jobs; /**< 0: not given; "auto" is already the number of cores */
     bool quiet;
-    bool full;
+    bool full, no_truth;
     bool force;       /**< targets may overwrite inputs */
     bool no_files;    /**< scenes may name no files */
     double tolerance; /**< NAN: not given */

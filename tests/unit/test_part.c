@@ -170,7 +170,7 @@ static FILE *begin_moving_circuit(double step, const char *uic)
     fputs("vsource a 0 pwl(0 0 1e-3 0 1.2e-3 4000)\n", file);
     for (int i = 0; i < KINDS; i++) {
         const dea_scene scene = moving_scene(&kinds[i]);
-        fprintf(file, ".save v(x%d.u) v(e%d) v(x%d.q) v(b%d) i(vi%d)\n", i, i, i, i, i);
+        fprintf(file, ".save v(x%d.u) v(e%d) v(x%d.q) v(x%d.c) v(b%d) i(vi%d)\n", i, i, i, i, i, i);
         fprintf(file, "r%d a c%d 2e6\nvi%d c%d b%d 0\nx%d b%d 0 e%d %s", i, i, i, i, i, i, i, i, kinds[i].name);
         write_parameters(file, &scene);
     }
@@ -200,13 +200,17 @@ static void compare_motion(const child_run *run, int kind)
 {
     static dea_sample samples[SAMPLES];
     const dea_scene scene = moving_scene(&kinds[kind]);
-    double peak = 0.0, current = 0.0;
-    char u[32], velocity[32], i[32];
+    double peak = 0.0, current = 0.0, most = 0.0;
+    char u[32], velocity[32], i[32], q[32], c[32], b[32];
     snprintf(u, sizeof u, "v(x%d.u)", kind);
     snprintf(velocity, sizeof velocity, "v(e%d)", kind);
     snprintf(i, sizeof i, "i(vi%d)", kind);
+    snprintf(q, sizeof q, "v(x%d.q)", kind);
+    snprintf(c, sizeof c, "v(x%d.c)", kind);
+    snprintf(b, sizeof b, "v(b%d)", kind);
     fly(&scene, samples);
     for (int k = 0; k < SAMPLES; k++) {
+        most = fmax(most, fabs(samples[k].charge));
         peak = fmax(peak, fabs(samples[k].displacement));
         current = fmax(current, fabs(samples[k].current));
     }
@@ -214,6 +218,9 @@ static void compare_motion(const child_run *run, int kind)
         const double time = samples[k].time;
         assert_near(1e-6 * at_time(run, u, velocity, 1e6, time), samples[k].displacement, 1e-6 * peak);
         assert_near(at_time(run, i, NULL, 0.0, time), samples[k].current, 2e-6 * current);
+        const double film = 1e-12 * at_time(run, c, NULL, 0.0, time) * at_time(run, b, NULL, 0.0, time);
+        assert_near(1e-9 * at_time(run, q, NULL, 0.0, time), samples[k].charge, 2e-6 * most);
+        assert_near(film, samples[k].charge, 2e-6 * most);
         if (kind == 1) {
             assert_relative(1e-3 * at_time(run, "v(x1.focal)", NULL, 0.0, time), samples[k].focal_length, 1e-6);
         }
@@ -453,8 +460,8 @@ static void compatibility_modes_change_no_number(void **state)
 static void write_multiples(FILE *file, const char *part)
 {
     fprintf(file, ".subckt stack p n edge\nxin p n edge %s " FILM "\n.ends stack\n", part);
-    fprintf(file, "x0 b0 0 e0 %s " FILM " m=3\nx1 b1 0 e1 %s " FILM "\nxp b1 0 e1 %s " FILM "\nxq b1 0 e1 %s " FILM "\n", part, part,
-            part, part);
+    fprintf(file, "x0 b0 0 e0 %s " FILM " m=3\nx1 b1 0 e1 %s " FILM "\nxp b1 0 e1 %s " FILM "\nxq b1 0 e1 %s " FILM "\n", part,
+            part, part, part);
     fputs("x2 b2 0 e2 stack m=3\nxs0 e0 0 dea_spring stiffness=90 m=2\n.save v(x0.u) v(x1.u) v(x2.xin.u)\n", file);
     for (int i = 0; i < 3; i++) {
         fprintf(file, "r%d a b%d 5e5\nc%d e%d 0 3e-4\n.save v(b%d)\n", i, i, i, i, i);
@@ -488,17 +495,17 @@ static void m_parts_in_one_are_as_many_side_by_side(void **state)
 static void options_of_the_circuit_change_no_answer(void **state)
 {
     (void)state;
-    static const char *const options[] = {"",           "rshunt=1e12",  "cshunt=1e-13", "gmin=1e-15",   "gmin=1e-9",
-                                          "method=gear", "abstol=1e-10", "vntol=1e-4",   "chgtol=1e-16", "pivrel=0.1",
-                                          "xmu=0.49",    "itl1=50",      "noopiter",     "trtol=1"};
+    static const char *const options[] = {
+        "",           "rshunt=1e12",  "cshunt=1e-13", "gmin=1e-15", "gmin=1e-9", "method=gear", "abstol=1e-10",
+        "vntol=1e-4", "chgtol=1e-16", "pivrel=0.1",   "xmu=0.49",   "itl1=50",   "noopiter",    "trtol=1"};
     double first[KINDS];
     for (size_t o = 0; o < sizeof options / sizeof *options; o++) {
         child_run run;
         FILE *file = begin_circuit();
         fprintf(file, "va a 0 pulse(1000 3000 1e-3 1e-6 1e-6 1 2)\n.options reltol=1e-4 %s\n", options[o]);
         for (int i = 0; i < KINDS; i++) {
-            fprintf(file, ".save v(x%d.u)\nr%d a b%d 1e6\nx%d b%d 0 e%d %s density=1080 retardation=%g g1=0.2 tau1=0.1\n", i, i, i,
-                    i, i, i, kinds[i].name, i % 2 ? 1e-3 : 1e-4);
+            fprintf(file, ".save v(x%d.u)\nr%d a b%d 1e6\nx%d b%d 0 e%d %s density=1080 retardation=%g g1=0.2 tau1=0.1\n", i, i,
+                    i, i, i, i, kinds[i].name, i % 2 ? 1e-3 : 1e-4);
         }
         fputs(".tran 1e-4 2e-2 0 1e-4\n", file);
         run_circuit(file, &run);
@@ -564,6 +571,50 @@ static void parameters_out_of_range_are_flagged_and_move_nothing(void **state)
     assert_true(child_value(&run, "v(xgood.bad)", 0) == 0.0);
     assert_true(child_value(&run, "v(xlens.bad)", 0) == 1.0); /* no cap is so round */
     assert_true(child_value(&run, "v(xflat.bad)", 0) == 1.0);
+    child_end(&run);
+}
+
+/* The constants of any law are parameters of its part, under their names. */
+static void a_part_of_any_law_stands_where_the_model_does(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *law;
+        double constants[DEA_LAW_CONSTANTS];
+        size_t entries;
+        const char *parameters;
+    } films[] = {{"neo_hookean", {44e3}, 1, "mu=44000"},
+                 {"mooney_rivlin", {16e3, 7.3e3}, 1, "c10=16000 c01=7300"},
+                 {"gent", {45e3, 12.0}, 1, "mu=45000 jm=12"},
+                 {"ogden", {43.4e3, 1.445, 84.2, 4.248}, 2, "mu1=43400 alpha1=1.445 mu2=84.2 alpha2=4.248"},
+                 {"arruda_boyce", {40e3, 5.99}, 1, "mu=40000 lambda_m=5.99"}};
+    static const char *const models[] = {"lumped", "lame", "coverage"};
+    enum { FILMS = sizeof films / sizeof *films, PARTS = 3 * FILMS };
+    double wanted[PARTS];
+    child_run run;
+    FILE *file = begin_circuit();
+    fputs("va a 0 1500\n.options reltol=1e-7\n.op\n", file);
+    for (int i = 0; i < PARTS; i++) {
+        char name[32];
+        dea_scene scene = paper_scene(i % 2 ? DEA_LENS : DEA_DOT, 1.3, 0.5, 1500.0);
+        scene.material.law = dea_law_find(films[i / 3].law);
+        memcpy(scene.material.constants, films[i / 3].constants, sizeof scene.material.constants);
+        scene.material.entry_count = films[i / 3].entries;
+        wanted[i] = solve_direct(&scene, models[i % 3]).displacement;
+        scene.material.constants[0] *= 2.0; /* the default, which the instance does not keep */
+        snprintf(name, sizeof name, "film%d", i);
+        assert_int_equal(dea_part_write(&scene, dea_model_find(models[i % 3]), name, dea_dialect_find("ngspice"), file, NULL),
+                         DEA_OK);
+        fprintf(file, ".save v(x%d.u) v(x%d.bad)\nx%d a 0 e%d %s %s\n", i, i, i, i, name, films[i / 3].parameters);
+    }
+    run_circuit(file, &run);
+    for (int i = 0; i < PARTS; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "v(x%d.u)", i);
+        assert_relative(1e-6 * child_value(&run, name, 0), wanted[i], 1e-6);
+        snprintf(name, sizeof name, "v(x%d.bad)", i);
+        assert_true(child_value(&run, name, 0) == 0.0);
+    }
     child_end(&run);
 }
 
@@ -673,8 +724,8 @@ static void parts_of_different_names_share_a_circuit(void **state)
         FILE *part = child_open(library, "w");
         assert_int_equal(dea_part_of_scene(&scene, scene.models[0], names[i], dea_dialect_find("ngspice"), part, &error), DEA_OK);
         fclose(part);
-        fprintf(file, "x%d a 0 e%d %s\nxk%d k%d 0 %s_spring\nxl%d e%d k%d %s_lever\n.save v(x%d.u) v(xk%d.u)\n", i, i, names[i], i, i,
-                names[i], i, i, i, names[i], i, i);
+        fprintf(file, "x%d a 0 e%d %s\nxk%d k%d 0 %s_spring\nxl%d e%d k%d %s_lever\n.save v(x%d.u) v(xk%d.u)\n", i, i, names[i],
+                i, i, names[i], i, i, i, names[i], i, i);
     }
     fputs("xp a 0 ep dea_dot_hyper\n.save v(xp.u)\n", file);
     run_circuit(file, &run);
@@ -689,7 +740,8 @@ static void parts_of_different_names_share_a_circuit(void **state)
 static void names_of_parts_are_those_that_simulators_take(void **state)
 {
     (void)state;
-    assert_true(dea_part_name_valid("a") && dea_part_name_valid("Soft_2") && dea_part_name_valid("abcdefghijklmnopqrstuvwxyz012345"));
+    assert_true(dea_part_name_valid("a") && dea_part_name_valid("Soft_2") &&
+                dea_part_name_valid("abcdefghijklmnopqrstuvwxyz012345"));
     assert_false(dea_part_name_valid("") || dea_part_name_valid("2soft") || dea_part_name_valid("_soft") ||
                  dea_part_name_valid("so ft") || dea_part_name_valid("soft\n.control") || dea_part_name_valid("soft.lib") ||
                  dea_part_name_valid("abcdefghijklmnopqrstuvwxyz0123456"));
@@ -757,11 +809,11 @@ static bool is_name(int c)
 /* Names that some simulator takes for a constant or a function, wherever they stand. */
 static bool is_reserved(const char *word, size_t length)
 {
-    static const char *const names[] = {"e",    "i",     "pi",    "c",   "time", "temp",  "temper", "hertz", "freq",    "omega",
-                                        "gmin", "vt",    "yes",   "no",  "true", "false", "kelvin", "boltz", "echarge", "planck",
-                                        "x",    "y",     "z",     "min", "max",  "abs",   "sqrt",   "exp",   "ln",      "log",
-                                        "sgn",  "sqr",   "gauss", "pow", "pwr",  "int",   "limit",  "table", "if",      "mc",
-                                        "ceil", "floor", "sin",   "cos", "tan"};
+    static const char *const names[] = {"e",       "i",      "pi",  "c",   "time", "temp",  "temper", "hertz",  "freq",
+                                        "omega",   "gmin",   "vt",  "yes", "no",   "true",  "false",  "kelvin", "boltz",
+                                        "echarge", "planck", "x",   "y",   "z",    "min",   "max",    "abs",    "sqrt",
+                                        "exp",     "ln",     "log", "sgn", "sqr",  "gauss", "pow",    "pwr",    "int",
+                                        "limit",   "table",  "if",  "mc",  "ceil", "floor", "sin",    "cos",    "tan"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         if (strlen(names[i]) == length && strncmp(names[i], word, length) == 0) {
             return true;
@@ -1006,6 +1058,7 @@ int main(void)
         cmocka_unit_test(m_parts_in_one_are_as_many_side_by_side),
         cmocka_unit_test(options_of_the_circuit_change_no_answer),
         cmocka_unit_test(parameters_out_of_range_are_flagged_and_move_nothing),
+        cmocka_unit_test(a_part_of_any_law_stands_where_the_model_does),
         cmocka_unit_test(a_film_past_pull_in_is_flagged),
         cmocka_unit_test(a_lever_of_minus_one_sets_two_dots_against_each_other),
         cmocka_unit_test(a_scene_becomes_a_part_with_its_numbers_and_a_harmless_title),

@@ -1,0 +1,92 @@
+/* How far a lumped model is said to be from the membrane, against the table of the film of the base paper at 4.5 kV. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "needs/nearness.h"
+
+#define FILM                                                                                                                     \
+    "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.1, film_thickness: 100 um, prestretch: 1.1}\n"                       \
+    "material: elastosil-2030\nmodel: lumped\n"
+#define STATIC "drive: {voltage: 4500 V}\n"
+
+static dea_nearness nearness_of(const char *text, const char *model)
+{
+    dea_scene scene;
+    dea_error error = {0};
+    dea_nearness near;
+    if (dea_scene_parse(text, strlen(text), "t", NULL, NULL, 0, NULL, &scene, &error) != DEA_OK) {
+        fail_msg("%s", error.message);
+    }
+    assert_int_equal(dea_nearness_measure(&scene, dea_model_find(model), &near, &error), DEA_OK);
+    dea_scene_free(&scene);
+    return near;
+}
+
+/* Strains of the membrane, of Eq. 22 and of Eq. 18 at pre-stretch 1.1, coverage 0.1. */
+static const double field = 0.03762647, lumped = 0.04028821, coverage = 0.04587737;
+
+static void a_point_is_off_as_its_table_says(void **state)
+{
+    (void)state;
+    const dea_nearness near = nearness_of(FILM STATIC "study: {sweep: {}}\n", "lumped");
+    assert_true(near.whole && near.compared == 1 && near.unlike == 0);
+    assert_true(fabs(near.low - (lumped / field - 1.0)) < 1e-6 && near.low == near.high);
+    const dea_nearness other = nearness_of(FILM STATIC "study: {sweep: {}}\n", "coverage");
+    assert_true(fabs(other.low - (coverage / field - 1.0)) < 1e-6);
+    const dea_nearness ring = nearness_of(FILM STATIC "study: {sweep: {}}\n", "ring");
+    assert_true(fabs(ring.low) < 1e-4 && ring.low != 0.0);
+}
+
+static void a_run_is_compared_under_its_largest_voltage(void **state)
+{
+    static const char *const texts[] = {
+        FILM
+        "drive: {waveform: {points: [[0 s, 0 V], [1 s, -4500 V], [2 s, 3 kV]]}}\nstudy: {transient: {until: 2 s, every: 1 s}}\n",
+        FILM "study: {ac: {from: 1 Hz, to: 10 Hz, bias: 4500 V}}\n",
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        const dea_nearness near = nearness_of(texts[i], "lumped");
+        assert_int_equal(near.compared, 1);
+        assert_true(fabs(near.low - (lumped / field - 1.0)) < 1e-6);
+    }
+    assert_int_equal(nearness_of(FILM "study: {ac: {from: 1 Hz, to: 10 Hz, bias: 0 V}}\n", "lumped").compared, 0);
+}
+
+static void a_sweep_is_compared_at_its_ends_and_between(void **state)
+{
+    (void)state;
+    const dea_nearness near = nearness_of(
+        FILM STATIC "study: {sweep: {coverage: {from: 0.1, to: 0.9, points: 81}, prestretch: [1.1, 1.2, 1.3]}}\n", "lumped");
+    assert_int_equal(near.compared, 15);
+    assert_false(near.whole);
+    assert_true(near.low < -0.2 && near.high > 0.07 && near.high < 0.2);
+}
+
+/* A soft film pulls in, but not by Eq. 22, which knows no fold. */
+static void pull_in_of_one_alone_is_counted(void **state)
+{
+    (void)state;
+    const dea_nearness near = nearness_of(
+        "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.3, film_thickness: 100 um, prestretch: 1.1}\n"
+        "material: {neo_hookean: {mu: 40 kPa}, permittivity: 4.7}\nmodel: lumped\ndrive: {voltage: 10 kV}\nstudy: {sweep: {}}\n",
+        "lumped");
+    assert_true(near.compared == 0 && near.unlike == 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_point_is_off_as_its_table_says),
+        cmocka_unit_test(a_run_is_compared_under_its_largest_voltage),
+        cmocka_unit_test(a_sweep_is_compared_at_its_ends_and_between),
+        cmocka_unit_test(pull_in_of_one_alone_is_counted),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -11,7 +11,7 @@
 #include "netlist/netlist.h"
 #include "network/balance.h"
 
-enum { RAMP_STEPS = 50, SHORTEST_SWEEP = 32, LONGEST_SWEEP = 100000 };
+enum { RAMP_STEPS = 50, FINEST_RAMP = 8 * RAMP_STEPS, SHORTEST_SWEEP = 32, LONGEST_SWEEP = 100000 };
 
 typedef struct visit_state {
     dea_ngspice *library;
@@ -81,7 +81,24 @@ static bool accept(line_job *job, size_t i, double u)
     return dea_balance_accept(&job->balance, symbol_at(job, i), u, 0.1 * job->scene->accuracy, row_at(job, i));
 }
 
-/* Solves one point alone, its load growing from rest. */
+/* Point i of a network of its own, its load growing from rest in so many steps. */
+static dea_status ramp(line_job *job, size_t i, dea_network *network, size_t steps, bool *accepted, dea_error *error)
+{
+    char *netlist = NULL;
+    dea_ngspice_result result = {0};
+    dea_netlist_study study = {.ramp = steps};
+    set_scales(job, i, &study);
+    dea_status status = dea_netlist_write(network, &study, &netlist, error);
+    if (status == DEA_OK) {
+        status = dea_ngspice_run(job->state->library, netlist, "edge", &result, error);
+    }
+    *accepted = status == DEA_OK && result.count == steps + 1 && accept(job, i, result.values[steps]);
+    free(result.values);
+    free(netlist);
+    return status;
+}
+
+/* Solves one point alone. A film that stretches to a multiple of itself is lost by coarse steps of the load. */
 static dea_status solve_alone(line_job *job, size_t i, dea_error *error)
 {
     double share, fold;
@@ -102,22 +119,11 @@ static dea_status solve_alone(line_job *job, size_t i, dea_error *error)
         dea_axis_set(job->line->axis, &here, symbol);
     }
     dea_network network;
-    char *netlist = NULL;
-    dea_ngspice_result result = {0};
-    dea_netlist_study study = {.ramp = RAMP_STEPS};
-    set_scales(job, i, &study);
+    bool accepted = false;
     dea_status status = dea_network_build(&here, job->state->model, NULL, &network, error);
-    if (status == DEA_OK) {
-        status = dea_netlist_write(&network, &study, &netlist, error);
+    for (size_t steps = RAMP_STEPS; status == DEA_OK && !accepted && steps <= FINEST_RAMP; steps *= FINEST_RAMP / RAMP_STEPS) {
+        status = ramp(job, i, &network, steps, &accepted, error);
     }
-    if (status == DEA_OK) {
-        status = dea_ngspice_run(job->state->library, netlist, "edge", &result, error);
-    }
-    if (status == DEA_OK && result.count == RAMP_STEPS + 1) {
-        (void)accept(job, i, result.values[RAMP_STEPS]);
-    }
-    free(result.values);
-    free(netlist);
     dea_network_free(&network);
     return status;
 }

@@ -11,7 +11,13 @@
 #include "netlist/netlist.h"
 #include "network/balance.h"
 
-enum { RAMP_STEPS = 50, FINEST_RAMP = 8 * RAMP_STEPS, SHORTEST_SWEEP = 32, LONGEST_SWEEP = 100000 };
+enum {
+    RAMP_STEPS = 50,
+    RAMP_REFINED = 16,
+    RAMP_STEPS_MOST = RAMP_STEPS * RAMP_REFINED * RAMP_REFINED,
+    SHORTEST_SWEEP = 32,
+    LONGEST_SWEEP = 100000
+};
 
 typedef struct visit_state {
     dea_ngspice *library;
@@ -81,8 +87,8 @@ static bool accept(line_job *job, size_t i, double u)
     return dea_balance_accept(&job->balance, symbol_at(job, i), u, 0.1 * job->scene->accuracy, row_at(job, i));
 }
 
-/* Point i of a network of its own, its load growing from rest in so many steps. */
-static dea_status ramp(line_job *job, size_t i, dea_network *network, size_t steps, bool *accepted, dea_error *error)
+/* Solves the network of one point with its load growing from rest in so many steps; *accepted says whether its answer passes. */
+static dea_status climb(line_job *job, size_t i, dea_network *network, size_t steps, bool *accepted, dea_error *error)
 {
     char *netlist = NULL;
     dea_ngspice_result result = {0};
@@ -98,7 +104,8 @@ static dea_status ramp(line_job *job, size_t i, dea_network *network, size_t ste
     return status;
 }
 
-/* Solves one point alone. A film that stretches to a multiple of itself is lost by coarse steps of the load. */
+/* Solves one point alone, its load growing from rest; where a step of it takes Newton's iteration past the film's end or to
+ * another equilibrium, in finer ones. */
 static dea_status solve_alone(line_job *job, size_t i, dea_error *error)
 {
     double share, fold;
@@ -121,8 +128,8 @@ static dea_status solve_alone(line_job *job, size_t i, dea_error *error)
     dea_network network;
     bool accepted = false;
     dea_status status = dea_network_build(&here, job->state->model, NULL, &network, error);
-    for (size_t steps = RAMP_STEPS; status == DEA_OK && !accepted && steps <= FINEST_RAMP; steps *= FINEST_RAMP / RAMP_STEPS) {
-        status = ramp(job, i, &network, steps, &accepted, error);
+    for (size_t steps = RAMP_STEPS; status == DEA_OK && !accepted && steps <= RAMP_STEPS_MOST; steps *= RAMP_REFINED) {
+        status = climb(job, i, &network, steps, &accepted, error);
     }
     dea_network_free(&network);
     return status;

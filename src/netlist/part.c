@@ -708,7 +708,7 @@ static dea_status write_part(part *p, const dea_scene *defaults, const dea_model
     write_header(p, name, list, dea_part_parameters(defaults, model, list));
     write_body(p, form_of(model));
     line(p, ".ends %s", name);
-    return DEA_OK;
+    return p->text.exhausted ? dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is written") : DEA_OK;
 }
 
 dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, const char *name, const dea_dialect *dialect,

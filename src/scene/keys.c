@@ -126,7 +126,7 @@ static const dea_key keys_behind[] = {
          "a frequency > 0, e.g. 50 Hz"),
     PART(SINE ".phase", drive.waveform.sine.phase, "rad", "_rad", -INFINITY, INFINITY, true, 2, SINE, "an angle, e.g. 90 deg"),
     PART(SINE ".delay", drive.waveform.sine.delay, "s", "_s", 0, INFINITY, false, 2, SINE, "a time >= 0, e.g. 5 s"),
-    OTHER("drive.waveform.file", dea_read_wave_file, "the name of a CSV file with the columns time_s,voltage_V"),
+    OTHER("drive.waveform.file", dea_read_wave_file, "the name of a table with columns of time and voltage"),
     PART("drive.waveform.period", drive.waveform.period, "s", "_s", 0, INFINITY, true, 1, "drive.waveform",
          "a time, at least the last one of the waveform, e.g. 20 s"),
     OTHER("model", dea_read_model, "a model name or a list of them"),

@@ -585,7 +585,33 @@ static dea_status without_header(dea_table *t, const head *found)
     return t->headless ? take_order(t) : dea_table_fail(t, 1, problem);
 }
 
-/* The line of the head that names most of what is looked for, and how its fields stand apart; false where none names anything. */
+/* A heading of foreign name whose unit is that of a column which may be told by it. */
+static bool told_by_unit(const dea_table *t, const heading *h)
+{
+    double factor;
+    bool told = false;
+    for (size_t k = 0; k < t->wanted_count && h->unit[0] && h->wanted == t->wanted_count; k++) {
+        told = told || (t->wanted[k].by_unit && converts(t, k, h->unit, &factor));
+    }
+    return told;
+}
+
+/* How many headings tell what is looked for, by a name, or two and more by their units; a line with a number in it tells nothing. */
+static size_t count_told(const dea_table *t, const dea_field *fields)
+{
+    const size_t named = count_wanted(t, fields);
+    size_t units = 0;
+    for (size_t i = 0; i < t->width; i++) {
+        const heading h = heading_read(t, fields[i].text);
+        units += told_by_unit(t, &h);
+        if (is_numeric(t, fields[i].text)) {
+            return 0;
+        }
+    }
+    return named > 0 || units > 1 ? named + units : 0;
+}
+
+/* The line of the head that tells most of what is looked for, and how its fields stand apart; false where none does. */
 static bool names_find(dea_table *t, line *names)
 {
     const char *next = t->next;
@@ -597,9 +623,9 @@ static bool names_find(dea_table *t, line *names)
             trial.separator = separators[i];
             (void)head_split(&trial, &row, trial.names);
             trial.width = trial.count;
-            const size_t named = count_wanted(&trial, trial.names);
-            if (named > most) {
-                most = named;
+            const size_t told = count_told(&trial, trial.names);
+            if (told > most) {
+                most = told;
                 *names = row;
                 t->separator = separators[i];
             }

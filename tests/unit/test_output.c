@@ -1016,7 +1016,7 @@ static void many_curves_have_a_colour_scale(void **state)
     assert_string_equal(first.palette, "0.1");
     assert_string_equal(last.palette, "0.9");
     assert_non_null(strstr(script, "set cbrange [0.1:0.9]"));
-    assert_non_null(strstr(script, "set cblabel textcolor '#202020' \"Coverage ratio B\""));
+    assert_non_null(strstr(script, "set cblabel offset 1.5,0 textcolor '#202020' \"Coverage ratio B\""));
 }
 
 /* The range of the axis behind a label. */

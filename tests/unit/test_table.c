@@ -62,6 +62,8 @@ static void drives_of_many_shapes_are_one_drive(void **state)
         "Export of run 3\n\nTime (s)   Voltage (V)\n0.00   0\n0.01   3000\n0.04   3000\n",
         "  time_s ,  voltage_V  \n  0 ,  0 \n 0.01 , 3000\n 0.04,3000 \n",
         "time_s,voltage_V\n-0.01,0\n0,0\n0.01,3000\n0.04,3000\n",
+        "Zeit [ms];Hochspannung (kV)\n0,0;0\n10,0;3,0\n40;3\n",
+        "Zeit [ms];voltage (kV)\n0,0;0\n10,0;3,0\n40;3\n",
     };
     (void)state;
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { DEA_REASON_LENGTH = 256 };
+enum { DEA_REASON_LENGTH = 384 };
 
 typedef struct dea_units dea_units;
 

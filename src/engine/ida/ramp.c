@@ -89,12 +89,14 @@ void dea_ramp_close(dea_ramp *ramp)
     }
 }
 
-/* Starts at rest, where dt/dx is K_0 l/F(0); steps move the stretch by 5 % at most, so that no fold is stepped over. */
+/* Starts at rest, where dt/dx is K_0 l/F(0); steps move the stretch by 5 %, or u by 0.1 % of the linear answer or of the way to
+ * the film's end, at most, so that no fold is stepped over: linear springs that have all but given way stretch far. */
 static bool start(dea_ramp *ramp, double tolerance, double end)
 {
     dea_integrator *m = &ramp->integrator;
     const dea_sundials *sun = m->sun;
-    const double longest = 0.05 * dea_balance_length(ramp->balance) / fabs(ramp->length);
+    const double far = fmin(fabs(ramp->load / ramp->stiffness), end * fabs(ramp->length));
+    const double longest = fmax(0.05 * dea_balance_length(ramp->balance), 1e-3 * far) / fabs(ramp->length);
     sun->N_VConst(0.0, m->y);
     sun->N_VConst(1.0, m->yp);
     NV_DATA_S(m->yp)[SHARE] = ramp->stiffness * ramp->length / ramp->load;

@@ -57,6 +57,7 @@ static double factor_of(const stability_units *u, const char *unit)
                 {"Hz", 1.0 / u->time},
                 {"m/s", u->length / u->time},
                 {"C", charge},
+                {"F", capacitance_factor(u)},
                 {"A", charge / u->time},
                 {"m/V", displacement},
                 {"Ohm", u->time / capacitance_factor(u)}};
@@ -117,6 +118,7 @@ void stability_scale(dea_scene *scene, const stability_units *u)
     scale_wave(&scene->drive.waveform, u);
     scene->transient.until *= u->time;
     scene->transient.every *= u->time;
+    scene->transient.grid /= u->time;
     scene->ac.from /= u->time;
     scene->ac.to /= u->time;
     scene->ac.bias *= voltage_factor(u);

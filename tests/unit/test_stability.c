@@ -39,6 +39,7 @@ static bool is_static_ngspice(const stability_subject *subject)
 static void answer_does_not_depend_on_the_size_of_the_actuator(void **state)
 {
     (void)state;
+    size_t changed = 0;
     for (size_t i = 0; i < stability_subject_count(); i++) {
         const stability_subject *subject = stability_subject_at(i);
         const bool slow = strcmp(subject->engine, "ngspice") == 0;
@@ -46,9 +47,10 @@ static void answer_does_not_depend_on_the_size_of_the_actuator(void **state)
         const double tolerance = is_static_ngspice(subject) ? 1e-10 : 0.0;
         if (!(change.largest <= tolerance)) {
             print_error("%s, %s: %s changes it by %.1e\n", subject->engine, subject->name, change.worst->name, change.largest);
-            fail();
+            changed++;
         }
     }
+    assert_int_equal(changed, 0);
 }
 
 static void scaling_conditions_every_time_step(void **state)

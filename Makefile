@@ -107,7 +107,7 @@ asan-run:
 	LSAN_OPTIONS=suppressions=$(abspath tests/leaks.supp):print_suppressions=0 tests/run asan $(UNIT_PROGRAMS)
 
 # libFuzzer on the readers of scenes and of tables, side by side; FUZZ_SECONDS=n for longer.
-FUZZ_SECONDS ?= 60
+FUZZ_SECONDS ?= 30
 FUZZERS := scene table
 FUZZ = clang $(filter-out -MMD -MP,$(ALL_CFLAGS)) -O1 -g -fsanitize=fuzzer,address,undefined
 fuzz:

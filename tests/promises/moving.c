@@ -602,11 +602,17 @@ static bool pass_edges(motion *m, const state *from, long double time, long doub
     return true;
 }
 
+/* Share of the run over which a step may be off by the tolerance of u on the mean. */
+static const long double area_share = 0.01L;
+
 static long double distance(const motion *m, const state *a, const state *b)
 {
     const long double u = fabsl(a->u - b->u) / m->size[0], w = fabsl(a->w - b->w) / m->size[2];
     const long double v = m->film.mass > 0.0L ? fabsl(a->v - b->v) / m->size[1] : 0.0L;
-    return fmaxl(u, fmaxl(v, w));
+    /* a film that follows its voltage at once is right after any step, what it passed through is not */
+    const bool means = m->scene->transient.average_count > 0;
+    const long double passed = means ? fabsl(a->area - b->area) / (m->size[0] * area_share * m->scene->transient.until) : 0.0L;
+    return fmaxl(fmaxl(u, passed), fmaxl(v, w));
 }
 
 /* Steps of any length fail where a film without mass and damper has nearly lost its stiffness, or one that charges its

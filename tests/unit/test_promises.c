@@ -279,7 +279,8 @@ static const struct {
      "model: coverage\nstudy: {transient: {until: 2e-05 s, every: 1.5e-07 s, start: bias}}\n"},
     /* a film without mass and damper that its charge holds past the fold of the voltage */
     {DEA_STATE_OK, 2,
-     "actuator: {kind: lens, frame_radius: 0.035355362349280 m, coverage: 0.95330256529467, film_thickness: 1.31787322722e-05 m,\n"
+     "actuator: {kind: lens, frame_radius: 0.035355362349280 m, coverage: 0.95330256529467, film_thickness: 1.31787322722e-05 "
+     "m,\n"
      "  prestretch: 1.30401393083}\n"
      "material: {yeoh: {C1: 7680 Pa, C2: 0 Pa, C3: 0 Pa}, permittivity: 4.8}\n"
      "drive:\n  series_resistance: 1852367.73667 Ohm\n  leakage_resistance: 1195489702.07 Ohm\n"
@@ -333,9 +334,32 @@ static void engines_keep_the_promises_that_were_broken(void **state)
     }
 }
 
+/* Without mass and damper u = K U^2/(...) at any moment: of Eq. 22, linear in U^2, the mean over whole periods of a sine is that
+ * of U^2, half of the amplitude's square, however far its steps go. */
+static void mean_of_a_film_that_follows_its_voltage_is_that_of_its_square(void **state)
+{
+    (void)state;
+    dea_scene scene = ringing((double)NAN);
+    scene.material.density = (double)NAN;
+    scene.drive.waveform =
+        (dea_waveform){.kind = DEA_WAVE_SINE,
+                       .sine = {.offset = 0.0, .amplitude = 3000.0, .frequency = 100.0, .phase = 0.0, .delay = 0.0},
+                       .period = (double)NAN};
+    scene.transient.average_count = 1;
+    scene.transient.averages[0] = (dea_window){0.01, 0.04};
+    true_run run = moving_truth(&scene, scene.models[0], 1.0);
+    scene.drive.voltage = 3000.0;
+    const true_row rest = still_truth(&scene, scene.models[0], 1.0);
+    assert_null(run.why);
+    assert_true(run.mean_error <= 1e-12 * fabs(run.means[0]));
+    assert_relative(run.means[0], 0.5 * rest.row.displacement, 1e-12);
+    true_run_free(&run);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(mean_of_a_film_that_follows_its_voltage_is_that_of_its_square),
         cmocka_unit_test(the_truth_of_a_ring_is_its_closed_form),
         cmocka_unit_test(the_truth_of_a_slow_film_ends_at_rest),
         cmocka_unit_test(static_truths_are_the_reference_numbers),

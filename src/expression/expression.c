@@ -407,11 +407,6 @@ static void evaluate(const dea_pool *pool, const dea_point_values *at, int strid
     }
 }
 
-void dea_pool_values_at(const dea_pool *pool, const dea_point_values *at, double *values)
-{
-    evaluate(pool, at, 1, values);
-}
-
 void dea_pool_values(const dea_pool *pool, double symbol, double node, double *values)
 {
     evaluate(pool, &(dea_point_values){&symbol, &node, 1, 1}, 1, values);

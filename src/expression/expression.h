@@ -65,9 +65,8 @@ typedef struct dea_point_values {
     int symbol_count, node_count;
 } dea_point_values;
 
-/* Values of all terms of the pool, into an array of pool->count; NAN where a symbol or a node is not among those given. */
-void dea_pool_values_at(const dea_pool *pool, const dea_point_values *at, double *values);
-/* The same of a pool with one symbol and one node; with one value for all symbols and one for all nodes. */
+/* Values of all terms of the pool, into an array of pool->count: with one symbol and one node, NAN where a further one stands; with
+ * one value for all symbols and one for all nodes. */
 void dea_pool_values(const dea_pool *pool, double symbol, double node, double *values);
 void dea_pool_values_uniform(const dea_pool *pool, double symbols, double nodes, double *values);
 

@@ -94,8 +94,6 @@ dea_origin *dea_reader_origin(dea_reader *reader, const char *path);
 
 /* Room for @p count points of the waveform, counted from 0 on. */
 dea_status dea_points_new(dea_reader *reader, size_t count);
-/* What is wrong with the time of point @p index after the one before it, NULL: nothing. */
-const char *dea_points_fault(const dea_waveform *waveform, size_t index);
 /* Shortest time between two edges of a waveform [s]. */
 #define DEA_EDGE_MIN 1e-12
 

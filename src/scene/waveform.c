@@ -42,7 +42,8 @@ dea_status dea_points_new(dea_reader *reader, size_t count)
     return waveform->times && waveform->voltages ? DEA_OK : dea_reader_memory(reader);
 }
 
-const char *dea_points_fault(const dea_waveform *waveform, size_t index)
+/* What is wrong with the time of point @p index after the one before it, NULL: nothing. */
+static const char *points_fault(const dea_waveform *waveform, size_t index)
 {
     const double time = waveform->times[index];
     if (time < 0.0) {
@@ -87,7 +88,7 @@ static dea_status times_read(dea_reader *reader, const dea_node *node)
     size_t i = 0;
     for (const dea_node *pair = node->first; pair; pair = pair->next, i++) {
         const dea_status status = dea_reader_number(reader, &ref, pair->first, &waveform->times[i]);
-        const char *fault = status ? NULL : dea_points_fault(waveform, i);
+        const char *fault = status ? NULL : points_fault(waveform, i);
         if (status || fault) {
             return status ? status : dea_reader_refuse(reader, &ref, pair->first, fault);
         }

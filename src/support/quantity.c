@@ -461,18 +461,6 @@ bool dea_unit_factor(dea_units *units, const char *unit, const char *target, dou
     return factor_find(units, unit, target, factor, reason);
 }
 
-bool dea_number_read(dea_units *units, const char *text, size_t length, double *value)
-{
-    char number[UNIT_LENGTH];
-    char reason[DEA_REASON_LENGTH];
-    if (length == 0 || length >= sizeof number) {
-        return false;
-    }
-    memcpy(number, text, length);
-    number[length] = '\0';
-    return number_length(number) == length && number_convert(units, number, value, reason);
-}
-
 bool dea_count_read(const char *text, size_t most, size_t *value)
 {
     const size_t length = strspn(text, "0123456789");

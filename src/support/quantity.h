@@ -20,8 +20,6 @@ bool dea_quantity_read(dea_units *units, const char *text, const char *unit, dou
 bool dea_unit_factor(dea_units *units, const char *unit, const char *target, double *factor);
 /* number * factor, the factor taken as the whole number, or the inverse of one, that it is: 100 um are 1e-4 m to the last bit. */
 double dea_unit_scale(double number, double factor);
-/* Reads the @p length bytes at @p text as one plain number. */
-bool dea_number_read(dea_units *units, const char *text, size_t length, double *value);
 /* Reads a whole number 1 ... @p most. */
 bool dea_count_read(const char *text, size_t most, size_t *value);
 

@@ -1,0 +1,125 @@
+#include "network/rings.h"
+
+#include <math.h>
+
+/* Gauss-Lobatto rule of degree p on [-1, 1]: its p + 1 nodes, weights, and derivatives of the Lagrange polynomials at the nodes. */
+typedef struct lobatto {
+    size_t degree;
+    double places[DEA_RINGS_DEGREE + 1], weights[DEA_RINGS_DEGREE + 1];
+    double slopes[DEA_RINGS_DEGREE + 1][DEA_RINGS_DEGREE + 1]; /* of polynomial n at place q: [q][n] */
+} lobatto;
+
+/* Legendre polynomial of degree n and, in *before, of degree n - 1. */
+static double legendre(size_t n, double x, double *before)
+{
+    double last = 1.0, now = x;
+    for (size_t k = 2; k <= n; k++) {
+        const double next = ((2.0 * (double)k - 1.0) * x * now - ((double)k - 1.0) * last) / (double)k;
+        last = now;
+        now = next;
+    }
+    *before = last;
+    return now;
+}
+
+/* The inner nodes are the zeros of P_n': Newton on (1 - x^2) P_n' = n (P_{n-1} - x P_n), whose slope is -n (n + 1) P_n. */
+static double lobatto_place(size_t n, size_t i)
+{
+    double x = -cos(DEA_PI * (double)i / (double)n), before = 0.0;
+    for (int k = 0; k < 50; k++) {
+        const double value = legendre(n, x, &before);
+        const double step = (before - x * value) / ((double)(n + 1) * value);
+        x += step;
+        if (fabs(step) < 1e-16) {
+            break;
+        }
+    }
+    return x;
+}
+
+static void make_lobatto(size_t n, lobatto *rule)
+{
+    double values[DEA_RINGS_DEGREE + 1], before;
+    const double ends = (double)n * (double)(n + 1);
+    rule->degree = n;
+    for (size_t i = 0; i <= n; i++) {
+        rule->places[i] = i == 0 ? -1.0 : i == n ? 1.0 : 2 * i == n ? 0.0 : lobatto_place(n, i);
+        values[i] = legendre(n, rule->places[i], &before);
+        rule->weights[i] = 2.0 / (ends * values[i] * values[i]);
+    }
+    for (size_t q = 0; q <= n; q++) {
+        double others = 0.0;
+        for (size_t i = 0; i <= n; i++) {
+            rule->slopes[q][i] = q == i ? 0.0 : values[q] / (values[i] * (rule->places[q] - rule->places[i]));
+            others += rule->slopes[q][i];
+        }
+        rule->slopes[q][q] = -others; /* the slopes of a constant sum to 0 */
+    }
+}
+
+/* One element of the film between two reference radii. */
+typedef struct element {
+    double from, to; /* [m] */
+    bool logarithmic, disc, electroded;
+    size_t node; /* number of its first node, the one at the centre being 0 and not moving */
+} element;
+
+/* Reference radius at place x of [-1, 1], and dR/dx. */
+static double radius_at(const element *e, double x, double *stretch)
+{
+    if (e->logarithmic) {
+        const double r = x == 1.0 ? e->to : e->from * exp(0.5 * (1.0 + x) * log(e->to / e->from));
+        *stretch = 0.5 * r * log(e->to / e->from);
+        return r;
+    }
+    *stretch = 0.5 * (e->to - e->from);
+    return x == 1.0 ? e->to : e->from + (1.0 + x) * *stretch;
+}
+
+/* The ring at place q of an element: V_qn = 1 at its own node, D_qn from the polynomials' slopes. Nodes at the centre (number 0) and
+ * at the frame (number @p frame) do not move. */
+static void place_ring(const element *e, const lobatto *rule, size_t q, size_t frame, const dea_point *point, dea_rings *rings)
+{
+    double stretch;
+    const double radius = radius_at(e, rule->places[q], &stretch), l0 = point->film.prestretch;
+    if (radius == 0.0) {
+        return; /* at the centre a ring has no volume */
+    }
+    const size_t from = e->node == 0 ? 1 : 0, to = e->node + rule->degree == frame ? rule->degree - 1 : rule->degree;
+    const double area = 2.0 * DEA_PI * radius * stretch * rule->weights[q];
+    dea_ring *ring = &rings->rings[rings->ring_count++];
+    *ring = (dea_ring){.radius = radius, .volume = area * point->film_thickness, .disc = e->disc, .electroded = e->electroded};
+    ring->first = e->node + from - 1;
+    ring->count = to + 1 - from;
+    for (size_t i = from; i <= to; i++) {
+        ring->radial[i - from] = rule->slopes[q][i] / (stretch * l0);
+        ring->hoop[i - from] = i == q ? 1.0 / (radius * l0) : 0.0;
+    }
+    const size_t node = e->node + q;
+    if (node != frame) {
+        rings->radii[node - 1] = radius;
+        rings->areas[node - 1] += area;
+        rings->coated[node - 1] += e->electroded ? area : 0.0;
+    }
+}
+
+static void cut_element(const element *e, size_t degree, size_t frame, const dea_point *point, dea_rings *rings)
+{
+    lobatto rule;
+    make_lobatto(degree, &rule);
+    for (size_t q = 0; q <= degree; q++) {
+        place_ring(e, &rule, q, frame, point, rings);
+    }
+}
+
+void dea_rings_cut(const dea_point *point, dea_rings_mesh mesh, dea_rings *rings)
+{
+    const double rim = point->frame_radius / point->film.prestretch, edge = point->coverage * rim;
+    const bool dot = point->kind == DEA_DOT;
+    const element disc = {.to = edge, .disc = true, .electroded = dot};
+    const element annulus = {.from = edge, .to = rim, .logarithmic = mesh.logarithmic, .electroded = !dot, .node = mesh.disc};
+    const size_t frame = mesh.disc + mesh.annulus;
+    *rings = (dea_rings){.mesh = mesh, .node_count = frame - 1, .edge = mesh.disc - 1};
+    cut_element(&disc, mesh.disc, frame, point, rings);
+    cut_element(&annulus, mesh.annulus, frame, point, rings);
+}

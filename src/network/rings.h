@@ -1,0 +1,49 @@
+/* The film as a network of rings of film (physics: section 7): displacements u_n of nodes at reference radii R_n, stretches that
+ * are linear in them at every ring, and forces that are the gradient of one energy.
+ *
+ *     lambda_a = lambda_pre (1 + e_a),   e_1 = sum_n radial_n u_n,   e_2 = sum_n hoop_n u_n
+ *     force against u_n = sum_rings volume lambda_pre (radial_n s_1 + hoop_n s_2),   s_a = P_a - k (lambda_1 lambda_2)^2/lambda_a
+ *     C = (eps/H^2) sum_electroded volume (lambda_1 lambda_2)^2,   k = eps (U/H)^2 where electroded, else 0
+ *
+ * Disc and annulus are one element each, with Gauss-Lobatto nodes that are the places of its rings too, so that the mass is
+ * diagonal. A uniform stress at rest holds no node, so that changes of P_a from rest may stand for P_a: then all is 0 at rest. */
+#ifndef DEA_RINGS_H
+#define DEA_RINGS_H
+
+#include "deaspice/model.h"
+
+/* Largest degree of an element, and what follows: most moving nodes and rings. */
+enum { DEA_RINGS_DEGREE = 24, DEA_RINGS_NODES = 2 * DEA_RINGS_DEGREE - 1, DEA_RINGS_MOST = 2 * DEA_RINGS_DEGREE + 1 };
+
+/* How fine: degrees of the elements of disc and annulus, 1 ... DEA_RINGS_DEGREE, and whether the nodes of the annulus lie evenly in
+ * ln R, which statics and small discs want, or in R. */
+typedef struct dea_rings_mesh {
+    size_t disc, annulus;
+    bool logarithmic;
+} dea_rings_mesh;
+
+/* One ring: a place of the quadrature. */
+typedef struct dea_ring {
+    double radius; /* R in the reference film [m], > 0 */
+    double volume; /* [m^3] */
+    bool disc, electroded;
+    size_t first, count;                 /* the moving nodes that strain it: first ... first + count - 1 */
+    double radial[DEA_RINGS_DEGREE + 1]; /* de_1/du of each [1/m] */
+    double hoop[DEA_RINGS_DEGREE + 1];   /* de_2/du of each [1/m] */
+} dea_ring;
+
+typedef struct dea_rings {
+    dea_rings_mesh mesh;
+    size_t node_count; /* moving ones, from the centre out: disc + annulus - 1 */
+    size_t edge;       /* number of that at r_a */
+    double radii[DEA_RINGS_NODES]; /* R_n in the reference film [m] */
+    double areas[DEA_RINGS_NODES]; /* of reference film that moves with each, electroded or not [m^2] */
+    double coated[DEA_RINGS_NODES]; /* and of electroded film [m^2] */
+    size_t ring_count;
+    dea_ring rings[DEA_RINGS_MOST]; /* from the centre out; the edge has one of the disc and one of the annulus */
+} dea_rings;
+
+/* Cuts the film of a point into rings; its numbers are in their ranges. */
+void dea_rings_cut(const dea_point *point, dea_rings_mesh mesh, dea_rings *rings);
+
+#endif

@@ -116,6 +116,9 @@ bool dea_still_step(const dea_still *still, double share, const double *u, doubl
             return false;
         }
         const dea_biaxial s = stress_of(still, ring, e, share);
+        if (!(s.w11 > 0.0)) {
+            return false; /* no longer elliptic: the film thins within a place, and no mesh tells how far */
+        }
         add_ring(still, ring, &s, n, step, k);
     }
     if (!factor(n, k)) {
@@ -288,12 +291,21 @@ static double capacitance(const dea_still *still, const double *u)
     return point->film.permittivity * sum / (point->film_thickness * point->film_thickness);
 }
 
+/* A place between the ends of an element counts as more strained than they are from there on: its radial strain is a derivative. */
+static const double slight = 1e-6;
+
+static bool is_end(const dea_rings *rings, size_t q)
+{
+    return q == 0 || q + 1 == rings->ring_count || rings->rings[q - 1].disc != rings->rings[q].disc ||
+           rings->rings[q + 1].disc != rings->rings[q].disc;
+}
+
 void dea_still_fill(const dea_still *still, const double *u, dea_row *row)
 {
     const dea_point *point = still->point;
     const dea_film *film = &point->film;
     const double strain = u[still->rings.edge] / dea_point_divide(point);
-    double area = 0.0, least = (double)INFINITY;
+    double area = 0.0, inner = 0.0, least = (double)INFINITY;
     strains e[DEA_RINGS_MOST];
     strains_all(still, u, e);
     for (size_t q = 0; q < still->rings.ring_count; q++) {
@@ -301,8 +313,12 @@ void dea_still_fill(const dea_still *still, const double *u, dea_row *row)
         const dea_biaxial s = stress_of(still, ring, e[q], 1.0);
         const double here = film->square * (1.0 + e[q].e1) * (1.0 + e[q].e2);
         least = fmin(least, film->tension + fmin(s.p1, s.p2));
-        area = ring->electroded ? fmax(area, here) : area;
+        const bool end = is_end(&still->rings, q);
+        if (ring->electroded) {
+            *(end ? &area : &inner) = fmax(end ? area : inner, here);
+        }
     }
+    area = inner > area * (1.0 + slight) ? inner : area;
     const strains *edge = &e[electrode_edge(&still->rings)];
     const double pull = film->square * (1.0 + edge->e1) * (1.0 + edge->e2) * (1.0 + edge->e2); /* lambda_1 lambda_2^2/lambda_pre */
     const double force = 2.0 * DEA_PI * point->film_thickness * still->pressure * pull * dea_point_divide(point);
@@ -323,17 +339,19 @@ static double edge_error(const dea_still *coarse, const double *u, const dea_sti
     return dea_still_step(fine, 1.0, v, step) ? fabs(step[fine->rings.edge] / v[fine->rings.edge]) : (double)INFINITY;
 }
 
-dea_rings_mesh dea_still_mesh(const dea_point *point, double accuracy, double *u)
+dea_rings_mesh dea_still_mesh(const dea_point *point, double accuracy, double *error)
 {
     const dea_rings_mesh none = {0, 0, true};
-    double own[DEA_RINGS_NODES];
-    double *solution = u ? u : own;
+    double u[DEA_RINGS_NODES];
+    *error = (double)INFINITY;
     for (size_t degree = 2; degree + 2 <= DEA_RINGS_DEGREE; degree++) {
         dea_still still, fine;
         dea_still_open(point, (dea_rings_mesh){1, degree, true}, &still);
         dea_still_open(point, (dea_rings_mesh){1, degree + 2, true}, &fine);
-        if (dea_still_climb(&still, solution) == DEA_STATE_OK &&
-            (still.pressure == 0.0 || edge_error(&still, solution, &fine) <= accuracy)) {
+        if (dea_still_climb(&still, u) == DEA_STATE_OK) {
+            *error = still.pressure == 0.0 ? 0.0 : edge_error(&still, u, &fine);
+        }
+        if (*error <= accuracy) {
             return still.rings.mesh;
         }
     }

@@ -108,58 +108,48 @@ static dea_node *path_enter(setting_reader *self, const char *path)
     return node;
 }
 
-/* The key @p name gives way to the setting of another one, @p path, where it is the file's. */
-static void alternative_remove(setting_reader *self, const char *name, const char *path)
+/* Of @p count keys of which a scene gives one, a setting of one, @p path, takes those of the file away. */
+static void group_settle(setting_reader *self, const char *const *group, size_t count, const char *path)
 {
-    const char *dot = strrchr(name, '.');
-    const dea_node *node = dea_tree_find(self->reader->root, name);
-    if (node && strcmp(name, path) != 0 && !node->place.origin->setting) {
-        char parent[DEA_NAME_LENGTH];
-        snprintf(parent, sizeof parent, "%.*s", (int)(dot - name), name);
-        dea_tree_remove(path_enter(self, parent), dot + 1);
+    bool member = false;
+    for (size_t i = 0; i < count; i++) {
+        member = member || strcmp(group[i], path) == 0;
+    }
+    for (size_t i = 0; member && i < count; i++) {
+        const char *dot = strrchr(group[i], '.');
+        const dea_node *node = dea_tree_find(self->reader->root, group[i]);
+        if (node && strcmp(group[i], path) != 0 && !node->place.origin->setting) {
+            char parent[DEA_NAME_LENGTH];
+            snprintf(parent, sizeof parent, "%.*s", (int)(dot - group[i]), group[i]);
+            dea_tree_remove(path_enter(self, parent), dot + 1);
+        }
     }
 }
 
-static const char over[] = "study.over";
-
-/* Where the axes of runs may stand: @p name is one of these places. */
-static bool is_over(const char *name)
+/* Places of the axes of runs; how many there are. */
+static size_t list_overs(const char *overs[DEA_STUDIES + 1])
 {
-    bool found = strcmp(name, over) == 0;
+    size_t count = 0;
+    overs[count++] = "study.over";
     for (dea_study_kind kind = 0; kind < DEA_STUDIES; kind++) {
-        const dea_study *study = dea_study_at(kind);
-        found = found || (study->along && strcmp(study->axes, name) == 0);
+        if (dea_study_at(kind)->along) {
+            overs[count++] = dea_study_at(kind)->axes;
+        }
     }
-    return found;
+    return count;
 }
 
-/* Keys of which a scene gives one: a setting of one takes those of the file away. */
 static void alternatives_remove(setting_reader *self, const char *path)
 {
     static const char *const waves[] = {"drive.waveform.step", "drive.waveform.points", "drive.waveform.sine",
                                         "drive.waveform.file"};
-    enum { WAVES = sizeof waves / sizeof *waves };
-    bool wave = false, study = false;
-    for (size_t i = 0; i < WAVES; i++) {
-        wave = wave || strcmp(waves[i], path) == 0;
-    }
+    const char *kinds[DEA_STUDIES], *overs[DEA_STUDIES + 1];
     for (dea_study_kind kind = 0; kind < DEA_STUDIES; kind++) {
-        study = study || strcmp(dea_study_at(kind)->path, path) == 0;
+        kinds[kind] = dea_study_at(kind)->path;
     }
-    for (size_t i = 0; wave && i < WAVES; i++) {
-        alternative_remove(self, waves[i], path);
-    }
-    for (dea_study_kind kind = 0; study && kind < DEA_STUDIES; kind++) {
-        alternative_remove(self, dea_study_at(kind)->path, path);
-    }
-    for (dea_study_kind kind = 0; is_over(path) && kind < DEA_STUDIES; kind++) {
-        if (dea_study_at(kind)->along) {
-            alternative_remove(self, dea_study_at(kind)->axes, path);
-        }
-    }
-    if (is_over(path)) {
-        alternative_remove(self, over, path);
-    }
+    group_settle(self, waves, sizeof waves / sizeof *waves, path);
+    group_settle(self, kinds, DEA_STUDIES, path);
+    group_settle(self, overs, list_overs(overs), path);
 }
 
 /* A setting of one law takes the constants of another in the file away. */
@@ -204,13 +194,18 @@ static dea_status graft(setting_reader *self, const dea_ref *ref, dea_node *node
 /* Where the axes of `over` stand: where the scene has them, else where the setting says. */
 static const char *axes_path(const setting_reader *self, const char *said)
 {
-    for (dea_study_kind kind = 0; is_over(said) && kind < DEA_STUDIES; kind++) {
-        const dea_study *study = dea_study_at(kind);
-        if (study->along && dea_tree_find(self->reader->root, study->axes)) {
-            return study->axes;
+    const char *overs[DEA_STUDIES + 1];
+    const size_t count = list_overs(overs);
+    bool member = false;
+    for (size_t i = 0; i < count; i++) {
+        member = member || strcmp(said, overs[i]) == 0;
+    }
+    for (size_t i = 0; member && i < count; i++) {
+        if (dea_tree_find(self->reader->root, overs[i])) {
+            return overs[i];
         }
     }
-    return is_over(said) && dea_tree_find(self->reader->root, over) ? over : said;
+    return said;
 }
 
 /* Puts an axis among those of the scene, in the place of the axis of the same key if there is one. */
@@ -263,26 +258,20 @@ static dea_status fail_unknown(setting_reader *self)
     return fail_key(self, found ? parent : NULL, found ? dot + 1 : self->name);
 }
 
-/* What stands behind the mapping @p path and a dot in @p name, which may leave out "study."; NULL: it is in another one. */
-static const char *name_within(const char *name, const char *path)
-{
-    const size_t front = strlen("study.");
-    const char *start = strncmp(name, "study.", front) == 0 ? path : path + front;
-    const size_t length = strlen(start);
-    return strncmp(name, start, length) == 0 && name[length] == '.' ? name + length + 1 : NULL;
-}
-
 /* Name of the axis in "study.sweep.AXIS", "sweep.AXIS", "over.AXIS" and so on, and the mapping it stands in; NULL for other keys.
  */
 static const char *axis_name(const char *name, const char **path)
 {
-    const char *axis = name_within(name, over);
-    *path = over;
-    for (dea_study_kind kind = 0; kind < DEA_STUDIES && !axis; kind++) {
-        *path = dea_study_at(kind)->axes;
-        axis = name_within(name, *path);
+    const size_t front = strlen("study.");
+    for (int kind = -1; kind < DEA_STUDIES; kind++) {
+        *path = kind < 0 ? "study.over" : dea_study_at((dea_study_kind)kind)->axes;
+        const char *start = strncmp(name, "study.", front) == 0 ? *path : *path + front;
+        const size_t length = strlen(start);
+        if (strncmp(name, start, length) == 0 && name[length] == '.') {
+            return name + length + 1;
+        }
     }
-    return axis;
+    return NULL;
 }
 
 static dea_status override_add(dea_reader *reader, const dea_ref *ref, dea_node *node)

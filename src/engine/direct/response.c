@@ -4,7 +4,7 @@
 
 #include "deaspice/measures.h"
 #include "engine/direct/direct.h"
-#include "engine/direct/membrane.h"
+#include "engine/direct/radial.h"
 
 /* Dynamic stiffness at an equilibrium under the film voltage U,
  *   -m w^2 + d(A S - phi U^2)/du + A S' [i w tau_KV + sum c_i i w tau_i/(1 + i w tau_i)]. */
@@ -49,14 +49,14 @@ typedef struct biased {
     double accuracy;
     dea_edge edge;
     double relaxed;         /* stiffness of the node [N/m] */
-    dea_membrane *membrane; /* borrowed; NULL: one node */
+    dea_radial *radial; /* borrowed; NULL: one node */
 } biased;
 
 /* Per volt on the film: u = 2 phi U/D, q = C + C' U u. */
 static bool answer_of(const biased *b, double frequency, dea_per_volt *answer)
 {
-    if (b->membrane) {
-        return dea_membrane_answer(b->membrane, frequency, b->accuracy, answer);
+    if (b->radial) {
+        return dea_radial_answer(b->radial, frequency, b->accuracy, answer);
     }
     const dea_edge *e = &b->edge;
     const double complex u = 2.0 * e->push * b->bias / dynamic_stiffness(b->dynamics, e, b->relaxed, 2.0 * DEA_PI * frequency);
@@ -125,7 +125,7 @@ static dea_status respond_node(const dea_scene *scene, const dea_model *model, d
     return status;
 }
 
-static dea_status respond_membrane(const dea_scene *scene, const dea_model *model, dea_response *rows, dea_band *band,
+static dea_status respond_radius(const dea_scene *scene, const dea_model *model, dea_response *rows, dea_band *band,
                                    dea_error *error)
 {
     dea_dynamics d;
@@ -134,19 +134,19 @@ static dea_status respond_membrane(const dea_scene *scene, const dea_model *mode
         return status;
     }
     d.point.voltage = film_bias(&d, scene);
-    dea_membrane membrane;
-    dea_membrane_open(&d, scene, &membrane);
+    dea_radial radial;
+    dea_radial_open(&d, scene, &radial);
     biased b = {.dynamics = &d,
                 .bias = d.point.voltage,
-                .state = membrane.rest.state,
-                .held = isfinite(membrane.rest.strain),
+                .state = radial.rest.state,
+                .held = isfinite(radial.rest.strain),
                 .accuracy = scene->accuracy,
-                .membrane = &membrane};
+                .radial = &radial};
     const size_t failed = respond(&b, scene, rows, band);
     if (failed > 0) {
         dea_fail(error, DEA_OK, "%zu frequencies failed: two meshes of the film do not agree within the accuracy", failed);
     }
-    dea_membrane_close(&membrane);
+    dea_radial_close(&radial);
     return DEA_OK;
 }
 
@@ -154,5 +154,5 @@ dea_status dea_direct_ac(void *session, const dea_scene *scene, const dea_model 
                          dea_error *error)
 {
     (void)session;
-    return (model->membrane ? respond_membrane : respond_node)(scene, model, rows, band, error);
+    return (model->membrane ? respond_radius : respond_node)(scene, model, rows, band, error);
 }

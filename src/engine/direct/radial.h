@@ -9,8 +9,8 @@
  *     dC_1 = l1 l2^2,  dC_2 = l1^2 l2:  C = (2 pi eps/H) int (l1 l2)^2 R dR
  *
  * rho: of film and electrode over the reference film. */
-#ifndef DEA_DIRECT_MEMBRANE_H
-#define DEA_DIRECT_MEMBRANE_H
+#ifndef DEA_DIRECT_RADIAL_H
+#define DEA_DIRECT_RADIAL_H
 
 #include <complex.h>
 
@@ -22,23 +22,23 @@ typedef struct dea_per_volt {
     double complex charge;       /* [C/V] */
 } dea_per_volt;
 
-struct dea_membrane_mesh;
+struct dea_radial_mesh;
 
-enum { DEA_MEMBRANE_MESHES = 14 };
+enum { DEA_RADIAL_MESHES = 14 };
 
-typedef struct dea_membrane {
+typedef struct dea_radial {
     const dea_dynamics *dynamics; /* borrowed: point under the bias, masses, damper, branches */
     dea_row rest;                 /* the film under the bias */
     double mass[2];               /* rho R_a^2/W11 of disc and annulus [s^2] */
-    struct dea_membrane_mesh *meshes[DEA_MEMBRANE_MESHES]; /* owned: each twice as fine as the one before; NULL: not made yet */
-} dea_membrane;
+    struct dea_radial_mesh *meshes[DEA_RADIAL_MESHES]; /* owned: each twice as fine as the one before; NULL: not made yet */
+} dea_radial;
 
 /* Rest under the film voltage of the point of @p dynamics, which was set up without a network; its state tells whether there is
- * one. The caller ends it with dea_membrane_close(). */
-void dea_membrane_open(const dea_dynamics *dynamics, const dea_scene *scene, dea_membrane *membrane);
-void dea_membrane_close(dea_membrane *membrane);
+ * one. The caller ends it with dea_radial_close(). */
+void dea_radial_open(const dea_dynamics *dynamics, const dea_scene *scene, dea_radial *radial);
+void dea_radial_close(dea_radial *radial);
 
 /* The answer at a frequency; false where two meshes do not agree within the accuracy, or memory ran out. */
-bool dea_membrane_answer(dea_membrane *membrane, double frequency, double accuracy, dea_per_volt *answer);
+bool dea_radial_answer(dea_radial *radial, double frequency, double accuracy, dea_per_volt *answer);
 
 #endif

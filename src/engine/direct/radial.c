@@ -6,7 +6,7 @@
  *     c_x = xi (dC_1 u_x + dC_2 u):  change of the capacitance over 4 pi eps R_a^2/H
  *
  * Of the solutions with u = 0 at the frame, T = alpha u + beta at the edge. The disc is uniform: u ~ J1(kappa R). */
-#include "engine/direct/membrane.h"
+#include "engine/direct/radial.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -37,7 +37,7 @@ typedef struct collocation {
     double a[STAGES][STAGES];
 } collocation;
 
-typedef struct dea_membrane_mesh {
+typedef struct dea_radial_mesh {
     collocation rule;
     size_t count;
     double *ends;      /* count + 1 of them, x */
@@ -87,17 +87,17 @@ static station station_at(const dea_film *film, double xi, double l1, double l2,
                      .c2 = l1 * l1 * l2};
 }
 
-static double nominal(const dea_membrane *m)
+static double nominal(const dea_radial *m)
 {
     return m->dynamics->point.voltage / m->dynamics->point.film_thickness;
 }
 
-static double maxwell(const dea_membrane *m, bool electroded)
+static double maxwell(const dea_radial *m, bool electroded)
 {
     return electroded ? m->dynamics->point.film.permittivity * nominal(m) * nominal(m) : 0.0;
 }
 
-static bool is_dot(const dea_membrane *m)
+static bool is_dot(const dea_radial *m)
 {
     return m->dynamics->point.kind == DEA_DOT;
 }
@@ -113,7 +113,7 @@ static void free_mesh(mesh *grid)
 
 /* Ends of the elements from the edge out, of which there are about 2^level; @p ends NULL counts them. Stretches vary with ln R,
  * waves with R. What is left for the last element is shared with the one before. */
-static size_t lay_elements(const dea_membrane *m, size_t level, double *ends)
+static size_t lay_elements(const dea_radial *m, size_t level, double *ends)
 {
     const double share = ldexp(1.0, -(int)level), length = -log(m->dynamics->point.coverage);
     size_t count = 0;
@@ -132,7 +132,7 @@ static size_t lay_elements(const dea_membrane *m, size_t level, double *ends)
 }
 
 /* Stretches of the static film at all places of a mesh. */
-static bool set_stations(const dea_membrane *m, mesh *grid)
+static bool set_stations(const dea_radial *m, mesh *grid)
 {
     const dea_point *point = &m->dynamics->point;
     const size_t count = grid->count * STAGES;
@@ -154,7 +154,7 @@ static bool set_stations(const dea_membrane *m, mesh *grid)
     return done;
 }
 
-static mesh *make_mesh(const dea_membrane *m, size_t level)
+static mesh *make_mesh(const dea_radial *m, size_t level)
 {
     mesh *grid = calloc(1, sizeof *grid);
     if (!grid) {
@@ -349,7 +349,7 @@ static double complex viscosity(const dea_dynamics *d, double omega)
     return sum;
 }
 
-static dea_per_volt answer_on(const dea_membrane *m, const mesh *grid, double omega)
+static dea_per_volt answer_on(const dea_radial *m, const mesh *grid, double omega)
 {
     const dea_point *point = &m->dynamics->point;
     const bool dot = is_dot(m);
@@ -376,7 +376,7 @@ static dea_per_volt answer_on(const dea_membrane *m, const mesh *grid, double om
     return (dea_per_volt){.displacement = radius * u, .charge = m->rest.capacitance + point->voltage * unit * change};
 }
 
-void dea_membrane_open(const dea_dynamics *d, const dea_scene *scene, dea_membrane *m)
+void dea_radial_open(const dea_dynamics *d, const dea_scene *scene, dea_radial *m)
 {
     const dea_point *point = &d->point;
     const double radius = d->radius / point->film.prestretch;
@@ -384,21 +384,21 @@ void dea_membrane_open(const dea_dynamics *d, const dea_scene *scene, dea_membra
     const double unit = d->mass > 0.0 ? radius * radius / point->film.w11 : 0.0;
     const double film = d->mass > 0.0 ? scene->material.density * unit : 0.0;
     const double electrode = coat * point->film.square / point->film_thickness * unit;
-    *m = (dea_membrane){.dynamics = d};
+    *m = (dea_radial){.dynamics = d};
     m->mass[0] = film + (is_dot(m) ? electrode : 0.0);
     m->mass[1] = film + (is_dot(m) ? 0.0 : electrode);
     d->model->solve(point, fmin(scene->accuracy, 1e-12), &m->rest);
 }
 
-void dea_membrane_close(dea_membrane *m)
+void dea_radial_close(dea_radial *m)
 {
-    for (size_t i = 0; i < DEA_MEMBRANE_MESHES; i++) {
+    for (size_t i = 0; i < DEA_RADIAL_MESHES; i++) {
         free_mesh(m->meshes[i]);
         m->meshes[i] = NULL;
     }
 }
 
-static bool answer_by(dea_membrane *m, size_t level, double omega, dea_per_volt *answer)
+static bool answer_by(dea_radial *m, size_t level, double omega, dea_per_volt *answer)
 {
     if (!m->meshes[level]) {
         m->meshes[level] = make_mesh(m, level);
@@ -410,29 +410,29 @@ static bool answer_by(dea_membrane *m, size_t level, double omega, dea_per_volt 
 }
 
 /* Static displacement per volt, to which small ones are compared [m/V]. */
-static double static_size(const dea_membrane *m)
+static double static_size(const dea_radial *m)
 {
     return m->dynamics->point.voltage != 0.0 ? fabs(2.0 * m->rest.displacement / m->dynamics->point.voltage) : 0.0;
 }
 
 /* The mesh whose elements are short beside the wave at a frequency [rad/s]. */
-static size_t first_level(const dea_membrane *m, double omega)
+static size_t first_level(const dea_radial *m, double omega)
 {
     const double across = omega * sqrt(m->mass[1]) * expm1(-log(m->dynamics->point.coverage)); /* radians from edge to frame */
     size_t level = 0;
-    for (double phase = across; phase > longest_phase && level + 2 < DEA_MEMBRANE_MESHES; level++) {
+    for (double phase = across; phase > longest_phase && level + 2 < DEA_RADIAL_MESHES; level++) {
         phase *= 0.5;
     }
     return level;
 }
 
-bool dea_membrane_answer(dea_membrane *m, double frequency, double accuracy, dea_per_volt *answer)
+bool dea_radial_answer(dea_radial *m, double frequency, double accuracy, dea_per_volt *answer)
 {
     const double omega = 2.0 * DEA_PI * frequency, wanted = fmax(accuracy, rounding);
     const size_t first = first_level(m, omega);
     dea_per_volt last;
     bool done = false, made = answer_by(m, first, omega, &last);
-    for (size_t level = first + 1; made && !done && level < DEA_MEMBRANE_MESHES; level++) {
+    for (size_t level = first + 1; made && !done && level < DEA_RADIAL_MESHES; level++) {
         made = answer_by(m, level, omega, answer);
         const double size = fmax(cabs(answer->displacement), negligible * static_size(m));
         done = made && cabs(answer->displacement - last.displacement) <= wanted * size &&

@@ -11,13 +11,16 @@
 extern "C" {
 #endif
 
-/** One static point: film, geometry and the voltage across the film. */
+/** One static point: film, geometry and the voltage across the film. A stack of n films of thickness H is one film of thickness
+ * n H and n^2 times the permittivity: its pressure eps (U/H)^2 stays that of one layer, stiffness, force, mass and capacitance
+ * are n times those. */
 typedef struct dea_point {
     dea_film film;
     dea_kind kind;
     double frame_radius;   /**< r [m] */
     double coverage;       /**< B [1] */
-    double film_thickness; /**< H [m] */
+    double film_thickness; /**< H, of all layers together [m] */
+    double layers;         /**< of the stack [1]: the field is layers U/H */
     double voltage;        /**< U across the film [V] */
     double focal_length;   /**< of a lens at rest [m], NAN: no optics */
     double refractive_index; /**< of its liquid [1] */

@@ -9,7 +9,8 @@ void dea_film_prepare(const dea_scene *scene, dea_film *film)
 
     dea_material_long_term(material, constants);
     *film = dea_law_film(material->law, constants, stretch);
-    film->permittivity = DEA_EPSILON_0 * dea_material_permittivity(material, stretch);
+    const double layers = scene->actuator.layers;
+    film->permittivity = DEA_EPSILON_0 * dea_material_permittivity(material, stretch) * (layers * layers);
     film->breakdown = isnan(material->breakdown) ? INFINITY : material->breakdown;
     film->modulus = isnan(material->modulus) ? film->slope : material->modulus * dea_material_long_term_share(material);
 }
@@ -29,7 +30,8 @@ void dea_point_place(const dea_scene *scene, dea_point *point)
     point->kind = actuator->kind;
     point->frame_radius = actuator->frame_radius;
     point->coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
-    point->film_thickness = actuator->film_thickness;
+    point->film_thickness = actuator->layers * actuator->film_thickness;
+    point->layers = actuator->layers;
     point->voltage = scene->drive.voltage * film_share(&scene->drive);
     point->focal_length = actuator->focal_length;
     point->refractive_index = actuator->refractive_index;

@@ -155,7 +155,7 @@ dea_tangent dea_symbols_tangent(const dea_symbols *symbols)
     return (dea_tangent){DIV(along, l), DIV(slope[1], l)};
 }
 
-static dea_symbols symbols_of(const dea_scene *scene, const dea_axis *axis, dea_pool *pool)
+dea_symbols dea_symbols_of(const dea_scene *scene, const dea_axis *axis, dea_pool *pool)
 {
     const dea_actuator *actuator = &scene->actuator;
     const dea_material *material = &scene->material;
@@ -286,7 +286,7 @@ dea_status dea_network_build(const dea_scene *scene, const dea_model *model, con
     if (network->pool.exhausted) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built");
     }
-    const dea_symbols symbols = symbols_of(scene, axis, &network->pool);
+    const dea_symbols symbols = dea_symbols_of(scene, axis, &network->pool);
     return dea_network_build_symbols(&symbols, model, network, error);
 }
 

@@ -54,7 +54,7 @@ typedef struct dea_model {
     void (*network)(const struct dea_symbols *symbols, struct dea_network *network);
     /** Coefficients of the linear network (engine `direct` in transients); NULL where the network is not linear. */
     void (*linear)(const dea_point *point, dea_linear *linear);
-    /** Can do transients and frequency responses. */
+    /** Can do transients and, unless it is a membrane, frequency responses. */
     bool dynamic;
     /** It is the boundary value problem of the axisymmetric membrane along the radius. */
     bool membrane;
@@ -71,6 +71,9 @@ typedef enum dea_form {
 
 /** Form of a model. */
 DEA_API dea_form dea_model_form(const dea_model *model);
+
+/** True where the model can do a kind of study. */
+DEA_API bool dea_model_does(const dea_model *model, dea_study_kind study);
 
 /** Number of models. */
 DEA_API size_t dea_model_count(void);

@@ -20,7 +20,7 @@ dea_bench_options dea_bench_options_default(void)
 
 static bool can_do(const dea_scene *scene, const dea_model *model)
 {
-    return (scene->actuator.kind == DEA_DOT || model->lens) && (scene->study == DEA_STUDY_SWEEP || model->dynamic);
+    return (scene->actuator.kind == DEA_DOT || model->lens) && dea_model_does(model, scene->study);
 }
 
 void dea_bench_all_models(dea_scene *scene)

@@ -20,8 +20,8 @@ const char *dea_engine_refuses(const dea_engine *engine, const dea_scene *scene,
         return "it has no time domain";
     if (scene->study == DEA_STUDY_AC && !engine->ac)
         return "it has no frequency domain";
-    if (scene->study != DEA_STUDY_SWEEP && !model->dynamic)
-        return "the model is static";
+    if (!dea_model_does(model, scene->study))
+        return model->dynamic ? "the model has no frequency domain" : "the model is static";
     return engine->refuses ? engine->refuses(scene, model) : NULL;
 }
 

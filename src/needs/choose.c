@@ -199,7 +199,7 @@ static dea_status bound_of(const dea_scene *scene, const dea_model *model, const
 
 static bool fits(const dea_scene *scene, const dea_engine *engine, const dea_model *model)
 {
-    const bool kind = (model->lens || scene->actuator.kind == DEA_DOT) && (model->dynamic || scene->study == DEA_STUDY_SWEEP);
+    const bool kind = (model->lens || scene->actuator.kind == DEA_DOT) && dea_model_does(model, scene->study);
     return kind && dea_crew_of(scene, engine, model).count > 0;
 }
 
@@ -234,7 +234,8 @@ const dea_model *dea_needs_truth(dea_study_kind study)
     for (size_t i = 0; i < dea_model_count(); i++) {
         const dea_model *model = dea_model_at(i);
         const bool finer = !truth || dea_model_form(model) >= dea_model_form(truth);
-        truth = finer && (study == DEA_STUDY_SWEEP || model->dynamic) ? model : truth;
+        const bool costly = study != DEA_STUDY_SWEEP && model->membrane; /* a run of it at every probe */
+        truth = finer && !costly && dea_model_does(model, study) ? model : truth;
     }
     return truth;
 }

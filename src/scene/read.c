@@ -263,7 +263,8 @@ static const char automatic[] = "auto"; /* the name of no model: the cheapest th
 
 /* What a model must be able to do. */
 typedef struct ability {
-    bool lens, dynamic;
+    bool lens;
+    dea_study_kind study;
 } ability;
 
 static void model_list(ability wanted, char *out, size_t room)
@@ -272,7 +273,7 @@ static void model_list(ability wanted, char *out, size_t room)
     out[0] = '\0';
     for (size_t i = 0; i < dea_model_count() && used < room; i++) {
         const dea_model *model = dea_model_at(i);
-        if ((!wanted.lens || model->lens) && (!wanted.dynamic || model->dynamic)) {
+        if ((!wanted.lens || model->lens) && dea_model_does(model, wanted.study)) {
             used += (size_t)snprintf(out + used, room - used, "%s, ", model->name);
         }
     }
@@ -304,7 +305,7 @@ static dea_status model_fail(dea_reader *reader, const dea_node *node, const cha
     char names[DEA_KEY_ROOM];
     char meant[DEA_KEY_ROOM] = "";
     model_list(wanted, names, sizeof names);
-    const bool any = !wanted.lens && !wanted.dynamic;
+    const bool any = !wanted.lens && wanted.study == DEA_STUDY_SWEEP;
     if (node->kind == DEA_NODE_SCALAR && any) {
         char several[DEA_KEY_ROOM];
         model_split(node, several);
@@ -332,10 +333,10 @@ dea_status dea_models_finish(dea_reader *reader)
     }
     const bool transient = scene->study == DEA_STUDY_TRANSIENT;
     for (size_t i = 0; i < scene->model_count && scene->study != DEA_STUDY_SWEEP; i++) {
-        if (!scene->models[i]->dynamic) {
+        if (!dea_model_does(scene->models[i], scene->study)) {
             return model_fail(reader, reader->model_names[i],
                               transient ? "cannot do a transient" : "cannot do a frequency response",
-                              (ability){.lens = scene->actuator.kind == DEA_LENS, .dynamic = true});
+                              (ability){.lens = scene->actuator.kind == DEA_LENS, .study = scene->study});
         }
     }
     return DEA_OK;

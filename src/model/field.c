@@ -486,5 +486,6 @@ const dea_model dea_model_field = {
     .leaves_out = "bending, all out of plane",
     .lens = true,
     .solve = solve,
+    .dynamic = true,
     .membrane = true,
 };

@@ -265,7 +265,8 @@ static const char automatic[] = "auto"; /* the name of no model: the cheapest th
 
 /* What a model must be able to do. */
 typedef struct ability {
-    bool lens, dynamic;
+    bool lens;
+    bool dynamic;
 } ability;
 
 static void model_list(ability wanted, char *out, size_t room)

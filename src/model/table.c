@@ -25,11 +25,6 @@ dea_form dea_model_form(const dea_model *model)
                             : DEA_FORM_CLOSED;
 }
 
-bool dea_model_does(const dea_model *model, dea_study_kind study)
-{
-    return study == DEA_STUDY_SWEEP || (model->dynamic && !(study == DEA_STUDY_AC && model->membrane));
-}
-
 const dea_model *dea_model_find(const char *name)
 {
     for (size_t i = 0; i < dea_model_count(); i++) {

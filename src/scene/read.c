@@ -7,6 +7,7 @@
 #include "deaspice/model.h"
 #include "deaspice/needs.h"
 #include "scene/reader.h"
+#include "study/study.h"
 
 char *dea_reader_show(const dea_node *node, char out[DEA_TEXT_ROOM])
 {
@@ -128,7 +129,8 @@ static dea_status kind_check(dea_reader *reader, const dea_ref *ref, const dea_n
 
 static bool in_range(const dea_key *key, double value)
 {
-    return key->open ? value > key->low && value < key->high : value >= key->low && value <= key->high;
+    const bool inside = key->open ? value > key->low && value < key->high : value >= key->low && value <= key->high;
+    return inside && !(key->whole && floor(value) != value);
 }
 
 dea_status dea_reader_number(dea_reader *reader, const dea_ref *ref, const dea_node *node, double *value)
@@ -263,8 +265,7 @@ static const char automatic[] = "auto"; /* the name of no model: the cheapest th
 
 /* What a model must be able to do. */
 typedef struct ability {
-    bool lens;
-    dea_study_kind study;
+    bool lens, dynamic;
 } ability;
 
 static void model_list(ability wanted, char *out, size_t room)
@@ -273,7 +274,7 @@ static void model_list(ability wanted, char *out, size_t room)
     out[0] = '\0';
     for (size_t i = 0; i < dea_model_count() && used < room; i++) {
         const dea_model *model = dea_model_at(i);
-        if ((!wanted.lens || model->lens) && dea_model_does(model, wanted.study)) {
+        if ((!wanted.lens || model->lens) && (!wanted.dynamic || model->dynamic)) {
             used += (size_t)snprintf(out + used, room - used, "%s, ", model->name);
         }
     }
@@ -305,7 +306,7 @@ static dea_status model_fail(dea_reader *reader, const dea_node *node, const cha
     char names[DEA_KEY_ROOM];
     char meant[DEA_KEY_ROOM] = "";
     model_list(wanted, names, sizeof names);
-    const bool any = !wanted.lens && wanted.study == DEA_STUDY_SWEEP;
+    const bool any = !wanted.lens && !wanted.dynamic;
     if (node->kind == DEA_NODE_SCALAR && any) {
         char several[DEA_KEY_ROOM];
         model_split(node, several);
@@ -328,15 +329,14 @@ static dea_status model_fail(dea_reader *reader, const dea_node *node, const cha
 dea_status dea_models_finish(dea_reader *reader)
 {
     dea_scene *scene = reader->scene;
+    const dea_study *study = dea_study_of(scene);
     if (scene->automatic) {
         scene->models[0] = dea_needs_truth(scene->study);
     }
-    const bool transient = scene->study == DEA_STUDY_TRANSIENT;
-    for (size_t i = 0; i < scene->model_count && scene->study != DEA_STUDY_SWEEP; i++) {
-        if (!dea_model_does(scene->models[i], scene->study)) {
-            return model_fail(reader, reader->model_names[i],
-                              transient ? "cannot do a transient" : "cannot do a frequency response",
-                              (ability){.lens = scene->actuator.kind == DEA_LENS, .study = scene->study});
+    for (size_t i = 0; i < scene->model_count && study->moves; i++) {
+        if (!scene->models[i]->dynamic) {
+            return model_fail(reader, reader->model_names[i], study->model_fails,
+                              (ability){.lens = scene->actuator.kind == DEA_LENS, .dynamic = true});
         }
     }
     return DEA_OK;
@@ -347,7 +347,7 @@ static dea_status model_auto(dea_reader *reader, const dea_node *node)
 {
     reader->model_names[0] = node;
     reader->scene->automatic = true;
-    reader->scene->models[0] = dea_needs_truth(DEA_STUDY_SWEEP);
+    reader->scene->models[0] = dea_needs_truth(reader->scene->study);
     reader->scene->model_count = 1;
     return DEA_OK;
 }

@@ -75,7 +75,6 @@ typedef enum dea_form {
 /** Form of a model. */
 DEA_API dea_form dea_model_form(const dea_model *model);
 
-
 /** Number of models. */
 DEA_API size_t dea_model_count(void);
 /** Model number @p index from the cheapest up, NULL past the end. The library owns it. */

@@ -265,8 +265,7 @@ static const char automatic[] = "auto"; /* the name of no model: the cheapest th
 
 /* What a model must be able to do. */
 typedef struct ability {
-    bool lens;
-    bool dynamic;
+    bool lens, dynamic;
 } ability;
 
 static void model_list(ability wanted, char *out, size_t room)

@@ -44,9 +44,6 @@ typedef struct judged {
     const char *why; /* NULL, or why nothing is judged */
 } judged;
 
-/* A number of a row. */
-double number_at(const void *row, size_t offset);
-
 bool judge_open(judged *j, const char *text, size_t number);
 void judge_close(judged *j);
 /* Runs an engine at one accuracy; adds to the tally. True where the promise was broken; *text then says how. */

@@ -81,6 +81,9 @@ long double film_focal_length(const true_film *film, long double strain);
 
 /* ---- truths */
 
+/* A number of a row. */
+double number_at(const void *row, size_t offset);
+
 /* What is true of a static point: its row; how far its numbers may be off, relative; what follows from a voltage that is a little
  * less or more. */
 typedef struct true_row {

@@ -44,7 +44,7 @@ dea_expr dea_hyperelastic_field(const dea_symbols *symbols, dea_expr e)
 {
     dea_pool *pool = symbols->pool;
     const dea_expr stretch = MUL(symbols->prestretch, ADD(NUM(1.0), e));
-    return MUL(DIV(symbols->voltage, symbols->film_thickness), SQUARE(stretch));
+    return MUL(dea_symbols_nominal_field(symbols), SQUARE(stretch));
 }
 
 dea_expr dea_hyperelastic_force(const dea_symbols *symbols, dea_expr strain, dea_expr e)

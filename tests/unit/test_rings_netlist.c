@@ -113,6 +113,45 @@ static void a_sweep_goes_on_behind_points_without_equilibrium(void **state)
     assert_true(is_close(list.rows[3].strain, 0.0450329722, 0.0, 1e-9));
 }
 
+static dea_status take_responses(void *user, size_t first, const void *points, size_t count, dea_error *error)
+{
+    (void)error;
+    assert_true(first + count <= MOST_ROWS);
+    memcpy((dea_response *)user + first, points, count * sizeof(dea_response));
+    return DEA_OK;
+}
+
+static void small_motion_about_a_bias_is_that_of_the_membrane(void **state)
+{
+    static const dea_response known[] = {
+        {1.0, 1.958684830e-07, -0.061248, 5.081569720e8, -89.991833, DEA_STATE_OK},
+        {600.0, 8.019089950e-07, -44.117392, 6.441899044e5, -73.197756, DEA_STATE_OK},
+        {1200.0, 2.869630393e-08, -93.249076, 4.891210525e5, -88.709063, DEA_STATE_OK},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        dea_response rows[MOST_ROWS];
+        dea_error error = {0};
+        dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, 3000.0);
+        scene.models[0] = dea_model_find("field");
+        scene.accuracy = 1e-9;
+        scene.study = DEA_STUDY_AC;
+        scene.material.density = 1080.0;
+        scene.material.retardation = 20e-6;
+        scene.material.prony[0] = (dea_prony){0.1 / 1.1, 1e-3};
+        scene.material.prony_count = 1;
+        scene.ac = (dea_ac){.from = known[i].frequency, .to = known[i].frequency * 1.001, .points_per_decade = 1, .bias = 3000.0};
+        const dea_run_options options = {.jobs = 1, .points = take_responses, .user = rows};
+        if (dea_study_run(&scene, dea_engine_find("ngspice"), &options, &error) != DEA_OK) {
+            fail_msg("%s", error.message);
+        }
+        assert_true(is_close(rows[0].displacement, known[i].displacement, 5.1e-10, 0.0));
+        assert_true(is_close(rows[0].displacement_phase, known[i].displacement_phase, 0.0, 5.1e-7));
+        assert_true(is_close(rows[0].impedance, known[i].impedance, 1.1e-9, 0.0));
+        assert_true(is_close(rows[0].impedance_phase, known[i].impedance_phase, 0.0, 5.1e-7));
+    }
+}
+
 static char *export_of(const dea_scene *scene, const char *dialect)
 {
     char *text = NULL;
@@ -176,6 +215,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(strains_at_4500_volts_are_those_of_the_membrane),
         cmocka_unit_test(random_films_are_those_of_the_integration_along_the_radius),
         cmocka_unit_test(a_sweep_goes_on_behind_points_without_equilibrium),
+        cmocka_unit_test(small_motion_about_a_bias_is_that_of_the_membrane),
         cmocka_unit_test(what_is_exported_is_the_text_that_the_engine_runs),
         cmocka_unit_test(every_dialect_says_how_many_nodes_and_how_good),
     };

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "drive/wave.h"
 #include "scene/reader.h"
 
 /* A setting being parsed. */
@@ -107,28 +108,49 @@ static dea_node *path_enter(setting_reader *self, const char *path)
     return node;
 }
 
+/* Takes the file's @p other away beside a setting of @p path. */
+static void other_remove(setting_reader *self, const char *path, const char *other)
+{
+    const dea_node *node = dea_tree_find(self->reader->root, other);
+    if (node && strcmp(other, path) != 0 && !node->place.origin->setting) {
+        const char *dot = strrchr(other, '.');
+        char parent[DEA_NAME_LENGTH];
+        snprintf(parent, sizeof parent, "%.*s", (int)(dot - other), other);
+        dea_tree_remove(path_enter(self, parent), dot + 1);
+    }
+}
+
+/* A waveform has one form: of the table, or a file. */
+static void forms_remove(setting_reader *self, const char *path)
+{
+    static const char file[] = "drive.waveform.file";
+    bool member = strcmp(path, file) == 0;
+    for (dea_wave_kind i = DEA_WAVE_STEP; dea_wave_of(i); i++) {
+        member = member || strcmp(path, dea_wave_of(i)->path) == 0;
+    }
+    for (dea_wave_kind i = DEA_WAVE_STEP; member && dea_wave_of(i); i++) {
+        other_remove(self, path, dea_wave_of(i)->path);
+    }
+    if (member) {
+        other_remove(self, path, file);
+    }
+}
+
 /* Keys of which a scene gives one: a setting of one takes those of the file away. */
 static void alternatives_remove(setting_reader *self, const char *path)
 {
     static const char *const groups[][4] = {
         {"study.sweep", "study.transient", "study.ac"},
         {"study.over", "study.transient.over", "study.ac.over"},
-        {"drive.waveform.step", "drive.waveform.points", "drive.waveform.sine", "drive.waveform.file"},
     };
+    forms_remove(self, path);
     for (size_t i = 0; i < sizeof groups / sizeof *groups; i++) {
         bool member = false;
         for (size_t k = 0; k < 4 && groups[i][k]; k++) {
             member = member || strcmp(groups[i][k], path) == 0;
         }
         for (size_t k = 0; member && k < 4 && groups[i][k]; k++) {
-            const char *other = groups[i][k];
-            const char *dot = strrchr(other, '.');
-            const dea_node *node = dea_tree_find(self->reader->root, other);
-            if (node && strcmp(other, path) != 0 && !node->place.origin->setting) {
-                char parent[DEA_NAME_LENGTH];
-                snprintf(parent, sizeof parent, "%.*s", (int)(dot - other), other);
-                dea_tree_remove(path_enter(self, parent), dot + 1);
-            }
+            other_remove(self, path, groups[i][k]);
         }
     }
 }

@@ -106,7 +106,8 @@ static dea_status run_rows(const response *r, size_t count, answer *answers, dea
     if (count > 1) {
         const dea_mobility_band band = {.from = dea_layout_place(r->scene, 0),
                                         .to = dea_layout_place(r->scene, count - 2) * (1.0 + grid),
-                                        .points_per_decade = r->scene->ac.points_per_decade};
+                                        .points_per_decade = count > 2 ? r->scene->ac.points_per_decade : 0,
+                                        .count = 1};
         status = run_band(r, &band, count - 1, answers, error);
     }
     return status == DEA_OK ? run_band(r, &end, 1, &answers[count - 1], error) : status;

@@ -24,6 +24,14 @@ static double film_share(const dea_drive *drive)
     return drive->leakage_resistance / (drive->series_resistance + drive->leakage_resistance);
 }
 
+static void place_skin(const dea_electrode *electrode, dea_point *point)
+{
+    point->skin_share = electrode->law ? electrode->thickness / point->film_thickness : 0.0;
+    if (electrode->law) {
+        point->skin = dea_law_film(electrode->law, electrode->constants, 1.0);
+    }
+}
+
 void dea_point_place(const dea_scene *scene, dea_point *point)
 {
     const dea_actuator *actuator = &scene->actuator;
@@ -35,6 +43,7 @@ void dea_point_place(const dea_scene *scene, dea_point *point)
     point->voltage = scene->drive.voltage * film_share(&scene->drive);
     point->focal_length = actuator->focal_length;
     point->refractive_index = actuator->refractive_index;
+    place_skin(&scene->electrode, point);
 }
 
 bool dea_point_valid(const dea_point *point)
@@ -42,7 +51,7 @@ bool dea_point_valid(const dea_point *point)
     const dea_film *film = &point->film;
     return point->frame_radius > 0.0 && point->coverage > 0.0 && point->coverage < 1.0 && point->film_thickness > 0.0 &&
            film->prestretch >= 1.0 && film->permittivity > 0.0 && film->valid && isfinite(film->modulus) &&
-           isfinite(point->voltage);
+           isfinite(point->voltage) && (point->skin_share == 0.0 || (point->skin_share > 0.0 && point->skin.valid));
 }
 
 /* int w^2 dA over the disc of radius a [m^2]: w = R/a. */
@@ -68,6 +77,14 @@ static double moving_annulus(double a, double b)
     return 2.0 * DEA_PI * a * a * q;
 }
 
+double dea_electrode_mass(const dea_scene *scene)
+{
+    if (scene->electrode.law && !isnan(scene->electrode.density)) {
+        return scene->electrode.density * scene->electrode.thickness;
+    }
+    return isnan(scene->actuator.electrode_mass) ? 0.0 : scene->actuator.electrode_mass;
+}
+
 double dea_point_mass(const dea_scene *scene, const dea_point *point)
 {
     if (isnan(scene->material.density)) {
@@ -78,7 +95,7 @@ double dea_point_mass(const dea_scene *scene, const dea_point *point)
     const double reference = radius / point->film.prestretch; /* A = r_a/lambda_pre in the film of thickness H */
     const double film = moving_disc(reference) + moving_annulus(reference, b);
     const double electrode = point->kind == DEA_DOT ? moving_disc(radius) : moving_annulus(radius, b);
-    const double areal = isnan(scene->actuator.electrode_mass) ? 0.0 : scene->actuator.electrode_mass;
+    const double areal = dea_electrode_mass(scene);
     return scene->material.density * point->film_thickness * film + areal * electrode;
 }
 

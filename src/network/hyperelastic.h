@@ -9,6 +9,10 @@ dea_expr dea_hyperelastic_change(const dea_symbols *symbols, dea_expr e);
 /* sigma_1 - sigma(lambda_pre) [Pa] at the stretches lambda_pre (1 + e1), lambda_pre (1 + e2), likewise. */
 dea_expr dea_hyperelastic_principal(const dea_symbols *symbols, dea_expr e1, dea_expr e2);
 
+/* t lambda_pre^2/H sigma_e(1 + e1, 1 + e2) [Pa], the Cauchy stress that the skin adds to the film under it. Only where there is a
+ * skin. */
+dea_expr dea_hyperelastic_skin(const dea_symbols *symbols, dea_expr e1, dea_expr e2);
+
 /* A(lambda_a) = 2 pi r_a H/(lambda_pre^2 (1 + s)) [m^2]. */
 dea_expr dea_hyperelastic_area(const dea_symbols *symbols, dea_expr strain);
 

@@ -78,6 +78,7 @@ static dea_status open_run(run *r, const dea_model *model, dea_error *error)
                          .every = r->scene->transient.every,
                          .from_bias = r->scene->transient.from_bias};
     r->walk.chain = dea_walk_chain(&r->dynamics, r->walk.linear.stiffness);
+    r->walk.chain.stiffness += r->walk.linear.beside;
     r->rows = dea_layout_of(r->scene).rows;
     r->known = dea_peak_is_known(r->scene, &r->dynamics, &r->signal);
     return check_segments(r, error);

@@ -91,6 +91,10 @@ DEA_API double dea_electrode_mass(const dea_scene *scene);
  * the electrodes' mass per area counted over the pre-stretched film (physics: section 5). */
 DEA_API double dea_point_mass(const dea_scene *scene, const dea_point *point);
 
+/** First in-plane radial resonance of the exact membrane at rest, undamped and relaxed, with what dea_point_mass() counts [Hz]; NAN
+ * without density or where the film has no stiffness (physics: section 5, with electrodes). */
+DEA_API double dea_point_resonance(const dea_scene *scene, const dea_point *point);
+
 /** Focal length [m] of a plano-convex cap of liquid of fixed volume, V = pi h (3 a^2 + h^2)/6, over an aperture of radius
  * @p radius [m] at rest that is strained by @p strain [1]; @p rest is the focal length at strain 0 [m]. NAN where no cap has that:
  * its radius of curvature rest (n - 1) would be less than @p radius (physics: section 5, lens optics). */

@@ -105,10 +105,19 @@ typedef struct dea_axis {
     size_t count;                 /**< >= 1 */
 } dea_axis;
 
-/** What a study asks for. */
-typedef enum dea_study_kind { DEA_STUDY_SWEEP, DEA_STUDY_TRANSIENT, DEA_STUDY_AC } dea_study_kind;
+/** Kinds of study: code, and name of the row that tells all of it (src/study), which is its key too. */
+#define DEA_STUDY_LIST(X)                                                                                                        \
+    X(DEA_STUDY_SWEEP, sweep)                                                                                                    \
+    X(DEA_STUDY_TRANSIENT, transient)                                                                                            \
+    X(DEA_STUDY_AC, ac)
 
-enum { DEA_STUDIES = DEA_STUDY_AC + 1 };
+/** What a study asks for. */
+typedef enum dea_study_kind {
+#define X(code, name) code,
+    DEA_STUDY_LIST(X)
+#undef X
+        DEA_STUDIES
+} dea_study_kind;
 
 /** Most windows over which a transient averages, and most samples of one. */
 enum { DEA_WINDOWS = 8, DEA_SAMPLES_MAX = 4000000 };
@@ -170,7 +179,7 @@ typedef struct dea_scene {
     bool full;               /**< a transient leaves out nothing (see needs.h), default false; never read from a file */
     dea_reduction reduction; /**< never read from a file: set by dea_needs_find() */
     double accuracy;         /**< wanted relative error of the solution of the chosen model [1], 0 < accuracy < 1, default 1e-6 */
-    dea_study_kind study;    /**< sweep, transient or AC */
+    dea_study_kind study;    /**< what is asked for */
     dea_transient transient; /**< of a transient */
     dea_ac ac;               /**< of an AC study */
     dea_axis *axes;          /**< axes of the sweep, or of `over`, in the order of the file; none is one point */

@@ -274,7 +274,7 @@ static void check_optics(const part *p, int *count)
 }
 
 /* Name of a constant as a parameter: in lower case, of a list with the number of its entry. */
-static void constant_name(const dea_law *law, size_t i, char name[DEA_PART_NAME])
+void dea_part_constant_name(const dea_law *law, size_t i, char name[DEA_PART_NAME])
 {
     char number[24] = "";
     if (law->entries > 1) {
@@ -293,7 +293,7 @@ static void check_law(const part *p, const form *of, int *count)
     line(p, "* constants of the law, moduli in units of %.0f Pa", of->stress);
     for (size_t i = 0; i < p->constants; i++) {
         const dea_constant *constant = &p->law->constants[i % p->law->constant_count];
-        constant_name(p->law, i, name);
+        dea_part_constant_name(p->law, i, name);
         snprintf(raw, sizeof raw, constant->modulus ? "%s/%.0f" : "%s", name, of->stress);
         if (constant->low == 0.0) {
             const bool small = constant->modulus && of->stress > 1.0;
@@ -628,7 +628,7 @@ static void add_constants(const dea_material *material, dea_part_parameter *list
     for (size_t i = 0; i < constants_in_use(material); i++) {
         const dea_constant *constant = &material->law->constants[i % material->law->constant_count];
         char name[DEA_PART_NAME];
-        constant_name(material->law, i, name);
+        dea_part_constant_name(material->law, i, name);
         add(list, count, name, constant->unit, "", constants[i]);
         dea_part_parameter *entry = &list[*count - 1];
         snprintf(entry->meaning, sizeof entry->meaning, "%s constant %s%s", material->law->title, constant->name,

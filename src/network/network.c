@@ -187,7 +187,7 @@ static void coat(const dea_scene *scene, const dea_axis *axis, dea_symbols *s)
     s->skin_share = s->skin ? DIV(scalar(pool, scene, axis, &electrode->thickness), s->film_thickness) : NUM(0.0);
 }
 
-static dea_symbols symbols_of(const dea_scene *scene, const dea_axis *axis, dea_pool *pool)
+dea_symbols dea_symbols_of(const dea_scene *scene, const dea_axis *axis, dea_pool *pool)
 {
     const dea_actuator *actuator = &scene->actuator;
     const dea_material *material = &scene->material;
@@ -323,7 +323,7 @@ dea_status dea_network_build(const dea_scene *scene, const dea_model *model, con
     if (network->pool.exhausted) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built");
     }
-    const dea_symbols symbols = symbols_of(scene, axis, &network->pool);
+    const dea_symbols symbols = dea_symbols_of(scene, axis, &network->pool);
     return dea_network_build_symbols(&symbols, model, network, error);
 }
 

@@ -105,6 +105,8 @@ dea_expr dea_network_elastic(dea_network *network);
 dea_expr dea_network_load(dea_network *network);
 
 /* Shared pieces of the models' networks. */
+/* The symbols of a scene: numbers, or expressions of symbol 0 where the axis (may be NULL) enters. */
+dea_symbols dea_symbols_of(const dea_scene *scene, const dea_axis *axis, dea_pool *pool);
 /* Cauchy stress of the film at the pre-stretch, the same in all directions of its plane [Pa]. */
 dea_expr dea_symbols_rest_stress(const dea_symbols *symbols);
 /* Tangent moduli W11 and W12 at the pre-stretch [Pa]. */

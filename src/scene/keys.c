@@ -6,36 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/reader.h"
+#include "scene/key_forms.h"
+#include "study/study.h"
 #include "support/text.h"
-
-#define AT(member) offsetof(dea_scene, member)
-#define SCALAR(name, member, si, ending, from, to, ends, has, shown, help)                                                       \
-    {                                                                                                                            \
-        .path = name, .read = dea_read_scalar, .offset = AT(member), .unit = si, .suffix = ending, .low = from, .high = to,      \
-        .open = ends, .kinds = has, .words = shown, .accepted = help                                                             \
-    }
-#define PART(name, member, si, ending, from, to, ends, shown, mapping, help)                                                     \
-    {                                                                                                                            \
-        .path = name, .read = dea_read_scalar, .offset = AT(member), .unit = si, .suffix = ending, .low = from, .high = to,      \
-        .open = ends, .kinds = DEA_KEY_BOTH, .words = shown, .within = mapping, .accepted = help                                 \
-    }
-#define ENTRY(name, list, member, si, ending, from, to, ends, shown, help)                                                       \
-    {                                                                                                                            \
-        .path = name, .read = dea_read_scalar, .offset = AT(list[0].member), .stride = sizeof(((dea_scene *)0)->list[0]),        \
-        .unit = si, .suffix = ending, .low = from, .high = to, .open = ends, .kinds = DEA_KEY_BOTH, .words = shown,              \
-        .accepted = help                                                                                                         \
-    }
-#define OTHER(name, reader, help)                                                                                                \
-    {                                                                                                                            \
-        .path = name, .read = reader, .offset = DEA_KEY_NOWHERE, .kinds = DEA_KEY_BOTH, .accepted = help                         \
-    }
 
 #define STEP "drive.waveform.step"
 #define SINE "drive.waveform.sine"
-#define TRANSIENT "study.transient"
-#define AVERAGE "study.transient.average"
-#define AC "study.ac"
 
 static const dea_key keys_before[] = {
     OTHER("title", dea_read_title, "one line of text, at most 1000 bytes"),
@@ -147,40 +123,19 @@ static const dea_key keys_behind[] = {
     OTHER("model", dea_read_model, "a model name or a list of them"),
     SCALAR("model_error", model_error, "1", "", 0, 1, true, DEA_KEY_BOTH, 0, "a relative error > 0 and < 1, e.g. 1 %"),
     OTHER("engine", dea_read_engine, "auto, an engine, or a list of engines in the order in which they are asked"),
-    OTHER("study", dea_read_mapping, "a mapping with sweep, transient or ac, e.g. {sweep: {}} for the scene as one point"),
-    OTHER("study.sweep", dea_read_later, "a mapping of axes, e.g. {coverage: [0.25, 0.5]}"),
-    OTHER(TRANSIENT, dea_read_mapping, "a mapping with until, every, average, start and over, e.g. {until: 25 s, every: 10 ms}"),
-    PART(TRANSIENT ".until", transient.until, "s", "_s", 0, INFINITY, true, 0, TRANSIENT, "a time > 0, e.g. 25 s"),
-    PART(TRANSIENT ".every", transient.every, "s", "_s", 0, INFINITY, true, 0, TRANSIENT, "a time > 0, e.g. 10 ms"),
-    OTHER(AVERAGE, dea_read_average, "a window of time, e.g. {from: 6 s, to: 8 s}, or a list of at most 8"),
-    PART(AVERAGE ".from", transient.averages[0].from, "s", "_s", 0, INFINITY, false, 0, AVERAGE, "a time >= 0, e.g. 6 s"),
-    PART(AVERAGE ".to", transient.averages[0].to, "s", "_s", 0, INFINITY, true, 0, AVERAGE, "a time > from, e.g. 8 s"),
-    OTHER(AVERAGE ".#", dea_read_mapping, "a window of time, e.g. {from: 6 s, to: 8 s}"),
-    ENTRY(AVERAGE ".#.from", transient.averages, from, "s", "_s", 0, INFINITY, false, 0, "a time >= 0, e.g. 6 s"),
-    ENTRY(AVERAGE ".#.to", transient.averages, to, "s", "_s", 0, INFINITY, true, 0, "a time > from, e.g. 8 s"),
-    OTHER(TRANSIENT ".start", dea_read_start, "rest, bias"),
-    {.path = TRANSIENT ".over",
-     .read = dea_read_later,
-     .offset = DEA_KEY_NOWHERE,
-     .kinds = DEA_KEY_BOTH,
-     .within = TRANSIENT ".over",
-     .accepted = "a mapping of axes, e.g. {coverage: [0.25, 0.5]}"},
-    OTHER(AC, dea_read_mapping, "a mapping with from, to, points_per_decade, bias and over, e.g. {from: 1 Hz, to: 10 kHz}"),
-    PART(AC ".from", ac.from, "Hz", "_Hz", 0, INFINITY, true, 0, AC, "a frequency > 0, e.g. 1 Hz"),
-    PART(AC ".to", ac.to, "Hz", "_Hz", 0, INFINITY, true, 0, AC, "a frequency >= from, e.g. 10 kHz"),
-    OTHER(AC ".points_per_decade", dea_read_points_per_decade, "a whole number 1 ... 10000"),
-    PART(AC ".bias", ac.bias, "V", "_V", -INFINITY, INFINITY, true, 1, AC, "a voltage, e.g. 4500 V"),
-    {.path = AC ".over",
-     .read = dea_read_later,
-     .offset = DEA_KEY_NOWHERE,
-     .kinds = DEA_KEY_BOTH,
-     .within = AC ".over",
-     .accepted = "a mapping of axes, e.g. {coverage: [0.25, 0.5]}"},
+#define X(code, name) #name ", "
+    OTHER("study", dea_read_mapping, "a mapping with " DEA_STUDY_LIST(X) "e.g. {sweep: {}} for the scene as one point"),
+#undef X
+};
+
+/* Here stand the keys of the kinds of study. */
+
+static const dea_key keys_last[] = {
     OTHER("study.over", dea_read_later, "a mapping of axes, e.g. {coverage: [0.25, 0.5]}"),
     SCALAR("accuracy", accuracy, "1", "", 0, 1, true, DEA_KEY_BOTH, 0, "a relative error > 0 and < 1, e.g. 1e-6"),
 };
 
-enum { BEFORE = sizeof keys_before / sizeof *keys_before, BEHIND = sizeof keys_behind / sizeof *keys_behind };
+#define COUNT(keys) (sizeof keys / sizeof *keys)
 
 /* What holds constants of a law. */
 typedef struct holder {
@@ -221,13 +176,23 @@ static bool law_key(const holder *of, const dea_law *law, size_t index, dea_key 
     return true;
 }
 
+/* Key number *@p index of some keys; where there are fewer, it becomes the number in those that follow. */
+static bool listed_key(const dea_key *keys, size_t count, size_t *index, dea_key *key)
+{
+    const bool found = *index < count;
+    if (found) {
+        *key = keys[*index];
+    } else {
+        *index -= count;
+    }
+    return found;
+}
+
 bool dea_key_at(size_t index, dea_key *key)
 {
-    if (index < BEFORE) {
-        *key = keys_before[index];
+    if (listed_key(keys_before, COUNT(keys_before), &index, key)) {
         return true;
     }
-    index -= BEFORE;
     for (size_t i = 0; i < (size_t)HOLDERS * dea_law_count(); i++) {
         const dea_law *law = dea_law_at(i % dea_law_count());
         const size_t count = law->constant_count + (law->entries > 1 ? 2 : 1);
@@ -236,10 +201,16 @@ bool dea_key_at(size_t index, dea_key *key)
         }
         index -= count;
     }
-    if (index < BEHIND) {
-        *key = keys_behind[index];
+    if (listed_key(keys_behind, COUNT(keys_behind), &index, key)) {
+        return true;
     }
-    return index < BEHIND;
+    for (dea_study_kind kind = 0; kind < DEA_STUDIES; kind++) {
+        const dea_study *study = dea_study_at(kind);
+        if (listed_key(study->keys, study->key_count, &index, key)) {
+            return true;
+        }
+    }
+    return listed_key(keys_last, COUNT(keys_last), &index, key);
 }
 
 /* Copies @p name with every component that is a number below DEA_PRONY_MAX written as "#", the last of them kept in *index. */
@@ -416,14 +387,15 @@ static size_t depth_of(const char *path)
     return depth;
 }
 
-/* The key whose last component is @p name, the least deep of several; false where there is none, or that is not one alone. */
+/* The key whose last component is @p name, the least deep of several, one of an electrode only where no other is; false where there
+ * is none, or that is not one alone. */
 static bool namesake(const char *name, dea_key *found)
 {
     dea_key key;
     size_t least = SIZE_MAX;
     size_t count = 0;
     for (size_t i = 0; dea_key_at(i, &key); i++) {
-        const size_t depth = depth_of(key.path);
+        const size_t depth = depth_of(key.path) + (strncmp(key.path, "electrode.", 10) == 0 ? DEA_TREE_DEPTH : 0);
         if (is_anywhere(&key, NULL) && depth <= least && strcmp(last_component(key.path), name) == 0) {
             count = depth < least ? 1 : count + 1;
             least = depth;

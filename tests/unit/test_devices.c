@@ -285,6 +285,30 @@ static void engines_agree_on_shaken_skins(void **state)
     }
 }
 
+/* So slowly that the film follows, the membrane answers with the slope of its static displacement. */
+static void a_slow_membrane_moves_its_skin_along(void **state)
+{
+    (void)state;
+    static const char *const kinds[] = {FILM("dot", "") PAPER SKIN "drive: {voltage: 3 kV}\nstudy: {sweep: {}}\n",
+                                        FILM("lens", "") PAPER SKIN "drive: {voltage: 3 kV}\nstudy: {sweep: {}}\n"};
+    for (int k = 0; k < 2; k++) {
+        dea_scene scene;
+        dea_error error = {0};
+        dea_response row;
+        read_scene(kinds[k], "field", &scene);
+        scene.accuracy = 1e-9;
+        scene.drive.voltage = 3001.0;
+        const double above = solve_direct(&scene, "field").displacement;
+        scene.drive.voltage = 2999.0;
+        const double below = solve_direct(&scene, "field").displacement;
+        scene.study = DEA_STUDY_AC;
+        scene.ac = (dea_ac){.from = 1e-3, .to = 1e-3, .points_per_decade = 1, .bias = 3000.0};
+        assert_int_equal(dea_engine_find("direct")->ac(NULL, &scene, scene.models[0], &row, NULL, &error), DEA_OK);
+        assert_relative(row.displacement, fabs(0.5 * (above - below)), 1e-6);
+        dea_scene_free(&scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -297,6 +321,7 @@ int main(void)
         cmocka_unit_test(engines_agree_on_skins),
         cmocka_unit_test(engines_agree_on_moving_skins),
         cmocka_unit_test(engines_agree_on_shaken_skins),
+        cmocka_unit_test(a_slow_membrane_moves_its_skin_along),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

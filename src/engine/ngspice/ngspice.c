@@ -10,6 +10,7 @@
 #include "engine/ngspice/moving.h"
 #include "netlist/netlist.h"
 #include "network/balance.h"
+#include "study/study.h"
 
 enum {
     RAMP_STEPS = 50,
@@ -39,10 +40,7 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
     if (!model->network) {
         return "it has no network form that ngspice could solve";
     }
-    if (scene->study != DEA_STUDY_SWEEP && !model->dynamic) {
-        return "it is a model of statics alone";
-    }
-    if (scene->study == DEA_STUDY_TRANSIENT && scene->accuracy < 1e-6) {
+    if (dea_study_of(scene)->timed && scene->accuracy < 1e-6) {
         return "its trapezoidal rule is good to 1e-6 in a transient, the scene wants more";
     }
     return scene->accuracy < 1e-9 ? "its answers are good to 1e-9, the scene wants more" : NULL;

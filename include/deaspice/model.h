@@ -85,6 +85,14 @@ DEA_API const dea_model *dea_model_at(size_t index);
 /** Model by name, NULL if there is none. */
 DEA_API const dea_model *dea_model_find(const char *name);
 
+/** Resistance between source and film [Ohm], NAN: none. That of the drive, and what the electrodes' sheets are as one resistance
+ * (see dea_sheet_share()) where they have one. */
+DEA_API double dea_series_resistance(const dea_scene *scene);
+/** A sheet of 1 Ohm per square on the electroded region, fed from its outer rim, as one resistance [1]: the charge that flows in is
+ * spread evenly, so that I^2 R = int_a^b I(r)^2/(2 pi r) dr with I(r) = I (r^2 - a^2)/(b^2 - a^2). 1/(8 pi) of a disc; of the
+ * annulus of a lens [x (1 - 3 B^2)/4 - B^4 ln B]/(2 pi x^2) with x = 1 - B^2. @p layers films between layers + 1 sheets, the inner
+ * ones of which feed two: (4 layers - 2)/layers^2 times that. */
+DEA_API double dea_sheet_share(dea_kind kind, double coverage, double layers);
 /** Mass of the electrodes per area of pre-stretched film [kg/m^2], 0: none. */
 DEA_API double dea_electrode_mass(const dea_scene *scene);
 /** Mass of film and electrodes that moves with the disc edge [kg], 0 without density: Rayleigh with the shape of Lame's solution,

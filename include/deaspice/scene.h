@@ -51,6 +51,7 @@ typedef struct dea_electrode {
     size_t entry_count;                  /**< entries in use of a law that is a list, else 1 */
     double thickness;                    /**< t [m], > 0, NAN: none */
     double density;                      /**< [kg/m^3], > 0, NAN: no mass but actuator.electrode_mass */
+    double sheet_resistance;             /**< of one electrode [Ohm per square], > 0, NAN: none */
 } dea_electrode;
 
 /** Kinds of waveform. A file and a list of points are both points. */

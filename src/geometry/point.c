@@ -15,13 +15,47 @@ void dea_film_prepare(const dea_scene *scene, dea_film *film)
     film->modulus = isnan(material->modulus) ? film->slope : material->modulus * dea_material_long_term_share(material);
 }
 
-/* Share of the source voltage that a leaking film sees at rest: R_p/(R_s + R_p). */
-static double film_share(const dea_drive *drive)
+static double coverage_of(const dea_actuator *actuator)
 {
-    if (isnan(drive->series_resistance) || isnan(drive->leakage_resistance)) {
-        return 1.0;
+    return isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
+}
+
+/* x (1 - 3 B^2)/4 - B^4 ln B with x = 1 - B^2 is sum of x^k/(k (k - 1) (k - 2)) from k = 3 on: of a narrow annulus the terms cancel. */
+static double sheet_of_annulus(double b)
+{
+    const double b2 = b * b, x = (1.0 - b) * (1.0 + b);
+    if (x > 0.2) {
+        return (0.25 * x * (1.0 - 3.0 * b2) - b2 * b2 * log(b)) / (2.0 * DEA_PI * x * x);
     }
-    return drive->leakage_resistance / (drive->series_resistance + drive->leakage_resistance);
+    double sum = 0.0, power = x;
+    for (int k = 3; k < 30; k++, power *= x) {
+        sum += power / (k * (k - 1) * (k - 2));
+    }
+    return sum / (2.0 * DEA_PI);
+}
+
+double dea_sheet_share(dea_kind kind, double coverage, double layers)
+{
+    const double one = kind == DEA_DOT ? 0.125 / DEA_PI : sheet_of_annulus(coverage);
+    return one * (4.0 * layers - 2.0) / (layers * layers);
+}
+
+double dea_series_resistance(const dea_scene *scene)
+{
+    const dea_actuator *actuator = &scene->actuator;
+    const double sheet = scene->electrode.sheet_resistance, drive = scene->drive.series_resistance;
+    if (!(sheet > 0.0)) {
+        return drive;
+    }
+    const double own = sheet * dea_sheet_share(actuator->kind, coverage_of(actuator), actuator->layers);
+    return isnan(drive) ? own : drive + own;
+}
+
+/* Share of the source voltage that a leaking film sees at rest: R_p/(R_s + R_p). */
+static double film_share(const dea_scene *scene)
+{
+    const double leakage = scene->drive.leakage_resistance, series = dea_series_resistance(scene);
+    return isnan(series) || isnan(leakage) ? 1.0 : leakage / (series + leakage);
 }
 
 static void place_skin(const dea_electrode *electrode, dea_point *point)
@@ -37,10 +71,10 @@ void dea_point_place(const dea_scene *scene, dea_point *point)
     const dea_actuator *actuator = &scene->actuator;
     point->kind = actuator->kind;
     point->frame_radius = actuator->frame_radius;
-    point->coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
+    point->coverage = coverage_of(actuator);
     point->film_thickness = actuator->layers * actuator->film_thickness;
     point->layers = actuator->layers;
-    point->voltage = scene->drive.voltage * film_share(&scene->drive);
+    point->voltage = scene->drive.voltage * film_share(scene);
     point->focal_length = actuator->focal_length;
     point->refractive_index = actuator->refractive_index;
     place_skin(&scene->electrode, point);

@@ -81,8 +81,9 @@ bool dea_dynamics_relax(dea_dynamics *d, const dea_scene *scene)
 static void set_port(const dea_scene *scene, dea_dynamics *d)
 {
     const dea_drive *drive = &scene->drive;
-    d->port = !isnan(drive->series_resistance) || !isnan(drive->leakage_resistance);
-    d->series = isnan(drive->series_resistance) ? 0.0 : drive->series_resistance;
+    const double series = dea_series_resistance(scene);
+    d->port = !isnan(series) || !isnan(drive->leakage_resistance);
+    d->series = isnan(series) ? 0.0 : series;
     if (scene->reduction.series) {
         d->dropped = d->series;
         d->series = 0.0;
@@ -137,7 +138,7 @@ static dea_status compile(dea_network *network, dea_dynamics *d, dea_error *erro
 static dea_scene film_of(const dea_scene *scene)
 {
     dea_scene film = *scene;
-    film.drive.series_resistance = film.drive.leakage_resistance = (double)NAN;
+    film.electrode.sheet_resistance = film.drive.series_resistance = film.drive.leakage_resistance = (double)NAN;
     film.drive.voltage = 1.0;
     return film;
 }

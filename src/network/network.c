@@ -100,12 +100,31 @@ static dea_expr long_term_share(dea_pool *pool, const dea_scene *scene, const de
     return share;
 }
 
+/* What the sheets of the electrodes add to the series resistance: dea_sheet_share(). */
+static dea_expr sheet_resistance(dea_pool *pool, const dea_scene *scene, const dea_axis *axis, dea_expr b, dea_expr layers)
+{
+    const dea_expr sheet = scalar(pool, scene, axis, &scene->electrode.sheet_resistance), b2 = SQUARE(b);
+    dea_expr share = NUM(0.125 / DEA_PI);
+    if (scene->actuator.kind == DEA_LENS && !isnan(dea_expr_constant(pool, b))) {
+        share = NUM(dea_sheet_share(DEA_LENS, dea_expr_constant(pool, b), 1.0) / 2.0);
+    } else if (scene->actuator.kind == DEA_LENS) {
+        const dea_expr x = SUB(NUM(1.0), b2);
+        const dea_expr rest = SUB(SCALE(0.25, MUL(x, SUB(NUM(1.0), SCALE(3.0, b2)))), MUL(SQUARE(b2), LN(b)));
+        share = SCALE(0.5 / DEA_PI, DIV(rest, SQUARE(x)));
+    }
+    return MUL(MUL(sheet, share), DIV(SUB(SCALE(4.0, layers), NUM(2.0)), SQUARE(layers)));
+}
+
 /* Source voltage, less what a leaking film leaves on the series resistance. */
-static dea_expr film_voltage(dea_pool *pool, const dea_scene *scene, const dea_axis *axis)
+static dea_expr film_voltage(dea_pool *pool, const dea_scene *scene, const dea_axis *axis, const dea_symbols *s)
 {
     const dea_expr source = scalar(pool, scene, axis, &scene->drive.voltage);
-    const dea_expr series = scalar(pool, scene, axis, &scene->drive.series_resistance);
     const dea_expr leakage = scalar(pool, scene, axis, &scene->drive.leakage_resistance);
+    dea_expr series = scalar(pool, scene, axis, &scene->drive.series_resistance);
+    if (scene->electrode.sheet_resistance > 0.0) {
+        const dea_expr sheet = sheet_resistance(pool, scene, axis, s->coverage, s->layers);
+        series = given(pool, series) ? ADD(series, sheet) : sheet;
+    }
     if (!given(pool, series) || !given(pool, leakage)) {
         return source;
     }
@@ -212,7 +231,7 @@ dea_symbols dea_symbols_of(const dea_scene *scene, const dea_axis *axis, dea_poo
     const dea_expr breakdown = scalar(pool, scene, axis, &material->breakdown);
     s.breakdown = given(pool, breakdown) ? breakdown : NUM(INFINITY);
     coat(scene, axis, &s);
-    s.voltage = film_voltage(pool, scene, axis);
+    s.voltage = film_voltage(pool, scene, axis, &s);
     s.focal_length = scalar(pool, scene, axis, &actuator->focal_length);
     s.refractive_index = scalar(pool, scene, axis, &actuator->refractive_index);
     return s;

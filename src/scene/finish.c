@@ -96,6 +96,21 @@ static dea_status law_check(dea_reader *reader, const dea_holder *holder)
     return dea_place_fail(dea_reader_place(reader, first, holder->name), reader->error, path, "%s", fault);
 }
 
+/* One resistance stands for the sheets of a film whose electrode moves as one. */
+static dea_status sheet_check(dea_reader *reader)
+{
+    const dea_scene *scene = reader->scene;
+    const size_t sheet = offsetof(dea_scene, electrode.sheet_resistance);
+    for (size_t i = 0; i < scene->model_count && dea_study_of(scene)->moves; i++) {
+        if (scene->models[i]->membrane) {
+            return dea_place_fail(dea_reader_place(reader, sheet, "electrode"), reader->error, "electrode.sheet_resistance",
+                                  "is one resistance, which the model %s has no place for; accepted: models of one node, e.g. ring",
+                                  scene->models[i]->name);
+        }
+    }
+    return DEA_OK;
+}
+
 /* A skin is a thickness with a law; electrodes have mass by their density or per area, not both. */
 static dea_status electrode_check(dea_reader *reader)
 {
@@ -103,6 +118,12 @@ static dea_status electrode_check(dea_reader *reader)
     const size_t density = offsetof(dea_scene, electrode.density);
     if (!dea_tree_child(reader->root, "electrode")) {
         return DEA_OK;
+    }
+    if (!isnan(electrode->sheet_resistance)) {
+        const dea_status status = sheet_check(reader);
+        if (status || (isnan(electrode->thickness) && !electrode->law && isnan(electrode->density))) {
+            return status;
+        }
     }
     if (isnan(electrode->thickness)) {
         return dea_reader_missing(reader, "electrode", "electrode.thickness");

@@ -309,6 +309,60 @@ static void a_slow_membrane_moves_its_skin_along(void **state)
     }
 }
 
+/* I^2 R = sum over electrodes of the integral of I(r)^2/(2 pi r), the charge going evenly into the film; inner electrodes feed two
+ * films. */
+static void sheets_are_one_resistance_of_the_same_loss(void **state)
+{
+    (void)state;
+    static const double coverages[] = {0.1, 0.5, 0.88, 0.9, 0.999};
+    for (size_t i = 0; i < sizeof coverages / sizeof *coverages; i++) {
+        for (int lens = 0; lens < 2; lens++) {
+            const int cuts = 20000, layers = 1 + (int)i;
+            const long double inner = lens ? (long double)coverages[i] : 0.0L, width = (1.0L - inner) / cuts;
+            long double loss = 0.0L, all = 0.0L;
+            for (int k = 0; k < cuts; k++) {
+                const long double r = inner + (k + 0.5L) * width;
+                const long double flow = (r - inner) * (r + inner) / ((1.0L - inner) * (1.0L + inner));
+                loss += flow * flow / (2.0L * acosl(-1.0L) * r) * width;
+            }
+            for (int sheet = 0; sheet <= layers; sheet++) {
+                const long double films = sheet == 0 || sheet == layers ? 1.0L : 2.0L;
+                all += loss * films * films / ((long double)layers * layers);
+            }
+            assert_relative(dea_sheet_share(lens ? DEA_LENS : DEA_DOT, coverages[i], layers), (double)all, 1e-7);
+        }
+    }
+}
+
+static void sheets_add_to_the_series_resistance(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        char sheets[1024], one_resistance[1024];
+        const double own = 50e6 * dea_sheet_share(k ? DEA_LENS : DEA_DOT, 0.5, 2.0);
+        const char *film = k ? FILM("lens", ", layers: 2") LOSSY MOVED : FILM("dot", ", layers: 2") LOSSY MOVED;
+        const char *step = "waveform: {step: {on: 0 s, voltage: 4 kV, rise: 0.1 ms}}, leakage_resistance: 1 GOhm";
+        snprintf(sheets, sizeof sheets, "%selectrode: {sheet_resistance: 50 MOhm}\ndrive: {%s, series_resistance: 100 kOhm}\n", film, step);
+        snprintf(one_resistance, sizeof one_resistance, "%sdrive: {%s, series_resistance: %.17g Ohm}\n", film, step, 1e5 + own);
+        run(sheets, "ring", "ida", &one);
+        run(one_resistance, "ring", "ida", &other);
+        const dea_sample *wanted = (const dea_sample *)other.bytes, *rows = (const dea_sample *)one.bytes;
+        for (size_t i = 0; i < one.rows; i++) {
+            assert_near(rows[i].displacement, wanted[i].displacement, 1e-9 * fabs(wanted[40].displacement));
+            assert_near(rows[i].current, wanted[i].current, 1e-9 * wanted[1].current);
+        }
+        snprintf(sheets, sizeof sheets, "%s" PAPER "electrode: {sheet_resistance: 5 GOhm}\ndrive: {voltage: 4 kV, leakage_resistance: 1 GOhm}\n"
+                 "study: {sweep: {coverage: [0.3, 0.6]}}\n", k ? FILM("lens", "") : FILM("dot", ""));
+        run(sheets, "ring", "direct", &other);
+        for (size_t e = 1; e < ENGINES; e++) {
+            run(sheets, "ring", engines[e], &one);
+            for (int i = 0; i < 2; i++) {
+                assert_relative(((const dea_row *)one.bytes)[i].charge, ((const dea_row *)other.bytes)[i].charge, 1e-8);
+            }
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -322,6 +376,8 @@ int main(void)
         cmocka_unit_test(engines_agree_on_moving_skins),
         cmocka_unit_test(engines_agree_on_shaken_skins),
         cmocka_unit_test(a_slow_membrane_moves_its_skin_along),
+        cmocka_unit_test(sheets_are_one_resistance_of_the_same_loss),
+        cmocka_unit_test(sheets_add_to_the_series_resistance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -35,7 +35,7 @@ const char *dea_direct_refuses_transient(const dea_scene *scene, const dea_model
     if (!model->linear) {
         return "its springs are not linear, so that a transient has no closed form";
     }
-    if (scene->drive.series_resistance > 0.0 && !scene->reduction.series) {
+    if (dea_series_resistance(scene) > 0.0 && !scene->reduction.series) {
         return "the charging of the film through a series resistance is not linear";
     }
     dea_film_prepare(scene, &point.film);

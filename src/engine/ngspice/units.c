@@ -106,6 +106,7 @@ dea_status dea_units_enter(const dea_units *units, const dea_scene *scene, dea_s
     actuator->electrode_mass *= density(units) * units->thickness;
     inside->electrode.thickness *= units->thickness;
     inside->electrode.density *= density(units);
+    inside->electrode.sheet_resistance *= resistance(units);
     enter_law(units, inside->electrode.law, inside->electrode.constants);
     enter_material(units, &inside->material);
     inside->drive.series_resistance *= resistance(units);

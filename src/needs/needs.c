@@ -134,7 +134,7 @@ static double change_over(const dea_surrogate *s, const dea_segment *segment, do
 {
     const double length = segment->to - segment->from, largest = s->largest * s->largest;
     if (segment->sine) {
-        const double frequency = dea_surrogate_signal(s)->sine.frequency;
+        const double frequency = dea_surrogate_signal(s)->curve.tones[0].frequency;
         return 4.0 * (1.0 + frequency * fmin(length, forgotten)) * fmin(1.0, 2.0 * DEA_PI * frequency * quick);
     }
     const double start = segment->start * segment->start, end = segment->end * segment->end;
@@ -471,6 +471,12 @@ dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const 
     bool usable;
     *needs = (dea_needs){.resonance = (double)NAN, .decay = (double)NAN};
     if (!dea_study_of(scene)->timed || engine->omits == 0) {
+        return DEA_OK;
+    }
+    if (model->membrane) { /* no stand-in of one node tells what its modes do */
+        const dea_swing swing = dea_swing_free(scene, model);
+        needs->resonance = swing.frequency;
+        needs->decay = swing.decay;
         return DEA_OK;
     }
     dea_status status = dea_surrogate_open(scene, model, &p.surrogate, &usable, error);

@@ -53,8 +53,8 @@ static void omit(planner *p, dea_omission omission)
 static bool is_start(const planner *p, size_t probe)
 {
     const dea_scene *scene = p->surrogate.scene;
-    const bool held = !isnan(scene->material.density) || scene->actuator.electrode_mass > 0.0 ||
-                      !isnan(scene->material.retardation) || scene->drive.series_resistance > 0.0;
+    const bool held = !isnan(scene->material.density) || dea_electrode_mass(scene) > 0.0 ||
+                      !isnan(scene->material.retardation) || dea_series_resistance(scene) > 0.0;
     return held && scene->transient.from_bias && probe == 0;
 }
 

@@ -448,24 +448,25 @@ static double edge_force(const dea_membrane *m, const dea_membrane_look *look, d
 void dea_membrane_row(const dea_membrane *m, const dea_membrane_look *look, double voltage, const double *u, dea_row *row)
 {
     const double k = square_of(m, voltage), tension = m->film.point.film.tension;
-    double least = INFINITY, largest = 0.0;
+    double loss[2][DEA_RINGS_MOST], area[DEA_RINGS_MOST], most = -INFINITY; /* of stresses */
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         const dea_ring_look *at = &look->rings[r];
-        const bool electroded = m->rings.rings[r].electroded;
-        const double area = at->stretch[0] * at->stretch[1];
+        area[r] = at->stretch[0] * at->stretch[1];
         for (int a = 0; a < 2; a++) {
-            least = fmin(least, tension + at->nominal[a] - (electroded ? k * area * at->stretch[1 - a] : 0.0));
+            loss[a][r] = (m->rings.rings[r].electroded ? k * area[r] * at->stretch[1 - a] : 0.0) - at->nominal[a];
         }
-        largest = electroded ? fmax(largest, area) : largest;
+    }
+    for (int i = 0; i < 4; i++) {
+        most = fmax(most, dea_rings_largest(&m->rings, i < 2, loss[i % 2]));
     }
     dea_point point = m->film.point;
     point.voltage = voltage;
     dea_row_fill(row, &point,
                  (dea_found){.strain = u[m->rings.edge] / m->film.radius,
                              .force = edge_force(m, look, voltage),
-                             .stretch = largest,
+                             .stretch = dea_rings_largest(&m->rings, m->film.point.kind == DEA_DOT, area),
                              .capacitance = look->capacitance,
-                             .taut = least > 0.0});
+                             .taut = tension > most});
 }
 
 /* dC/dt [F/s]. */

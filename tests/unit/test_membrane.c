@@ -297,6 +297,88 @@ static void a_step_is_that_of_the_table(void **state)
     }
 }
 
+/* A film without mass and damper that follows a slow ramp of the voltage. */
+static dea_scene slow_scene(dea_kind kind, double voltage)
+{
+    dea_scene scene = step_scene(kind, 1.2, 0.4, voltage, 1.0);
+    scene.material.density = (double)NAN;
+    scene.material.breakdown = 1.1e8;
+    scene.transient = (dea_transient){.until = 1.0, .every = 1.0 / 128.0};
+    scene.drive.leakage_resistance = 1e9;
+    return scene;
+}
+
+static void a_film_without_mass_follows_the_field_in_every_state(void **state)
+{
+    (void)state;
+    static membrane_run run;
+    size_t seen[DEA_STATE_COUNT] = {0};
+    for (int kind = DEA_DOT; kind <= DEA_LENS; kind++) {
+        dea_scene scene = slow_scene((dea_kind)kind, 7000.0);
+        run_field(&scene, &run);
+        scene.accuracy = 1e-9;
+        scene.drive.leakage_resistance = (double)NAN;
+        for (size_t i = 0; i < run.rows; i++) {
+            scene.drive.voltage = run.samples[i].voltage;
+            const dea_row row = solve_direct(&scene, "field");
+            seen[run.samples[i].state]++;
+            assert_int_equal(run.samples[i].state, row.state);
+            assert_near(run.samples[i].displacement, row.displacement, 1e-6 * 2e-3);
+            assert_near(run.samples[i].charge, row.charge, 1e-5 * 4e-6);
+            assert_near(run.samples[i].force, row.force, 1e-5 * 2.0);
+        }
+        assert_true(run.summary.residual <= 1e-5);
+    }
+    assert_true(seen[DEA_STATE_OK] > 0 && seen[DEA_STATE_SLACK] > 0 && seen[DEA_STATE_BREAKDOWN] > 0);
+}
+
+static void a_lens_that_pulls_in_ends_where_the_field_does(void **state)
+{
+    (void)state;
+    static membrane_run run;
+    dea_scene scene = slow_scene(DEA_LENS, 13000.0), still = neo_hookean_scene(DEA_LENS);
+    memcpy(scene.material.constants, still.material.constants, sizeof scene.material.constants);
+    scene.material.breakdown = (double)NAN;
+    scene.accuracy = 1e-4;
+    run_field(&scene, &run);
+    size_t last = 0;
+    while (last + 1 < run.rows && run.samples[last + 1].state != DEA_STATE_PULL_IN) {
+        last++;
+    }
+    assert_true(last + 1 < run.rows && isfinite(run.samples[last].displacement));
+    for (size_t i = last + 1; i < run.rows; i++) {
+        assert_int_equal(run.samples[i].state, DEA_STATE_PULL_IN);
+        assert_true(isnan(run.samples[i].displacement));
+    }
+    scene.drive.leakage_resistance = (double)NAN;
+    scene.drive.voltage = run.samples[last].voltage;
+    assert_int_not_equal(solve_direct(&scene, "field").state, DEA_STATE_PULL_IN);
+    scene.drive.voltage = run.samples[last + 1].voltage;
+    assert_state(solve_direct(&scene, "field"), DEA_STATE_PULL_IN);
+}
+
+static void a_film_at_its_bias_rests(void **state)
+{
+    (void)state;
+    static membrane_run run;
+    double times[] = {0.0, 1e-2}, voltages[] = {3000.0, 3000.0};
+    dea_scene scene = step_scene(DEA_DOT, 1.2, 0.5, 0.0, 0.0);
+    scene.drive.waveform = (dea_waveform){
+        .kind = DEA_WAVE_POINTS, .times = times, .voltages = voltages, .point_count = 2, .period = (double)NAN};
+    scene.material.retardation = 2e-5;
+    scene.material.prony_count = 1;
+    scene.material.prony[0] = (dea_prony){0.1, 1e-3};
+    scene.drive.series_resistance = 1e5;
+    scene.transient = (dea_transient){.until = 1e-2, .every = 1e-3, .from_bias = true};
+    run_field(&scene, &run);
+    const dea_row row = solve_paper("field", DEA_DOT, 1.2, 0.5, 3000.0);
+    for (size_t i = 0; i < run.rows; i++) {
+        assert_relative(run.samples[i].displacement, row.displacement, 1e-7);
+        assert_near(run.samples[i].velocity, 0.0, 1e-6);
+        assert_near(run.samples[i].current, 0.0, 1e-9);
+    }
+}
+
 /* A random film of moderate stiffness, which a step moves by some per cent. */
 static dea_scene random_step(uint64_t *seed)
 {
@@ -390,6 +472,9 @@ int main(void)
         cmocka_unit_test(its_stiffness_is_the_slope_of_its_force),
         cmocka_unit_test(its_force_is_the_slope_of_its_capacitance),
         cmocka_unit_test(a_step_is_that_of_the_table),
+        cmocka_unit_test(a_film_without_mass_follows_the_field_in_every_state),
+        cmocka_unit_test(a_lens_that_pulls_in_ends_where_the_field_does),
+        cmocka_unit_test(a_film_at_its_bias_rests),
         cmocka_unit_test(random_steps_keep_their_promises),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -11,7 +11,7 @@
 enum { MOST_RUNS = 6 };
 
 static const double first_tolerance = 0.05; /* of the accuracy */
-static const double first_share = 0.1;      /* from one tolerance to the next */
+static const double first_share = 0.2;      /* from one tolerance to the next */
 static const double doubt = 1.5;            /* most that the error of the better of two runs is taken for, over their difference */
 static const double smooth_enough = 1.0;    /* of smoothness over the spacing of the nodes */
 static const double gains_nothing = 0.5;    /* a difference that falls by less than that stays too large */

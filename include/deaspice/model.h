@@ -53,6 +53,8 @@ typedef struct dea_model {
     bool lens;              /**< can do a lens too */
     /** The model's own equations (engine `direct`); fills every field of @p row. @p accuracy is what the user wants. */
     void (*solve)(const dea_point *point, double accuracy, dea_row *row);
+    /** The same for @p count points of one film, sooner: each row has the digits of solve(). NULL: one after the other. */
+    void (*solve_many)(const dea_point *points, size_t count, double accuracy, dea_row *rows);
     /** Adds its elements and limits to a network in displacement form; NULL where the model is not a network. */
     void (*network)(const struct dea_symbols *symbols, struct dea_network *network);
     /** Coefficients of the linear network (engine `direct` in transients); NULL where the network is not linear. */

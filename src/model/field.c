@@ -1,4 +1,4 @@
-/* Exact axisymmetric membrane, integrated in x = ln(R/R_a) by Gragg's midpoint rule, extrapolated to order 14 on a fixed mesh.
+/* Exact axisymmetric membrane: by collocation (collocation.h) or, what that leaves, integrated in x = ln(R/R_a) by Gragg's midpoint rule, extrapolated to order 14 on a fixed mesh.
  *
  * With D = lambda_2 - lambda_1 and e = lambda_2 - lambda_pre the equations of physics.md, section 3, read
  *
@@ -11,6 +11,7 @@
  */
 #include <float.h>
 
+#include "model/collocation.h"
 #include "model/field.h"
 #include "model/film_balance.h"
 
@@ -496,6 +497,18 @@ bool dea_field_profile(const dea_point *point, double strain, size_t count, cons
     return true;
 }
 
+void dea_field_fill(const dea_point *point, dea_field_found found, dea_row *row)
+{
+    const double nominal = dea_point_nominal_field(point), pressure = point->film.permittivity * nominal * nominal;
+    const double lever = 2.0 * DEA_PI * point->film_thickness * dea_point_divide(point) / point->film.prestretch;
+    dea_row_fill(row, point,
+                 (dea_found){.strain = found.strain,
+                             .force = dea_point_sign(point) * lever * pressure * found.edge_force,
+                             .stretch = found.stretch,
+                             .capacitance = found.capacitance,
+                             .taut = found.taut});
+}
+
 void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row)
 {
     const dea_film *film = &point->film;
@@ -519,22 +532,38 @@ void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row)
         dea_row_refuse(row, DEA_STATE_FAILED);
         return;
     }
-    const double force =
-        sign * 2.0 * DEA_PI * point->film_thickness * pressure * x.edge_force * dea_point_divide(point) / film->prestretch;
     const double strain = edge / film->prestretch;
     /* (2 pi eps/H) (r/lambda_pre)^2 c */
     const double annulus = 2.0 * dea_point_full_capacitance(point) * x.charge / (film->square * film->square);
-    dea_row_fill(row, point,
-                 (dea_found){.strain = strain,
-                             .force = force,
-                             .stretch = x.largest_area,
-                             .capacitance = dot ? dea_point_disc_capacitance(point, strain) : annulus,
-                             .taut = x.least_stress > 0.0});
+    dea_field_fill(point,
+                   (dea_field_found){.strain = strain,
+                                     .edge_force = x.edge_force,
+                                     .stretch = x.largest_area,
+                                     .capacitance = dot ? dea_point_disc_capacitance(point, strain) : annulus,
+                                     .taut = x.least_stress > 0.0},
+                   row);
+}
+
+/* By collocation where that is enough, else by integration. */
+static void solve_many(const dea_point *points, size_t count, double accuracy, dea_row *rows)
+{
+    enum { CHUNK = 64 };
+    const dea_field_mesh mesh = {step_for(accuracy), fmin(little, tenth * accuracy)};
+    for (size_t from = 0; from < count; from += CHUNK) {
+        const size_t some = count - from < CHUNK ? count - from : CHUNK;
+        bool solved[CHUNK];
+        dea_collocation_solve(points + from, some, accuracy, rows + from, solved);
+        for (size_t i = 0; i < some; i++) {
+            if (!solved[i]) {
+                dea_field_solve(&points[from + i], mesh, &rows[from + i]);
+            }
+        }
+    }
 }
 
 static void solve(const dea_point *point, double accuracy, dea_row *row)
 {
-    dea_field_solve(point, (dea_field_mesh){step_for(accuracy), fmin(little, tenth * accuracy)}, row);
+    solve_many(point, 1, accuracy, row);
 }
 
 const dea_model dea_model_field = {
@@ -543,6 +572,7 @@ const dea_model dea_model_field = {
     .leaves_out = "bending, all out of plane",
     .lens = true,
     .solve = solve,
+    .solve_many = solve_many,
     .dynamic = true,
     .membrane = true,
 };

@@ -1,4 +1,5 @@
-/* Exact axisymmetric membrane: by collocation (collocation.h) or, what that leaves, integrated in x = ln(R/R_a) by Gragg's midpoint rule, extrapolated to order 14 on a fixed mesh.
+/* Exact axisymmetric membrane: by collocation (collocation.h) or, what that leaves, integrated in x = ln(R/R_a) by Gragg's midpoint
+ * rule, extrapolated to order 14 on a fixed mesh.
  *
  * With D = lambda_2 - lambda_1 and e = lambda_2 - lambda_pre the equations of physics.md, section 3, read
  *

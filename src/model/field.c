@@ -136,9 +136,15 @@ static bool advance(const membrane *m, radial_state start, double step, radial_s
 static double jump_at_edge(const membrane *m, double l)
 {
     const double jump = (m->disc_k - m->annulus_k) * l * l * l;
+    double sound = 0.0; /* last place within the energy */
     double d = 0.0;
-    for (int i = 0; i < 40; i++) {
+    for (int i = 0; i < 80; i++) {
         const dea_stress here = stress_at(m, l - d, l);
+        if (isnan(here.w11) && d != sound) { /* a step went past the end of the energy */
+            d = 0.5 * (sound + d);
+            continue;
+        }
+        sound = d;
         const double rise = m->film->law->rise(m->film->constants, l, -d, 0.0) + skin_jump(m, l, d);
         const double residual = rise + jump + m->annulus_k * d * l * l;
         const double s11 = here.w11 - m->annulus_k * l * l;
@@ -441,8 +447,9 @@ static bool trace(const membrane *full, double sign, double end, double *edge)
     const double pre = full->film->prestretch;
     place before = {0.0, 0.0, pre};
     place last = before;
-    double step = 0.03;
-    while (fabs(last.edge) < fabs(end) && step > 1e-5) {
+    const double longest = 0.03 * fmin(1.0, full->film->grows); /* a film near the end of its energy has no longer way */
+    double step = longest;
+    while (fabs(last.edge) < fabs(end) && step > 3e-4 * longest) {
         const double at = sign * fmin(fabs(end), fabs(last.edge) + step * (pre + fmax(0.0, last.edge)));
         const double share = share_at(full, at, last.share > 0.0 ? last.share * fabs(at / last.edge) : 0.1);
         const place here = {at, share, radial_stretch(full, share, at)};
@@ -466,7 +473,7 @@ static bool trace(const membrane *full, double sign, double end, double *edge)
         }
         before = last;
         last = here;
-        step = fmin(0.03, 1.5 * step);
+        step = fmin(longest, 1.5 * step);
     }
     return false;
 }

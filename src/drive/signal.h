@@ -57,6 +57,9 @@ double dea_curve_largest(const dea_curve *curve);
 /* The tone at a time, its age counted from there: phase in one turn and frequency of that moment. */
 dea_tone dea_tone_from(const dea_tone *tone, double age);
 
+/* Voltage at a time counted from the begin of the segment, so that a short edge late in a run keeps its digits [V]. */
+double dea_segment_voltage_since(const dea_signal *signal, const dea_segment *segment, double since);
+
 /* The segment of a time, searched from segment number @p near on: from < time <= to, the first one at its begin too. */
 size_t dea_signal_find(const dea_signal *signal, size_t near, double time);
 

@@ -123,3 +123,63 @@ void dea_rings_cut(const dea_point *point, dea_rings_mesh mesh, dea_rings *rings
     cut_element(&disc, mesh.disc, frame, point, rings);
     cut_element(&annulus, mesh.annulus, frame, point, rings);
 }
+
+void dea_rings_slopes_of(size_t degree, dea_rings_slopes *slopes)
+{
+    lobatto rule;
+    make_lobatto(degree, &rule);
+    for (size_t q = 0; q <= degree; q++) {
+        slopes->places[q] = rule.places[q];
+        slopes->weights[q] = rule.weights[q];
+        for (size_t n = 0; n <= degree; n++) {
+            slopes->of[q][n] = rule.slopes[q][n];
+        }
+    }
+}
+
+/* Lagrange polynomial number @p n of the rule at x. */
+static double lagrange(const lobatto *rule, size_t n, double x)
+{
+    double value = 1.0;
+    for (size_t i = 0; i <= rule->degree; i++) {
+        value *= i == n ? 1.0 : (x - rule->places[i]) / (rule->places[n] - rule->places[i]);
+    }
+    return value;
+}
+
+/* One element; its nodes begin with number @p from of one mesh and @p to of the other, 0 being the centre, and do not move at
+ * both ends of the film. */
+static void transfer_element(size_t degree, size_t from, size_t from_count, size_t finer, size_t to, size_t to_count, double *matrix)
+{
+    lobatto rule, other;
+    make_lobatto(degree, &rule);
+    make_lobatto(finer, &other);
+    for (size_t q = 0; q <= finer; q++) {
+        for (size_t n = 0; n <= degree; n++) {
+            const size_t row = to + q, column = from + n;
+            if (row > 0 && row <= to_count && column > 0 && column <= from_count) {
+                matrix[(row - 1) * from_count + column - 1] = lagrange(&rule, n, other.places[q]);
+            }
+        }
+    }
+}
+
+void dea_rings_transfer(dea_rings_mesh from, dea_rings_mesh to, double *matrix)
+{
+    const size_t from_count = from.disc + from.annulus - 1, to_count = to.disc + to.annulus - 1;
+    for (size_t i = 0; i < from_count * to_count; i++) {
+        matrix[i] = 0.0;
+    }
+    transfer_element(from.disc, 0, from_count, to.disc, 0, to_count, matrix);
+    transfer_element(from.annulus, from.disc, from_count, to.annulus, to.disc, to_count, matrix);
+}
+
+void dea_rings_move(const double *matrix, size_t from_count, const double *u, size_t to_count, double *v)
+{
+    for (size_t i = 0; i < to_count; i++) {
+        v[i] = 0.0;
+        for (size_t n = 0; n < from_count; n++) {
+            v[i] += matrix[i * from_count + n] * u[n];
+        }
+    }
+}

@@ -54,6 +54,9 @@ const char *dea_direct_refuses_transient(const dea_scene *scene, const dea_model
 {
     dea_point point;
     dea_linear linear;
+    if (model->membrane) {
+        return "it has no equation of the moving membrane";
+    }
     if (!model->linear) {
         return "its springs are not linear, so that a transient has no closed form";
     }

@@ -68,6 +68,8 @@ typedef enum dea_wave_kind {
     DEA_WAVE_SINES
 } dea_wave_kind;
 
+enum { DEA_WAVES = DEA_WAVE_SINES + 1 };
+
 /** Most numbers of a waveform without a struct of its own, and most sines of a sum. */
 enum { DEA_WAVE_NUMBERS = 8, DEA_SINES = 8 };
 

@@ -106,7 +106,7 @@ static bool look_at_ring(const dea_membrane *m, size_t r, const double *u, dea_r
             at->tangent[a][b] = w[a][b] + held * (slope - (a == b ? own / l : 0.0)) / l;
         }
     }
-    if (ring->electroded && m->film.point.skin_share > 0.0) {
+    if (m->rings.rings[r].electroded && m->film.point.skin_share > 0.0) {
         add_skin(&m->film.point, e, at);
     }
     return isfinite(at->nominal[0]) && isfinite(at->nominal[1]);

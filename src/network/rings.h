@@ -13,7 +13,7 @@
 #include "deaspice/model.h"
 
 /* Largest degree of an element, and what follows: most moving nodes and rings. */
-enum { DEA_RINGS_DEGREE = 24, DEA_RINGS_NODES = 2 * DEA_RINGS_DEGREE - 1, DEA_RINGS_MOST = 2 * DEA_RINGS_DEGREE + 1 };
+enum { DEA_RINGS_DEGREE = 40, DEA_RINGS_NODES = 2 * DEA_RINGS_DEGREE - 1, DEA_RINGS_MOST = 2 * DEA_RINGS_DEGREE + 1 };
 
 /* How fine: degrees of the elements of disc and annulus, 1 ... DEA_RINGS_DEGREE, and whether the nodes of the annulus lie evenly in
  * ln R, which statics and small discs want, or in R. */
@@ -53,6 +53,10 @@ typedef struct dea_rings_slopes {
     double of[DEA_RINGS_DEGREE + 1][DEA_RINGS_DEGREE + 1]; /* [place][node] */
 } dea_rings_slopes;
 void dea_rings_slopes_of(size_t degree, dea_rings_slopes *slopes);
+
+/* Largest value over the disc, or over the annulus, of what has these values at the rings (ring_count of them, those of the other
+ * element are not looked at): of the polynomial through them, since it may lie between two places. */
+double dea_rings_largest(const dea_rings *rings, bool disc, const double *values);
 
 /* The matrix (rows: moving nodes of @p to, columns: those of @p from) that takes displacements of one mesh to the nodes of
  * another by the polynomials of its elements; both even in R or in ln R. And its product with displacements. */

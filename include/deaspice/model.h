@@ -54,6 +54,9 @@ typedef struct dea_model {
     void (*network)(const struct dea_symbols *symbols, struct dea_network *network);
     /** Coefficients of the linear network (engine `direct` in transients); NULL where the network is not linear. */
     void (*linear)(const dea_point *point, dea_linear *linear);
+    /** The film along its radius: displacement and stretches of @p count stations at the given radii, under the voltage of the point, and just
+     * outside r_a where @p outside; the state says whether there is an equilibrium. NULL where the model assumes none. */
+    dea_state (*along)(const dea_point *point, double accuracy, bool outside, dea_station *stations, size_t count);
     /** Can do transients and frequency responses. */
     bool dynamic;
     /** It is the boundary value problem of the axisymmetric membrane along the radius. */

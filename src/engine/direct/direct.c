@@ -86,5 +86,6 @@ const dea_engine dea_engine_direct = {
     .sweep = sweep,
     .transient = dea_direct_transient,
     .ac = dea_direct_ac,
+    .solves = {[DEA_STUDY_MODES] = dea_direct_modes},
     .end = end,
 };

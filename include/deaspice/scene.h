@@ -40,6 +40,7 @@ typedef struct dea_actuator {
     double electrode_mass;   /**< mass per area of the electrodes [kg/m^2], >= 0, NAN: none */
     double focal_length;     /**< lens optics at rest [m], > 0, NAN: none */
     double refractive_index; /**< of the lens liquid [1], > 1, NAN: none */
+    double layers;           /**< films of that thickness in a stack, electrically parallel [1], whole, >= 1, default 1 */
 } dea_actuator;
 
 /** Kinds of waveform. A file and a list of points are both points. */
@@ -88,7 +89,7 @@ typedef struct dea_axis {
     char column[DEA_NAME_LENGTH]; /**< result column with its unit, e.g. voltage_V */
     char unit[16];                /**< SI unit, "1" where the quantity has no dimension */
     size_t offset;                /**< place of the scalar inside dea_scene, a double */
-    bool changes_film;            /**< moves the material or the pre-stretch, not only geometry or drive */
+    bool changes_film;            /**< moves the material, the pre-stretch or the layers, not only geometry or drive */
     bool uniform;                 /**< values[i] = from + (to - from) i/(count - 1) */
     double *values;               /**< count values [unit], owned by the scene */
     size_t count;                 /**< >= 1 */

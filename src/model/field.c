@@ -395,6 +395,50 @@ static bool trace(const membrane *full, double sign, double end, double *edge)
     return false;
 }
 
+/* The film of a point, with its Maxwell pressure M. */
+static membrane membrane_of(const dea_point *point, double pressure, dea_field_mesh mesh)
+{
+    const bool dot = point->kind == DEA_DOT;
+    return (membrane){&point->film, dot ? pressure : 0.0, dot ? 0.0 : pressure, -log(point->coverage), mesh};
+}
+
+/* Integrates over a stretch of x in steps that are short enough. */
+static bool advance_to(const membrane *m, double length, radial_state *s)
+{
+    double step = length;
+    for (double rest = length; rest > 0.0;) {
+        radial_state next;
+        const double now = fmin(step, rest);
+        if (!isfinite(s->d) || now < shortest_step * fmin(length, m->mesh.step)) {
+            return false;
+        }
+        if (now > m->mesh.step || !advance(m, *s, now, &next)) {
+            step = 0.5 * now;
+            continue;
+        }
+        *s = next;
+        rest = now < rest * (1.0 - 1e-12) ? rest - now : 0.0;
+    }
+    return isfinite(s->d);
+}
+
+bool dea_field_profile(const dea_point *point, double strain, size_t count, const double *x, dea_stretches *stretches)
+{
+    const double nominal = dea_point_nominal_field(point), pre = point->film.prestretch;
+    const membrane m = membrane_of(point, point->film.permittivity * nominal * nominal, (dea_field_mesh){longest_step, 1e-13});
+    const double edge = pre * strain;
+    radial_state s = {jump_at_edge(&m, pre + edge), edge, 0.0};
+    double last = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        if (!advance_to(&m, x[i] - last, &s)) {
+            return false;
+        }
+        last = x[i];
+        stretches[i] = (dea_stretches){pre + s.e - s.d, pre + s.e};
+    }
+    return true;
+}
+
 void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row)
 {
     const dea_film *film = &point->film;
@@ -402,7 +446,7 @@ void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row)
     const double nominal = dea_point_nominal_field(point);
     const double pressure = film->permittivity * nominal * nominal; /* M */
     const double b = point->coverage;
-    const membrane m = {film, dot ? pressure : 0.0, dot ? 0.0 : pressure, -log(b), mesh};
+    const membrane m = membrane_of(point, pressure, mesh);
     const double sign = dea_point_sign(point);
     double edge = 0.0;
 

@@ -243,7 +243,7 @@ static void build(const dea_symbols *symbols, dea_network *network)
                     SCALE(network->sign, force));
     network->capacitance = MUL(dea_symbols_capacitance(symbols), SQUARE(e.area));
     network->end = symbols->kind == DEA_DOT ? dea_symbols_annulus_width(symbols) : MUL(symbols->coverage, symbols->frame_radius);
-    network->field = MUL(MUL(DIV(symbols->voltage, symbols->film_thickness), SQUARE(symbols->prestretch)), e.area);
+    network->field = MUL(MUL(dea_symbols_nominal_field(symbols), SQUARE(symbols->prestretch)), e.area);
     limit_tension(symbols, network, &e);
 }
 

@@ -48,6 +48,9 @@ void dea_export_head(const dea_export *export, const char *meaning);
 /* Gives every moving term that is used twice a node of its own, but for a mere number times another: simulators differentiate an
  * expression by each of its nodes, so that short ones are worth it. */
 void dea_export_share(dea_part_text *text);
+/* Points `from` to `to`, excluded, of an axis as the voltage v(axis) of the index v(k); a list as a sum of its steps, each of which
+ * rises between two indices. */
+void dea_export_axis(const dea_dialect *dialect, const dea_axis *axis, size_t from, size_t to, FILE *out);
 /* `.param name=value`, and a card's number. */
 void dea_export_parameter(FILE *out, const char *name, double value);
 void dea_export_number(FILE *out, double value);

@@ -23,13 +23,14 @@ enum {
     Y_FREE,
     RHO,
     AREAL,
+    LAYERS,
     VOLTAGE,  /* always replaced by a number */
     CONSTANT, /* the first of those of the law */
     SYMBOLS = CONSTANT + DEA_LAW_CONSTANTS
 };
 
 static const char *const symbol_names[SYMBOLS] = {"radius",  "cover",  "thick", "stretch", "eps_r",
-                                                  "y_given", "y_free", "rho",   "areal",   "",
+                                                  "y_given", "y_free", "rho",   "areal",   "layer", "",
                                                   "film1",   "film2",  "film3", "film4",   "film5",
                                                   "film6",   "film7",  "film8"};
 _Static_assert(DEA_LAW_CONSTANTS == 8, "one name a constant");
@@ -112,9 +113,10 @@ static dea_symbols symbols_of(dea_pool *pool, const part *p)
                            .law = p->law,
                            .frame_radius = s[RADIUS],
                            .coverage = s[COVER],
-                           .film_thickness = s[THICK],
+                           .film_thickness = MUL(s[LAYERS], s[THICK]),
+                           .layers = s[LAYERS],
                            .prestretch = s[STRETCH],
-                           .permittivity = SCALE(DEA_EPSILON_0, s[EPS_R]),
+                           .permittivity = MUL(SCALE(DEA_EPSILON_0, s[EPS_R]), SQUARE(s[LAYERS])),
                            .breakdown = NUM(INFINITY),
                            .voltage = s[VOLTAGE]};
     for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
@@ -272,7 +274,7 @@ static void check_optics(const part *p, int *count)
 }
 
 /* Name of a constant as a parameter: in lower case, of a list with the number of its entry. */
-static void constant_name(const dea_law *law, size_t i, char name[DEA_PART_NAME])
+void dea_part_constant_name(const dea_law *law, size_t i, char name[DEA_PART_NAME])
 {
     char number[24] = "";
     if (law->entries > 1) {
@@ -291,7 +293,7 @@ static void check_law(const part *p, const form *of, int *count)
     line(p, "* constants of the law, moduli in units of %.0f Pa", of->stress);
     for (size_t i = 0; i < p->constants; i++) {
         const dea_constant *constant = &p->law->constants[i % p->law->constant_count];
-        constant_name(p->law, i, name);
+        dea_part_constant_name(p->law, i, name);
         snprintf(raw, sizeof raw, constant->modulus ? "%s/%.0f" : "%s", name, of->stress);
         if (constant->low == 0.0) {
             const bool small = constant->modulus && of->stress > 1.0;
@@ -329,6 +331,7 @@ static int write_checks(const part *p, const form *of)
         {"frame_radius", "radius", "1e-6", "1e3"},
         {"coverage", "cover", "1e-6", "0.999999"},
         {"film_thickness", "thick", "1e-9", "1"},
+        {"layers", "layer", "1", "1e6"},
         {"prestretch", "stretch", "1", "100"},
         {"permittivity+permittivity_per_stretch*prestretch", "eps_r", "1e-3", "1e9"},
         {"density", "rho", "0", "1e6"},
@@ -625,7 +628,7 @@ static void add_constants(const dea_material *material, dea_part_parameter *list
     for (size_t i = 0; i < constants_in_use(material); i++) {
         const dea_constant *constant = &material->law->constants[i % material->law->constant_count];
         char name[DEA_PART_NAME];
-        constant_name(material->law, i, name);
+        dea_part_constant_name(material->law, i, name);
         add(list, count, name, constant->unit, "", constants[i]);
         dea_part_parameter *entry = &list[*count - 1];
         snprintf(entry->meaning, sizeof entry->meaning, "%s constant %s%s", material->law->title, constant->name,
@@ -663,6 +666,7 @@ size_t dea_part_parameters(const dea_scene *scene, const dea_model *model, dea_p
     add(list, &count, "coverage", "1", dot ? "electrode radius over frame radius, B" : "lens radius over frame radius, B",
         coverage);
     add(list, &count, "film_thickness", "m", "thickness before pre-stretch, H", actuator->film_thickness);
+    add(list, &count, "layers", "1", "films of that thickness, electrically parallel", actuator->layers);
     add(list, &count, "prestretch", "1", "equi-biaxial pre-stretch", actuator->prestretch);
     add_film(scene, list, &count);
     if (form_of(model)->modulus) {
@@ -832,6 +836,7 @@ dea_scene dea_part_paper(dea_kind kind)
                      .coverage = 0.5,
                      .divide_radius = none,
                      .film_thickness = 1e-4,
+                     .layers = 1.0,
                      .prestretch = 1.2,
                      .electrode_mass = none,
                      .focal_length = none,

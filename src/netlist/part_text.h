@@ -3,6 +3,7 @@
 #ifndef DEA_PART_TEXT_H
 #define DEA_PART_TEXT_H
 
+#include "deaspice/material.h"
 #include "expression/expression.h"
 #include "netlist/dialect.h"
 
@@ -21,6 +22,8 @@ typedef struct dea_part_text {
     FILE *out;
     const char *const *symbols; /* names of the parameters behind the pool's symbols */
     const char *node;           /* what stands for the displacement [m], a factor */
+    const char *const *nodes;   /* what stands for each node of a pool of several, NULL: `node` for all */
+    const char *suffix;         /* of the nodes of shared terms that move with nodes of the pool, NULL: none */
     dea_part_name *names;       /* owned */
     size_t name_count;
     int *uses;      /* owned: how often a term is written */
@@ -39,6 +42,8 @@ void dea_part_text_close(dea_part_text *text);
 
 /* Names a term that depends on the parameters alone; the first of two names of a term stays. */
 void dea_part_text_name(dea_part_text *text, dea_expr ref, const char *name, const char *meaning);
+/* Lets symbol number @p index move as the displacement does: its name is that of a voltage. Terms of it alone may be nodes. */
+void dea_part_text_move_symbol(dea_part_text *text, int index);
 /* Declares that a source will write the expression, as a whole or as a number on a card of its own. */
 void dea_part_text_use(dea_part_text *text, dea_expr ref);
 /* The same of an expression that multiplies what is 0 at the start of Newton's iterations, the last to be declared: its shared
@@ -48,11 +53,20 @@ void dea_part_text_use_as_factor(dea_part_text *text, dea_expr ref);
 /* The cards that the declared expressions need: .param, then nodes of shared moving terms. */
 void dea_part_text_parameters(dea_part_text *text);
 void dea_part_text_nodes(dea_part_text *text);
+/* The nodes of terms that a symbol alone moves; before those of dea_part_text_nodes(). */
+void dea_part_text_swept(dea_part_text *text);
+/* Those that one declared expression needs. */
+void dea_part_text_nodes_of(dea_part_text *text, dea_expr ref);
+/* Forgets those of dea_part_text_nodes_of(): the same expressions of other nodes are next. */
+void dea_part_text_again(dea_part_text *text);
 
 /* Writes an expression inside a behavioural source, as a factor: in brackets where it is a sum. */
 void dea_part_text_write(const dea_part_text *text, dea_expr ref);
 /* Name of the .param of a declared term that does not move; a plain number is its own name. */
 const char *dea_part_text_parameter(const dea_part_text *text, dea_expr ref, char name[DEA_PART_NAME]);
+
+/* Name of a constant of a law as a parameter: in lower case, of a list with the number of its entry. */
+void dea_part_constant_name(const dea_law *law, size_t i, char name[DEA_PART_NAME]);
 
 /* A number with as few digits as give it back. */
 void dea_part_number(FILE *out, double value);

@@ -129,6 +129,8 @@ void dea_rings_slopes_of(size_t degree, dea_rings_slopes *slopes)
     lobatto rule;
     make_lobatto(degree, &rule);
     for (size_t q = 0; q <= degree; q++) {
+        slopes->places[q] = rule.places[q];
+        slopes->weights[q] = rule.weights[q];
         for (size_t n = 0; n <= degree; n++) {
             slopes->of[q][n] = rule.slopes[q][n];
         }

@@ -47,9 +47,10 @@ typedef struct dea_rings {
 /* Cuts the film of a point into rings; its numbers are in their ranges. */
 void dea_rings_cut(const dea_point *point, dea_rings_mesh mesh, dea_rings *rings);
 
-/* Reference element of a degree, both 1 ... DEA_RINGS_DEGREE: derivative of its polynomial number @p node at its place @p place,
- * over x in [-1, 1] [1]. */
+/* Reference element of a degree, 1 ... DEA_RINGS_DEGREE, over x in [-1, 1]: its places and their weights, and the derivatives of
+ * its polynomials there. */
 typedef struct dea_rings_slopes {
+    double places[DEA_RINGS_DEGREE + 1], weights[DEA_RINGS_DEGREE + 1];
     double of[DEA_RINGS_DEGREE + 1][DEA_RINGS_DEGREE + 1]; /* [place][node] */
 } dea_rings_slopes;
 void dea_rings_slopes_of(size_t degree, dea_rings_slopes *slopes);

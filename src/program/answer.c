@@ -250,23 +250,34 @@ static const char *deviation_text(char *text, double deviation)
     return text;
 }
 
+/* " WHAT off by LOW to HIGH", one number where both print alike. */
+static void print_deviation(const char *what, double least, double largest)
+{
+    char low[DEA_NUMBER_LENGTH], high[DEA_NUMBER_LENGTH];
+    fprintf(stderr, " %s off by %s", what, deviation_text(low, least));
+    if (strcmp(low, deviation_text(high, largest)) != 0) {
+        fprintf(stderr, " to %s", high);
+    }
+}
+
 /* How far the model is from the membrane, at rest under the drive of the study. */
 static void print_nearness(const dea_scene *scene, const dea_model *model)
 {
-    char low[DEA_NUMBER_LENGTH], high[DEA_NUMBER_LENGTH];
     dea_nearness near;
-    if (model->membrane || dea_nearness_measure(scene, model, &near, NULL) != DEA_OK || near.compared + near.unlike == 0) {
+    if (model->membrane || dea_nearness_measure(scene, model, &near, NULL) != DEA_OK ||
+        (near.compared + near.unlike == 0 && isnan(near.slow))) {
         return;
     }
     fprintf(stderr, "  against the membrane (field)%s:", dea_study_of(scene)->at);
     if (near.compared > 0) {
-        fprintf(stderr, " strain off by %s", deviation_text(low, near.low));
-        if (strcmp(low, deviation_text(high, near.high)) != 0) {
-            fprintf(stderr, " to %s", high);
-        }
+        print_deviation("strain", near.low, near.high);
     }
     if (near.unlike > 0) {
         fprintf(stderr, "%s pull-in of one alone at %zu", near.compared > 0 ? "," : "", near.unlike);
+    }
+    if (!isnan(near.slow)) {
+        fputs(near.compared + near.unlike > 0 ? "," : "", stderr);
+        print_deviation("first resonance", near.slow, near.fast);
     }
     if (!near.whole) {
         fprintf(stderr, ", %zu of %zu points compared", near.compared + near.unlike, dea_scene_point_count(scene));

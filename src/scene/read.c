@@ -129,7 +129,8 @@ static dea_status kind_check(dea_reader *reader, const dea_ref *ref, const dea_n
 
 static bool in_range(const dea_key *key, double value)
 {
-    return key->open ? value > key->low && value < key->high : value >= key->low && value <= key->high;
+    const bool inside = key->open ? value > key->low && value < key->high : value >= key->low && value <= key->high;
+    return inside && !(key->whole && floor(value) != value);
 }
 
 dea_status dea_reader_number(dea_reader *reader, const dea_ref *ref, const dea_node *node, double *value)

@@ -134,7 +134,7 @@ typedef struct dea_station {
     double radius;        /**< of the film at rest and 0 V, lambda_pre R [m] */
     double displacement;  /**< from there, outward [m] */
     double stretch[2];    /**< lambda_1 along the radius, lambda_2 along the hoop, pre-stretch included [1] */
-    double thickness;     /**< H/(lambda_1 lambda_2) [m] */
+    double thickness;     /**< of each layer, H/(lambda_1 lambda_2) [m] */
     double stress[2];     /**< of film and voltage together, lambda_a P_a - eps E^2 where electroded [Pa] */
     double field;         /**< true field U lambda_1 lambda_2/H where electroded, else 0 [V/m] */
     dea_state state;      /**< of the film here */
@@ -176,7 +176,7 @@ DEA_API double dea_layout_place(const dea_scene *scene, size_t index);
 /** Radius number @p index of what rows tell over the radius, that of the film at rest and 0 V [m]. */
 DEA_API double dea_layout_radius(const dea_scene *scene, const dea_layout *layout, size_t index);
 /** Entry of a row at a radius. */
-DEA_API double *dea_layout_entry(const dea_layout *layout, void *point, size_t row, size_t index);
+DEA_API double *dea_layout_entry(const dea_layout *layout, const void *point, size_t row, size_t index);
 /** State of a row. */
 DEA_API dea_state dea_layout_state(const dea_layout *layout, const void *row);
 /** Makes every row of a point `failed`. */
@@ -185,6 +185,8 @@ DEA_API void dea_layout_fail(const dea_scene *scene, const dea_layout *layout, v
 DEA_API dea_summary dea_summary_failed(void);
 /** Summary of a transient's point. */
 DEA_API dea_summary *dea_layout_summary(const dea_layout *layout, void *point);
+/** What a point of profiles is nearest to its limits by. */
+DEA_API dea_weakest *dea_layout_weakest(const dea_layout *layout, void *point);
 /** Band of a frequency response's point. */
 DEA_API dea_band *dea_layout_band(const dea_layout *layout, void *point);
 

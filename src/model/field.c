@@ -486,5 +486,6 @@ const dea_model dea_model_field = {
     .leaves_out = "bending, all out of plane",
     .lens = true,
     .solve = solve,
+    .along = dea_field_profile,
     .membrane = true,
 };

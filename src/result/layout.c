@@ -29,10 +29,10 @@ double dea_layout_radius(const dea_scene *scene, const dea_layout *layout, size_
     return scene->actuator.frame_radius * (double)index / (double)(layout->spread_points - 1);
 }
 
-double *dea_layout_entry(const dea_layout *layout, void *point, size_t row, size_t index)
+double *dea_layout_entry(const dea_layout *layout, const void *point, size_t row, size_t index)
 {
     const size_t size = layout->spread_count * sizeof(double);
-    return (double *)(void *)((char *)point + layout->spread_offset + (row * layout->spread_points + index) * size);
+    return (double *)(void *)((const char *)point + layout->spread_offset + (row * layout->spread_points + index) * size);
 }
 
 void dea_layout_spread(dea_layout *layout, const dea_column *columns, size_t count, size_t points)
@@ -56,6 +56,11 @@ dea_state dea_layout_state(const dea_layout *layout, const void *row)
 dea_summary *dea_layout_summary(const dea_layout *layout, void *point)
 {
     return (dea_summary *)(void *)((char *)point + layout->rows * layout->row_size);
+}
+
+dea_weakest *dea_layout_weakest(const dea_layout *layout, void *point)
+{
+    return (dea_weakest *)(void *)((char *)point + layout->rows * layout->row_size);
 }
 
 dea_band *dea_layout_band(const dea_layout *layout, void *point)

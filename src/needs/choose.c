@@ -235,7 +235,8 @@ const dea_model *dea_needs_truth(dea_study_kind study)
     for (size_t i = 0; i < dea_model_count(); i++) {
         const dea_model *model = dea_model_at(i);
         const bool finer = !truth || dea_model_form(model) >= dea_model_form(truth);
-        truth = finer && dea_study_takes(dea_study_at(study), model) ? model : truth;
+        const bool costly = dea_study_at(study)->timed && model->membrane; /* a run of it at every probe */
+        truth = finer && !costly && dea_study_takes(dea_study_at(study), model) ? model : truth;
     }
     return truth;
 }

@@ -473,6 +473,12 @@ dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const 
     if (!dea_study_of(scene)->timed || engine->omits == 0) {
         return DEA_OK;
     }
+    if (model->membrane) { /* no stand-in of one node tells what its modes do */
+        const dea_swing swing = dea_swing_free(scene, model);
+        needs->resonance = swing.frequency;
+        needs->decay = swing.decay;
+        return DEA_OK;
+    }
     dea_status status = dea_surrogate_open(scene, model, &p.surrogate, &usable, error);
     if (status == DEA_OK) {
         const dea_swing swing = dea_swing_of(&p.surrogate.dynamics, 0.0, 0.0);

@@ -30,6 +30,13 @@ dea_status dea_membrane_open(const dea_scene *scene, const dea_model *model, dea
     return status;
 }
 
+dea_rings_mesh dea_membrane_usual_mesh(const dea_scene *scene)
+{
+    const dea_actuator *actuator = &scene->actuator;
+    const double coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
+    return (dea_rings_mesh){8, 16, coverage < 0.1};
+}
+
 static double square_of(const dea_membrane *m, double voltage)
 {
     const double field = voltage / m->film.point.film_thickness;
@@ -203,25 +210,44 @@ bool dea_membrane_elliptic(const dea_membrane *m, const dea_membrane_look *look,
     return true;
 }
 
+/* Adds lever^T t lever of one ring. */
+static void assemble_ring(const dea_membrane *m, const dea_ring *ring, double t[2][2], double *matrix)
+{
+    const double l0 = m->film.point.film.prestretch, unit = ring->volume * l0 * l0;
+    const size_t n = m->rings.node_count;
+    for (size_t j = 0; j < ring->count; j++) {
+        const double radial = unit * (t[0][0] * ring->radial[j] + t[0][1] * ring->hoop[j]);
+        const double hoop = unit * (t[1][0] * ring->radial[j] + t[1][1] * ring->hoop[j]);
+        double *column = matrix + (ring->first + j) * n + ring->first;
+        for (size_t i = 0; i < ring->count; i++) {
+            column[i] += ring->radial[i] * radial + ring->hoop[i] * hoop;
+        }
+    }
+}
+
 void dea_membrane_stiffness(const dea_membrane *m, const dea_membrane_look *look, double voltage, double (*x)[2], double share,
                             double *stiffness)
 {
-    const double k = square_of(m, voltage), l0 = m->film.point.film.prestretch;
-    const size_t n = m->rings.node_count;
-    memset(stiffness, 0, n * n * sizeof *stiffness);
+    const double k = square_of(m, voltage);
+    memset(stiffness, 0, m->rings.node_count * m->rings.node_count * sizeof *stiffness);
     for (size_t r = 0; r < m->rings.ring_count; r++) {
-        const dea_ring *ring = &m->rings.rings[r];
-        const double unit = ring->volume * l0 * l0;
         double t[2][2];
-        ring_tangent(&look->rings[r], ring->electroded ? k : 0.0, x ? x[r] : NULL, share, t);
-        for (size_t j = 0; j < ring->count; j++) {
-            const double radial = unit * (t[0][0] * ring->radial[j] + t[0][1] * ring->hoop[j]);
-            const double hoop = unit * (t[1][0] * ring->radial[j] + t[1][1] * ring->hoop[j]);
-            double *column = stiffness + (ring->first + j) * n + ring->first;
-            for (size_t i = 0; i < ring->count; i++) {
-                column[i] += ring->radial[i] * radial + ring->hoop[i] * hoop;
-            }
+        ring_tangent(&look->rings[r], m->rings.rings[r].electroded ? k : 0.0, x ? x[r] : NULL, share, t);
+        assemble_ring(m, &m->rings.rings[r], t, stiffness);
+    }
+}
+
+void dea_membrane_damping(const dea_membrane *m, const dea_membrane_look *look, double share, double *damping)
+{
+    memset(damping, 0, m->rings.node_count * m->rings.node_count * sizeof *damping);
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        const dea_ring_look *at = &look->rings[r];
+        double t[2][2];
+        for (int a = 0; a < 2; a++) {
+            t[a][0] = share * at->slope[a][0] / at->stretch[a];
+            t[a][1] = share * at->slope[a][1] / at->stretch[a];
         }
+        assemble_ring(m, &m->rings.rings[r], t, damping);
     }
 }
 
@@ -403,24 +429,25 @@ static double edge_force(const dea_membrane *m, const dea_membrane_look *look, d
 void dea_membrane_row(const dea_membrane *m, const dea_membrane_look *look, double voltage, const double *u, dea_row *row)
 {
     const double k = square_of(m, voltage), tension = m->film.point.film.tension;
-    double least = INFINITY, largest = 0.0;
+    double loss[2][DEA_RINGS_MOST], area[DEA_RINGS_MOST], most = -INFINITY; /* of stresses */
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         const dea_ring_look *at = &look->rings[r];
-        const bool electroded = m->rings.rings[r].electroded;
-        const double area = at->stretch[0] * at->stretch[1];
+        area[r] = at->stretch[0] * at->stretch[1];
         for (int a = 0; a < 2; a++) {
-            least = fmin(least, tension + at->nominal[a] - (electroded ? k * area * at->stretch[1 - a] : 0.0));
+            loss[a][r] = (m->rings.rings[r].electroded ? k * area[r] * at->stretch[1 - a] : 0.0) - at->nominal[a];
         }
-        largest = electroded ? fmax(largest, area) : largest;
+    }
+    for (int i = 0; i < 4; i++) {
+        most = fmax(most, dea_rings_largest(&m->rings, i < 2, loss[i % 2]));
     }
     dea_point point = m->film.point;
     point.voltage = voltage;
     dea_row_fill(row, &point,
                  (dea_found){.strain = u[m->rings.edge] / m->film.radius,
                              .force = edge_force(m, look, voltage),
-                             .stretch = largest,
+                             .stretch = dea_rings_largest(&m->rings, m->film.point.kind == DEA_DOT, area),
                              .capacitance = look->capacitance,
-                             .taut = least > 0.0});
+                             .taut = tension > most});
 }
 
 /* dC/dt [F/s]. */
@@ -480,6 +507,57 @@ bool dea_membrane_sample(const dea_membrane *m, const dea_moment *moment, const 
         sample->current = dea_membrane_current(m, &look, &at, speed);
         sample->charge = row.charge;
     }
+    return true;
+}
+
+static double dot(size_t n, const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
+
+/* Slowest and fastest mode of a stiffness, which is lost. */
+static bool find_modes(const dea_membrane *m, double *stiffness, dea_membrane_rest *rest)
+{
+    double frequencies[DEA_RINGS_NODES], shapes[DEA_RINGS_NODES * DEA_RINGS_NODES];
+    if (!dea_membrane_modes(m, stiffness, frequencies, shapes)) {
+        return false;
+    }
+    rest->slowest = frequencies[0];
+    rest->fastest = frequencies[m->rings.node_count - 1];
+    return true;
+}
+
+bool dea_membrane_at_rest(const dea_membrane *m, dea_membrane_rest *rest)
+{
+    static const double still[DEA_RINGS_NODES] = {0.0};
+    const size_t n = m->rings.node_count, edge = m->rings.edge;
+    double stiffness[DEA_RINGS_NODES * DEA_RINGS_NODES], held[DEA_RINGS_NODES * DEA_RINGS_NODES];
+    double push[DEA_RINGS_NODES], shape[DEA_RINGS_NODES], stiff[DEA_RINGS_NODES];
+    dea_membrane_look look;
+    *rest = (dea_membrane_rest){0};
+    if (!dea_membrane_look_at(m, still, &look)) {
+        return false;
+    }
+    dea_membrane_push(m, &look, push);
+    memcpy(shape, push, sizeof shape);
+    memcpy(stiff, push, sizeof stiff);
+    dea_membrane_stiffness(m, &look, 0.0, NULL, 0.0, stiffness);
+    dea_membrane_stiffness(m, &look, 0.0, NULL, m->film.total_share, held);
+    const lapack_int size = (lapack_int)n;
+    if ((m->heavy && !find_modes(m, held, rest)) ||
+        dea_lapacke_dposv(LAPACK_COL_MAJOR, 'L', size, 1, stiffness, size, shape, size) != 0 ||
+        dea_lapacke_dposv(LAPACK_COL_MAJOR, 'L', size, 1, held, size, stiff, size) != 0) {
+        return false;
+    }
+    rest->compliance = fabs(shape[edge]);
+    rest->softness = dot(n, push, stiff);
+    rest->force = fabs(edge_force(m, &look, 1.0));
+    rest->capacitance = look.capacitance;
+    rest->capacitance_slope = 2.0 * dot(n, push, shape) / rest->compliance;
     return true;
 }
 

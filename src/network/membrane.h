@@ -41,6 +41,9 @@ typedef struct dea_membrane_look {
 dea_status dea_membrane_open(const dea_scene *scene, const dea_model *model, dea_rings_mesh mesh, dea_membrane *membrane,
                              dea_error *error);
 
+/* Nodes that tell the film at rest, and its first mode, to round-off; around a small disc they lie evenly in ln R. */
+dea_rings_mesh dea_membrane_usual_mesh(const dea_scene *scene);
+
 /* Number of the z. */
 static inline size_t dea_membrane_relaxed(const dea_membrane *membrane)
 {
@@ -62,6 +65,8 @@ void dea_membrane_force(const dea_membrane *membrane, const dea_membrane_look *l
  * share = s tau_KV + sum c_i s tau_i/(1 + s tau_i). */
 void dea_membrane_stiffness(const dea_membrane *membrane, const dea_membrane_look *look, double voltage, double (*x)[2],
                             double share, double *stiffness);
+/* That share of its own. */
+void dea_membrane_damping(const dea_membrane *membrane, const dea_membrane_look *look, double share, double *damping);
 /* True where ds_1/dlambda_1 is positive at every ring: without that the film thins somewhere at once, however fine its rings are.
  */
 bool dea_membrane_elliptic(const dea_membrane *membrane, const dea_membrane_look *look, double voltage, double (*x)[2],
@@ -82,6 +87,19 @@ bool dea_membrane_still(const dea_membrane *membrane, double voltage, double *u)
  * shapes[k node_count + n]: mode k, of sum m_n shape_n^2 = 1 [kg^-1/2]. False without mass or where LAPACK fails; the square of a
  * frequency that is not real counts as 0. */
 bool dea_membrane_modes(const dea_membrane *membrane, double *stiffness, double *frequencies, double *shapes);
+
+/* The film at rest. */
+typedef struct dea_membrane_rest {
+    double compliance;        /* |displacement| of the edge over U^2 of the relaxed film [m/V^2] */
+    double softness;          /* phi K^-1 phi, the branches held [N m/V^4] */
+    double force;             /* |F_DEA| over U^2 [N/V^2] */
+    double capacitance;       /* [F] */
+    double capacitance_slope; /* |dC/du| at the edge, where all moves as a small voltage has it [F/m] */
+    double slowest, fastest;  /* undamped angular frequencies, branches held [rad/s], 0 without mass */
+} dea_membrane_rest;
+
+/* False where the film is not stable at rest, or LAPACK fails. */
+bool dea_membrane_at_rest(const dea_membrane *membrane, dea_membrane_rest *rest);
 
 /* Strain, displacement, force at the edge, largest true field, C, charge and state of a film at u, as its static row has them. */
 void dea_membrane_row(const dea_membrane *membrane, const dea_membrane_look *look, double voltage, const double *u, dea_row *row);

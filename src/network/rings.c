@@ -137,6 +137,81 @@ void dea_rings_slopes_of(size_t degree, dea_rings_slopes *slopes)
     }
 }
 
+/* Values at places of an element, along R or ln R, and the weights of their polynomial in the barycentric form. */
+typedef struct samples {
+    size_t count;
+    double places[DEA_RINGS_DEGREE + 1], values[DEA_RINGS_DEGREE + 1], weights[DEA_RINGS_DEGREE + 1];
+} samples;
+
+static samples samples_of(const dea_rings *rings, bool disc, const double *values)
+{
+    samples s = {0};
+    for (size_t q = 0; q < rings->ring_count; q++) {
+        const dea_ring *ring = &rings->rings[q];
+        if (ring->disc == disc) {
+            s.places[s.count] = disc || !rings->mesh.logarithmic ? ring->radius : log(ring->radius);
+            s.values[s.count++] = values[q];
+        }
+    }
+    const double width = 0.25 * (s.places[s.count - 1] - s.places[0]); /* keeps the products near 1 */
+    for (size_t i = 0; i < s.count; i++) {
+        double product = 1.0;
+        for (size_t k = 0; k < s.count; k++) {
+            product *= k == i ? 1.0 : (s.places[i] - s.places[k]) / width;
+        }
+        s.weights[i] = 1.0 / product;
+    }
+    return s;
+}
+
+static double polynomial(const samples *s, double x)
+{
+    double over = 0.0, under = 0.0;
+    for (size_t i = 0; i < s->count; i++) {
+        if (x == s->places[i]) {
+            return s->values[i];
+        }
+        const double share = s->weights[i] / (x - s->places[i]);
+        over += share * s->values[i];
+        under += share;
+    }
+    return over / under;
+}
+
+/* Largest value of the polynomial between two places, by golden sections. */
+static double largest_between(const samples *s, double low, double high)
+{
+    static const double golden = 0.6180339887498949;
+    double a = high - golden * (high - low), b = low + golden * (high - low);
+    double at_a = polynomial(s, a), at_b = polynomial(s, b);
+    for (int i = 0; i < 40; i++) { /* an extreme is flat: half of the digits of its place are enough */
+        const bool left = at_a > at_b;
+        *(left ? &high : &low) = left ? b : a;
+        *(left ? &b : &a) = left ? a : b;
+        *(left ? &at_b : &at_a) = left ? at_a : at_b;
+        const double fresh = left ? high - golden * (high - low) : low + golden * (high - low);
+        *(left ? &a : &b) = fresh;
+        *(left ? &at_a : &at_b) = polynomial(s, fresh);
+    }
+    return fmax(at_a, at_b);
+}
+
+double dea_rings_largest(const dea_rings *rings, bool disc, const double *values)
+{
+    const samples s = samples_of(rings, disc, values);
+    const size_t parts = 4 * s.count;
+    const double first = disc ? 0.0 : s.places[0], last = s.places[s.count - 1];
+    double largest = polynomial(&s, first);
+    double place = first;
+    for (size_t i = 1; i <= parts; i++) {
+        const double x = i == parts ? last : first + (last - first) * (double)i / (double)parts, value = polynomial(&s, x);
+        place = value > largest ? x : place;
+        largest = fmax(largest, value);
+    }
+    const double width = (last - first) / (double)parts;
+    return s.count < 3 ? largest : fmax(largest, largest_between(&s, fmax(first, place - width), fmin(last, place + width)));
+}
+
 /* Lagrange polynomial number @p n of the rule at x. */
 static double lagrange(const lobatto *rule, size_t n, double x)
 {

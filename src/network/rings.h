@@ -55,6 +55,10 @@ typedef struct dea_rings_slopes {
 } dea_rings_slopes;
 void dea_rings_slopes_of(size_t degree, dea_rings_slopes *slopes);
 
+/* Largest value over the disc, or over the annulus, of what has these values at the rings (ring_count of them, those of the other
+ * element are not looked at): of the polynomial through them, since it may lie between two places. */
+double dea_rings_largest(const dea_rings *rings, bool disc, const double *values);
+
 /* The matrix (rows: moving nodes of @p to, columns: those of @p from) that takes displacements of one mesh to the nodes of
  * another by the polynomials of its elements; both even in R or in ln R. And its product with displacements. */
 void dea_rings_transfer(dea_rings_mesh from, dea_rings_mesh to, double *matrix);

@@ -293,25 +293,26 @@ void dea_still_fill(const dea_still *still, const double *u, dea_row *row)
     const dea_point *point = still->point;
     const dea_film *film = &point->film;
     const double strain = u[still->rings.edge] / dea_point_divide(point);
-    double area = 0.0, least = (double)INFINITY;
+    double radial[DEA_RINGS_MOST], hoop[DEA_RINGS_MOST], area[DEA_RINGS_MOST]; /* stresses below that at rest */
     strains e[DEA_RINGS_MOST];
     strains_all(still, u, e);
     for (size_t q = 0; q < still->rings.ring_count; q++) {
-        const dea_ring *ring = &still->rings.rings[q];
-        const dea_biaxial s = stress_of(still, ring, e[q], 1.0);
-        const double here = film->square * (1.0 + e[q].e1) * (1.0 + e[q].e2);
-        least = fmin(least, film->tension + fmin(s.p1, s.p2));
-        area = ring->electroded ? fmax(area, here) : area;
+        const dea_biaxial s = stress_of(still, &still->rings.rings[q], e[q], 1.0);
+        radial[q] = -s.p1;
+        hoop[q] = -s.p2;
+        area[q] = film->square * (1.0 + e[q].e1) * (1.0 + e[q].e2);
     }
+    const dea_rings *rings = &still->rings;
+    const double slack = fmax(radial[0], fmax(dea_rings_largest(rings, false, radial), dea_rings_largest(rings, false, hoop)));
     const strains *edge = &e[electrode_edge(&still->rings)];
     const double pull = film->square * (1.0 + edge->e1) * (1.0 + edge->e2) * (1.0 + edge->e2); /* lambda_1 lambda_2^2/lambda_pre */
     const double force = 2.0 * DEA_PI * point->film_thickness * still->pressure * pull * dea_point_divide(point);
     dea_row_fill(row, point,
                  (dea_found){.strain = strain,
                              .force = dea_point_sign(point) * force,
-                             .stretch = area,
+                             .stretch = point->kind == DEA_DOT ? area[0] : dea_rings_largest(rings, false, area),
                              .capacitance = capacitance(still, u),
-                             .taut = least > 0.0});
+                             .taut = film->tension > slack}); /* the disc is uniform */
 }
 
 /* Newton's step of a finer mesh at the solution of a coarser one, of the edge, relative. */

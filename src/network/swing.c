@@ -88,9 +88,8 @@ static double distance_above(const film *f, size_t pole)
 
 /* Every branch has a real root above its pole. Of all roots the sum is -r/m - sum q_i and the product (-1)^n K prod q_i/m, so
  * that two are left with the sum 2 sigma and the product p below: complex where p > sigma^2. */
-dea_swing dea_swing_of(dea_dynamics *dynamics, double u, double voltage)
+static dea_swing swing_of(film f)
 {
-    const film f = film_at(dynamics, u, voltage);
     const dea_swing none = {(double)NAN, (double)NAN};
     if (!(f.mass > 0.0) || !(f.stiffness > 0.0)) {
         return none;
@@ -106,12 +105,36 @@ dea_swing dea_swing_of(dea_dynamics *dynamics, double u, double voltage)
     return square > 0.0 ? (dea_swing){sqrt(square) / (2.0 * DEA_PI), 0.5 * sum} : none;
 }
 
+dea_swing dea_swing_of(dea_dynamics *dynamics, double u, double voltage)
+{
+    return swing_of(film_at(dynamics, u, voltage));
+}
+
+/* At rest the damper of the membrane is its stiffness times 1 + P/(lambda_pre W11), whatever its electrodes weigh: of
+ * int (e_1^2 + e_2^2) and int e_1 e_2, which both are made of, the second is 0 between a centre and a frame that do not move. So its
+ * modes stay those of the undamped film, and each has the one pair of roots. */
+static dea_swing swing_of_membrane(const dea_scene *scene, const dea_dynamics *d)
+{
+    const dea_film *material = &d->point.film;
+    const double omega = d->mass > 0.0 ? 2.0 * DEA_PI * dea_point_resonance(scene, &d->point) : (double)NAN;
+    film f = {.mass = 1.0, .stiffness = omega * omega};
+    const double viscous = f.stiffness * (1.0 + material->tension / (material->prestretch * material->w11));
+    f.resistance = d->retardation * viscous;
+    for (size_t i = 0; i < d->branch_count; i++) {
+        f.poles[f.count++] = (relaxation){viscous * d->branches[i].share, d->branches[i].tau};
+    }
+    return swing_of(f);
+}
+
 dea_swing dea_swing_free(const dea_scene *scene, const dea_model *model)
 {
     dea_scene full = *scene; /* borrows what the scene owns */
     dea_dynamics dynamics;
     dea_swing swing = {(double)NAN, (double)NAN};
     full.reduction = (dea_reduction){0};
+    if (model->membrane) {
+        return dea_dynamics_settle(&full, model, &dynamics, NULL) == DEA_OK ? swing_of_membrane(&full, &dynamics) : swing;
+    }
     if (dea_dynamics_open(&full, model, &dynamics, NULL) == DEA_OK) {
         swing = dea_swing_of(&dynamics, 0.0, 0.0);
     }

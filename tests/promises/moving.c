@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "drive/signal.h"
-#include "promises.h"
+#include "truths.h"
 
 enum { STAGES = 6, UNKNOWNS = 2 * STAGES, NEWTON = 20 };
 
@@ -776,6 +776,13 @@ static double gap(const motion *m, const dea_sample *a, size_t count)
         most = fmaxl(most, fabsl((long double)a[i].voltage - b->voltage) / m->size[2]);
     }
     return (double)most;
+}
+
+double number_at(const void *row, size_t offset)
+{
+    double value;
+    memcpy(&value, (const char *)row + offset, sizeof value);
+    return value;
 }
 
 /* Largest difference of a column [its unit]. */

@@ -36,6 +36,7 @@ typedef struct levels {
     dea_track before;       /* extrapolated from the two before: points, integrals and peak only */
     double peak_error;      /* of the answer for the peak of the current [A] */
     size_t runs;
+    bool shown;      /* all rows have numbers: the film stays within its frame */
     double error;    /* of the answer: that of the column that is worst against what it promises */
     double displacement;   /* error of displacement and charge */
     dea_rate_errors rates; /* of velocity and current */
@@ -151,10 +152,10 @@ static void judge_peak(levels *l)
     l->before.peak = (dea_peak){answer, l->fine.peak.time};
 }
 
-/* Where it is within ten times the accuracy. */
+/* Where it is within ten times the accuracy, and all rows have numbers. */
 static void tell_peak(const dea_route *route, const levels *l, dea_summary *summary)
 {
-    const bool told = route->peaks && l->fine.end == DEA_STATE_OK &&
+    const bool told = route->peaks && l->shown && l->fine.end == DEA_STATE_OK &&
                       l->peak_error <= 10.0 * route->scene->accuracy * l->before.peak.current;
     summary->peak_current = told ? l->before.peak.current : (double)NAN;
     summary->peak_time = told ? l->before.peak.time : (double)NAN;
@@ -187,6 +188,7 @@ static void judge(const dea_route *route, levels *l)
             l->before.points[i] = answer;
         }
     }
+    l->shown = shown;
     judge_peak(l);
     widen_means(route, l, shown ? (double)INFINITY : last, &second, &fourth);
     const double away = shown && l->fine.end == DEA_STATE_OK ? 1.0 : running_away;

@@ -134,7 +134,7 @@ static double change_over(const dea_surrogate *s, const dea_segment *segment, do
 {
     const double length = segment->to - segment->from, largest = s->largest * s->largest;
     if (segment->sine) {
-        const double frequency = dea_surrogate_signal(s)->sine.frequency;
+        const double frequency = dea_surrogate_signal(s)->curve.tones[0].frequency;
         return 4.0 * (1.0 + frequency * fmin(length, forgotten)) * fmin(1.0, 2.0 * DEA_PI * frequency * quick);
     }
     const double start = segment->start * segment->start, end = segment->end * segment->end;

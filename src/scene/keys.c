@@ -6,12 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "drive/wave.h"
 #include "scene/key_forms.h"
 #include "study/study.h"
 #include "support/text.h"
-
-#define STEP "drive.waveform.step"
-#define SINE "drive.waveform.sine"
 
 static const dea_key keys_before[] = {
     OTHER("title", dea_read_title, "one line of text, at most 1000 bytes"),
@@ -97,22 +95,12 @@ static const dea_key keys_behind[] = {
            "a resistance >= 0, e.g. 1 MOhm"),
     SCALAR("drive.leakage_resistance", drive.leakage_resistance, "ohm", "_Ohm", 0, INFINITY, true, DEA_KEY_BOTH, 1,
            "a resistance > 0, e.g. 100 GOhm"),
-    OTHER("drive.waveform", dea_read_waveform, "a mapping with step, points, sine or file"),
-    OTHER(STEP, dea_read_mapping, "a mapping with on, off, voltage and rise, e.g. {on: 5 s, off: 15 s, voltage: 4500 V}"),
-    PART(STEP ".on", drive.waveform.step.on, "s", "_s", 0, INFINITY, false, 2, STEP, "a time >= 0, e.g. 5 s"),
-    PART(STEP ".off", drive.waveform.step.off, "s", "_s", 0, INFINITY, true, 2, STEP, "a time >= on + rise, e.g. 15 s"),
-    PART(STEP ".voltage", drive.waveform.step.voltage, "V", "_V", -INFINITY, INFINITY, true, 2, STEP, "a voltage, e.g. 4500 V"),
-    PART(STEP ".rise", drive.waveform.step.rise, "s", "_s", 0, INFINITY, false, 2, STEP, "a time >= 0, e.g. 1 us"),
-    OTHER("drive.waveform.points", dea_read_points, "a list of [time, voltage], e.g. [[0 s, 0 V], [5 s, 4500 V]]"),
-    OTHER(SINE, dea_read_mapping,
-          "a mapping with amplitude, frequency, offset, phase and delay, e.g. {amplitude: 100 V, frequency: 50 Hz}"),
-    PART(SINE ".offset", drive.waveform.sine.offset, "V", "_V", -INFINITY, INFINITY, true, 2, SINE, "a voltage, e.g. 4000 V"),
-    PART(SINE ".amplitude", drive.waveform.sine.amplitude, "V", "_V", -INFINITY, INFINITY, true, 2, SINE,
-         "a voltage, e.g. 100 V"),
-    PART(SINE ".frequency", drive.waveform.sine.frequency, "Hz", "_Hz", 0, INFINITY, true, 2, SINE,
-         "a frequency > 0, e.g. 50 Hz"),
-    PART(SINE ".phase", drive.waveform.sine.phase, "rad", "_rad", -INFINITY, INFINITY, true, 2, SINE, "an angle, e.g. 90 deg"),
-    PART(SINE ".delay", drive.waveform.sine.delay, "s", "_s", 0, INFINITY, false, 2, SINE, "a time >= 0, e.g. 5 s"),
+    OTHER("drive.waveform", dea_read_waveform, "a mapping with step, points, sine, pulse, square, triangle, chirp, burst, sines or file"),
+};
+
+/* Here stand the keys of the forms of a waveform. */
+
+static const dea_key keys_further[] = {
     OTHER("drive.waveform.file", dea_read_wave_file, "the name of a table with columns of time and voltage"),
     PART("drive.waveform.period", drive.waveform.period, "s", "_s", 0, INFINITY, true, 1, "drive.waveform",
          "a time, at least the last one of the waveform, e.g. 20 s"),
@@ -174,6 +162,55 @@ static bool listed_key(const dea_key *keys, size_t count, size_t *index, dea_key
     return found;
 }
 
+/* Ending of a result column of that unit. */
+static const char *suffix_of(const char *unit)
+{
+    static const char *const suffixes[][2] = {{"V", "_V"}, {"s", "_s"}, {"Hz", "_Hz"}, {"rad", "_rad"}};
+    for (size_t i = 0; i < sizeof suffixes / sizeof *suffixes; i++) {
+        if (strcmp(suffixes[i][0], unit) == 0) {
+            return suffixes[i][1];
+        }
+    }
+    return "";
+}
+
+static size_t wave_keys(const dea_wave *wave)
+{
+    return 1u + (wave->stride > 0 ? 1u : 0u) + wave->number_count + (wave->word ? 1u : 0u);
+}
+
+/* Key number @p index of a waveform: its mapping or list, what an entry of a list is, its numbers, its word. */
+static void wave_key(const dea_wave *wave, size_t index, dea_key *key)
+{
+    const bool list = wave->stride > 0;
+    *key = (dea_key){.offset = DEA_KEY_NOWHERE, .kinds = DEA_KEY_BOTH, .accepted = wave->accepted};
+    if (index <= list) {
+        snprintf(key->path, sizeof key->path, index ? "%s.#" : "%s", wave->path);
+        key->read = wave->number_count == 0 ? dea_read_points : list && index == 0 ? dea_read_sines : dea_read_mapping;
+        return;
+    }
+    index -= 1 + list;
+    if (index == wave->number_count) {
+        snprintf(key->path, sizeof key->path, "%s.%s", wave->path, wave->word);
+        key->read = dea_read_wave_word;
+        key->accepted = wave->choices;
+        return;
+    }
+    const dea_wave_number *number = &wave->numbers[index];
+    snprintf(key->path, sizeof key->path, list ? "%s.#.%s" : "%s.%s", wave->path, number->name);
+    key->read = dea_read_scalar;
+    key->offset = AT(drive.waveform) + number->offset;
+    key->stride = wave->stride;
+    key->unit = number->unit;
+    key->suffix = suffix_of(number->unit);
+    key->low = number->low;
+    key->high = number->high;
+    key->open = number->open;
+    key->words = list ? 3 : 2;
+    key->within = wave->path;
+    key->accepted = number->accepted;
+}
+
 bool dea_key_at(size_t index, dea_key *key)
 {
     if (listed_key(keys_before, COUNT(keys_before), &index, key)) {
@@ -188,6 +225,17 @@ bool dea_key_at(size_t index, dea_key *key)
         index -= count;
     }
     if (listed_key(keys_behind, COUNT(keys_behind), &index, key)) {
+        return true;
+    }
+    for (dea_wave_kind kind = DEA_WAVE_STEP; dea_wave_of(kind); kind++) {
+        const size_t count = wave_keys(dea_wave_of(kind));
+        if (index < count) {
+            wave_key(dea_wave_of(kind), index, key);
+            return true;
+        }
+        index -= count;
+    }
+    if (listed_key(keys_further, COUNT(keys_further), &index, key)) {
         return true;
     }
     for (dea_study_kind kind = 0; kind < DEA_STUDIES; kind++) {

@@ -62,8 +62,10 @@ dea_status dea_reader_index(dea_reader *reader, const dea_ref *ref, const dea_pl
     }
     const bool window = strncmp(ref->path, "study.transient.average.", 24) == 0;
     const bool listed = strchr(ref->key.path, '#') != NULL;
+    const bool sine = strncmp(ref->path, "drive.waveform.sines.", 21) == 0;
     const dea_material *material = &reader->scene->material;
-    const size_t count = window         ? reader->scene->transient.average_count
+    const size_t count = sine             ? reader->scene->drive.waveform.sine_count
+                         : window         ? reader->scene->transient.average_count
                          : ref->key.law ? material->entry_count
                                         : material->prony_count;
     if (window && !listed && count > 1) {
@@ -73,8 +75,8 @@ dea_status dea_reader_index(dea_reader *reader, const dea_ref *ref, const dea_pl
     if (!listed || ref->index < count) {
         return DEA_OK;
     }
-    return dea_place_fail(place, reader->error, ref->path, "the %s has %zu %s, counted from 0", window ? "transient" : "material",
-                          count, window ? "windows" : ref->key.law ? "terms" : "branches");
+    return dea_place_fail(place, reader->error, ref->path, "the %s has %zu %s, counted from 0",
+                          sine ? "waveform" : window ? "transient" : "material", count, sine ? "sines" : window ? "windows" : ref->key.law ? "terms" : "branches");
 }
 
 static dea_status fail_unknown(dea_reader *reader, const char *path, const dea_node *node)

@@ -79,6 +79,8 @@ dea_status dea_read_permittivity(dea_reader *reader, const dea_ref *ref, const d
 dea_status dea_read_prony(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_moduli(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_waveform(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_wave_word(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_sines(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_points(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_wave_file(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 

@@ -2,6 +2,9 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "drive/wave.h"
 
 /* The power of two that takes a size to [1, 2). */
 static double unit_for(double size)
@@ -79,14 +82,19 @@ static dea_status enter_points(const dea_units *u, dea_waveform *wave, dea_error
 
 static void enter_wave(const dea_units *u, dea_waveform *wave)
 {
-    wave->step.on *= u->time;
-    wave->step.off *= u->time;
-    wave->step.rise *= u->time;
-    wave->step.voltage *= u->voltage;
-    wave->sine.offset *= u->voltage;
-    wave->sine.amplitude *= u->voltage;
-    wave->sine.frequency /= u->time;
-    wave->sine.delay *= u->time;
+    const dea_wave *kind = dea_wave_of(wave->kind);
+    const struct {
+        const char *unit;
+        double factor;
+    } factors[] = {{"V", u->voltage}, {"s", u->time}, {"Hz", 1.0 / u->time}};
+    const size_t entries = kind && kind->stride ? wave->sine_count : 1;
+    for (size_t i = 0; kind && i < kind->number_count * entries; i++) {
+        const size_t number = i % kind->number_count;
+        for (size_t k = 0; k < sizeof factors / sizeof *factors; k++) {
+            const bool fits = strcmp(kind->numbers[number].unit, factors[k].unit) == 0;
+            *dea_wave_at(kind, wave, number, i / kind->number_count) *= fits ? factors[k].factor : 1.0;
+        }
+    }
     wave->period *= u->time;
 }
 

@@ -19,10 +19,7 @@
 #include "network/swing.h"
 #include "support/lapack.h"
 
-/* Below that coverage the nodes of the annulus lie evenly in ln R: polynomials in R then follow 1/R slowly. */
-static const double small_disc = 0.1;
-
-enum { STEP = 2, NEWTON_MOST = 30 };
+enum { STEP = 2, FEW = 4, NEWTON_MOST = 30 };
 
 /* Share of V's growth that a step may come down to, and share of |s| below which the root reaches the real axis. */
 static const double least_growth = 1e-4, overdamped = 0.05;
@@ -90,13 +87,25 @@ static void set_losses(film *f, const dea_membrane_look *look)
     f->damped = d->retardation > 0.0 || d->branch_count > 0 || f->charge_gain > 0.0;
 }
 
-/* The equilibrium and its undamped modes; the state of the row says whether there is one. */
-static dea_status film_open(const dea_scene *scene, const dea_model *model, size_t degree, film *f, dea_error *error)
+/* Degree of an element that takes that share of the radius: many nodes close together cost the slow modes their digits. */
+static size_t degree_of(size_t degree, double share)
 {
-    memset(f, 0, sizeof *f);
+    const size_t fitting = FEW + (degree - FEW) / 4 + (size_t)(2.0 * share * (double)degree);
+    return fitting < degree ? fitting : degree;
+}
+
+/* Polynomials in R follow the 1/R about a small disc slowly, those in ln R the modes far from it. */
+static dea_rings_mesh mesh_of(const dea_scene *scene, size_t degree, bool logarithmic)
+{
     const dea_actuator *actuator = &scene->actuator;
     const double coverage = isnan(actuator->coverage) ? actuator->divide_radius / actuator->frame_radius : actuator->coverage;
-    const dea_rings_mesh mesh = {degree, degree, coverage < small_disc};
+    return (dea_rings_mesh){degree_of(degree, coverage), degree_of(degree, 1.0 - coverage), logarithmic};
+}
+
+/* The equilibrium and its undamped modes; the state of the row says whether there is one. */
+static dea_status film_open(const dea_scene *scene, const dea_model *model, dea_rings_mesh mesh, film *f, dea_error *error)
+{
+    memset(f, 0, sizeof *f);
     const dea_status status = dea_membrane_open(scene, model, mesh, &f->membrane, error);
     if (status != DEA_OK) {
         return status;
@@ -279,31 +288,50 @@ static void fill_state(dea_mode *modes, size_t count, dea_state state)
     }
 }
 
-/* Finer and finer, until two meshes agree. */
-static dea_status solve_membrane(const dea_scene *scene, const dea_model *model, const dea_layout *layout, void *point, film *f,
-                                 dea_error *error)
+/* Finer and finer, until two meshes agree; *@p found: they do, or there is no equilibrium. */
+static dea_status refine(const dea_scene *scene, const dea_model *model, const dea_layout *layout, bool logarithmic, dea_mode *modes, film *f,
+                         bool *found, dea_error *error)
 {
-    dea_mode *modes = point, before[DEA_MODES_MOST];
+    dea_mode before[DEA_MODES_MOST];
     bool known = false;
-    for (size_t degree = layout->rows / 2 + 4; degree <= DEA_RINGS_DEGREE; degree += STEP) {
-        const dea_status status = film_open(scene, model, degree, f, error);
+    for (size_t degree = layout->rows / 2 + FEW; degree <= DEA_RINGS_DEGREE && !*found; degree += STEP) {
+        const dea_status status = film_open(scene, model, mesh_of(scene, degree, logarithmic), f, error);
         if (status != DEA_OK) {
             return status;
         }
         if (f->row.state == DEA_STATE_PULL_IN) {
-            fill_state(modes, layout->rows, DEA_STATE_PULL_IN);
+            *found = true;
             return DEA_OK;
         }
         memcpy(before, modes, layout->rows * sizeof *modes);
-        const bool found = fill_modes(f, modes, layout->rows);
-        if (found && known && agree(before, modes, layout->rows, scene->accuracy, degree + STEP > DEA_RINGS_DEGREE)) {
-            fill_shapes(f, scene, layout, point);
-            return DEA_OK;
-        }
-        known = found;
+        const bool filled = fill_modes(f, modes, layout->rows);
+        *found = filled && known && agree(before, modes, layout->rows, scene->accuracy, degree + STEP > DEA_RINGS_DEGREE);
+        known = filled;
     }
-    dea_layout_fail(scene, layout, point);
-    return dea_fail(error, DEA_OK, "the modes of %d + %d nodes are not within the accuracy", DEA_RINGS_DEGREE, DEA_RINGS_DEGREE), DEA_OK;
+    return DEA_OK;
+}
+
+static dea_status solve_membrane(const dea_scene *scene, const dea_model *model, const dea_layout *layout, void *point, film *f,
+                                 dea_error *error)
+{
+    bool found = false;
+    dea_status status = refine(scene, model, layout, false, point, f, &found, error);
+    if (status == DEA_OK && !found) {
+        status = refine(scene, model, layout, true, point, f, &found, error);
+    }
+    if (status != DEA_OK) {
+        return status;
+    }
+    if (!found) {
+        dea_layout_fail(scene, layout, point);
+        dea_fail(error, DEA_OK, "modes on %d rings of film are not within the accuracy", DEA_RINGS_MOST);
+    } else if (f->row.state == DEA_STATE_PULL_IN) {
+        dea_layout_fail(scene, layout, point);
+        fill_state(point, layout->rows, DEA_STATE_PULL_IN);
+    } else {
+        fill_shapes(f, scene, layout, point);
+    }
+    return DEA_OK;
 }
 
 /* Lame: w ~ R in the disc, F^2/R - R in the annulus, w = 1 at the edge. */

@@ -43,6 +43,17 @@ typedef struct dea_actuator {
     double layers;           /**< films of that thickness in a stack, electrically parallel [1], whole, >= 1, default 1 */
 } dea_actuator;
 
+/** Electrodes of the electroded region: a skin with an energy of its own, stress-free at the pre-stretch (physics: section 8), and
+ * what they weigh. All of a stack together, as laid on the pre-stretched film. */
+typedef struct dea_electrode {
+    const dea_law *law;                  /**< of the skin, NULL: none */
+    double constants[DEA_LAW_CONSTANTS]; /**< of the law, 0 beyond those in use */
+    size_t entry_count;                  /**< entries in use of a law that is a list, else 1 */
+    double thickness;                    /**< t [m], > 0, NAN: none */
+    double density;                      /**< [kg/m^3], > 0, NAN: no mass but actuator.electrode_mass */
+    double sheet_resistance;             /**< of one electrode [Ohm per square], > 0, NAN: none */
+} dea_electrode;
+
 /** Kinds of waveform, in the order of the table src/drive/waves.c. A file and a list of points are both points. */
 typedef enum dea_wave_kind {
     DEA_WAVE_NONE,
@@ -56,6 +67,8 @@ typedef enum dea_wave_kind {
     DEA_WAVE_BURST,
     DEA_WAVE_SINES
 } dea_wave_kind;
+
+enum { DEA_WAVES = DEA_WAVE_SINES + 1 };
 
 /** Most numbers of a waveform without a struct of its own, and most sines of a sum. */
 enum { DEA_WAVE_NUMBERS = 8, DEA_SINES = 8 };
@@ -192,6 +205,7 @@ typedef struct dea_reduction {
 typedef struct dea_scene {
     char *title; /**< may be empty, never NULL */
     dea_actuator actuator;
+    dea_electrode electrode;
     dea_material material;
     dea_drive drive;
     const struct dea_model *models[DEA_SCENE_MODELS]; /**< models to run one after the other, model_count of them */

@@ -23,6 +23,7 @@ static dea_status scene_clear(dea_scene *scene)
                      .electrode_mass = NAN,
                      .focal_length = NAN,
                      .refractive_index = NAN},
+        .electrode = {.thickness = NAN, .density = NAN, .sheet_resistance = NAN},
         .material = dea_material_default(),
         .drive = {.voltage = NAN,
                   .waveform = dea_waveform_none(),

@@ -1,5 +1,5 @@
 /* The film along its radius: the disc is uniform, lambda_1 = lambda_2 = lambda_pre (1 + s), the annulus as its model has it. True
- * stresses lambda_a P_a - eps E^2, E = U lambda_1 lambda_2/H where electroded. */
+ * stresses lambda_a P_a - eps E^2, E = U lambda_1 lambda_2/H and with what its skin holds where electroded. */
 #include "engine/direct/direct.h"
 
 #include <math.h>
@@ -23,7 +23,11 @@ static void fill_stretched(const film *f, dea_stretches l, bool outside, dea_sta
     const double pre = point->film.prestretch, area = l.radial * l.hoop, nominal = dea_point_nominal_field(point);
     const bool electroded = outside == (point->kind == DEA_LENS);
     const double pressure = electroded ? point->film.permittivity * nominal * nominal * area * area : 0.0;
-    const dea_biaxial s = dea_film_biaxial(&point->film, l.radial / pre - 1.0, l.hoop / pre - 1.0);
+    const double e1 = l.radial / pre - 1.0, e2 = l.hoop / pre - 1.0;
+    dea_biaxial s = dea_film_biaxial(&point->film, e1, e2);
+    if (electroded && point->skin_share > 0.0) {
+        dea_point_coat(point, e1, e2, &s);
+    }
     at->stretch[0] = l.radial;
     at->stretch[1] = l.hoop;
     at->thickness = point->film_thickness / point->layers / area;

@@ -43,7 +43,7 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     const double ratio = dot ? b / (1.0 - b) : (1.0 - b) / b;
     const double pressure = dea_point_pressure(point);
     double active; /* strain of the electroded film */
-    if (!dea_film_balance(&point->film, ratio, pressure, &active)) {
+    if (!dea_film_balance(point, ratio, pressure, &active)) {
         dea_row_refuse(row, DEA_STATE_PULL_IN);
         return;
     }
@@ -170,11 +170,26 @@ static void build(const dea_symbols *symbols, dea_network *network)
                            dea_hyperelastic_change(symbols, disc), area);
     dea_network_add_stress(network, "n_annulus", "annulus, sigma_pre - sigma [Pa] on the area A, Eqs. 17, 18",
                            NEG(dea_hyperelastic_change(symbols, annulus)), area);
+    if (symbols->skin) {
+        dea_network_add(network, DEA_ROLE_TENSION, "n_skin", "skin of the electrodes, its stress on the area A [N]",
+                        SCALE(network->sign, MUL(area, dea_hyperelastic_skin(symbols, active, active))));
+    }
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force, A eps E^2, Eq. 18 [N]",
                     SCALE(network->sign, dea_hyperelastic_force(symbols, disc, active)));
     network->end = dot ? dea_symbols_annulus_width(symbols) : MUL(symbols->coverage, symbols->frame_radius);
     network->field = dea_hyperelastic_field(symbols, active);
     dea_network_taut(network, SUB(MUL(symbols->prestretch, ADD(one, passive)), one));
+}
+
+/* Equi-biaxial, whatever the place: lambda_P of Eq. 18. */
+static bool along(const dea_point *point, double strain, size_t count, const double *x, dea_stretches *stretches)
+{
+    const double pre = point->film.prestretch, b = point->coverage, passive = pre * (1.0 - b * strain / (1.0 - b));
+    (void)x;
+    for (size_t i = 0; i < count; i++) {
+        stretches[i] = (dea_stretches){passive, passive};
+    }
+    return true;
 }
 
 const dea_model dea_model_coverage = {
@@ -183,6 +198,7 @@ const dea_model dea_model_coverage = {
     .leaves_out = "non-uniform passive stress",
     .lens = true,
     .solve = solve,
+    .along = along,
     .network = build,
     .dynamic = true,
 };

@@ -160,7 +160,8 @@ static void alternatives_remove(setting_reader *self, const char *path)
 static void laws_remove(setting_reader *self, const char *path)
 {
     const char *name = strrchr(path, '.');
-    dea_node *material = name && dea_law_find(name + 1) ? path_enter(self, "material") : NULL;
+    const bool skin = strncmp(path, "electrode.", 10) == 0;
+    dea_node *material = name && dea_law_find(name + 1) ? path_enter(self, skin ? "electrode" : "material") : NULL;
     for (size_t i = 0; material && dea_law_at(i); i++) {
         const char *other = dea_law_at(i)->name;
         const dea_node *node = dea_tree_child(material, other);

@@ -60,7 +60,7 @@ const char *dea_direct_refuses_transient(const dea_scene *scene, const dea_model
     if (!model->linear) {
         return "its springs are not linear, so that a transient has no closed form";
     }
-    if (scene->drive.series_resistance > 0.0 && !scene->reduction.series) {
+    if (dea_series_resistance(scene) > 0.0 && !scene->reduction.series) {
         return "the charging of the film through a series resistance is not linear";
     }
     dea_film_prepare(scene, &point.film);
@@ -97,6 +97,7 @@ static dea_status open_run(run *r, const dea_model *model, dea_error *error)
                          .every = r->scene->transient.every,
                          .from_bias = r->scene->transient.from_bias};
     r->walk.chain = dea_walk_chain(&r->dynamics, r->walk.linear.stiffness);
+    r->walk.chain.stiffness += r->walk.linear.beside;
     r->rows = dea_layout_of(r->scene).rows;
     r->known = dea_peak_is_known(r->scene, &r->dynamics, &r->signal);
     return check_segments(r, error);

@@ -48,11 +48,16 @@ static double resistance(const dea_units *u)
     return u->voltage * u->time / charge(u);
 }
 
+static void enter_law(const dea_units *u, const dea_law *law, double constants[DEA_LAW_CONSTANTS])
+{
+    for (size_t i = 0; law && i < DEA_LAW_CONSTANTS; i++) {
+        constants[i] *= law->constants[i % law->constant_count].modulus ? u->stress : 1.0;
+    }
+}
+
 static void enter_material(const dea_units *u, dea_material *material)
 {
-    for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
-        material->constants[i] *= material->law->constants[i % material->law->constant_count].modulus ? u->stress : 1.0;
-    }
+    enter_law(u, material->law, material->constants);
     material->modulus *= u->stress;
     material->permittivity *= permittivity(u);
     material->permittivity_per_stretch *= permittivity(u);
@@ -107,6 +112,10 @@ dea_status dea_units_enter(const dea_units *units, const dea_scene *scene, dea_s
     actuator->focal_length *= units->length;
     actuator->film_thickness *= units->thickness;
     actuator->electrode_mass *= density(units) * units->thickness;
+    inside->electrode.thickness *= units->thickness;
+    inside->electrode.density *= density(units);
+    inside->electrode.sheet_resistance *= resistance(units);
+    enter_law(units, inside->electrode.law, inside->electrode.constants);
     enter_material(units, &inside->material);
     inside->drive.series_resistance *= resistance(units);
     inside->drive.leakage_resistance *= resistance(units);

@@ -73,16 +73,6 @@ static void find_stretch(line_text *l)
     l->w->left_out += l->w->points - (l->to - l->from);
 }
 
-/* The swept scalar moves as the displacement does: both are voltages. */
-static void move_symbol(dea_part_text *text)
-{
-    for (int i = 0; i < text->pool->count; i++) {
-        const dea_term *term = &text->pool->terms[i];
-        text->moves[i] = text->moves[i] || term->operation == DEA_SYMBOL ||
-                         (term->operation >= DEA_ADD && (text->moves[term->a] || text->moves[term->b]));
-    }
-}
-
 static void write_parameter_sum(const line_text *l, const char *sign, const char *name)
 {
     fputs(sign, l->w->out);
@@ -101,14 +91,14 @@ static void write_axis(const line_text *l)
     fprintf(out, "min(max(v(k),%zu),%zu)", l->from, last);
     dea_dialect_source_end(l->w->dialect, out);
     const bool uniform = axis->uniform && axis->count > 1;
-    dea_export_parameter(out, "axis_from", axis->values[uniform ? 0 : l->from]);
+    dea_part_value(out, "axis_from", axis->values[uniform ? 0 : l->from]);
     for (size_t i = l->from + 1; i < l->to && !uniform; i++) {
         char name[32];
         snprintf(name, sizeof name, "axis_step%zu", i);
-        dea_export_parameter(out, name, axis->values[i] - axis->values[i - 1]);
+        dea_part_value(out, name, axis->values[i] - axis->values[i - 1]);
     }
     if (uniform) {
-        dea_export_parameter(out, "axis_span", axis->values[axis->count - 1] - axis->values[0]);
+        dea_part_value(out, "axis_span", axis->values[axis->count - 1] - axis->values[0]);
     }
     dea_dialect_source_begin(l->w->dialect, out, DEA_VOLTAGE, "axis", "axis", "0");
     write_parameter_sum(l, "", "axis_from");
@@ -156,12 +146,11 @@ static double displacement_at(const line_text *l, size_t i)
     return isfinite(row.displacement) ? row.displacement : 0.0;
 }
 
-static void write_guess(const line_text *l, const char *node, int number, double value)
+static void write_guess(const line_text *l, const char *node, double value)
 {
     FILE *out = l->w->out;
-    fprintf(out, " v(xline%zu%s%s", l->w->lines, l->w->dialect->inside, node);
-    fprintf(out, number >= 0 ? "%d)=" : ")=", number);
-    dea_export_number(out, value);
+    fprintf(out, " v(xline%zu%s%s)=", l->w->lines, l->w->dialect->inside, node);
+    dea_part_number(out, value);
 }
 
 /* Newton's start of the first point. */
@@ -175,16 +164,14 @@ static dea_status write_start(const line_text *l, dea_error *error)
     }
     dea_pool_values(&l->network.pool, symbol_at(l, l->from), u, values);
     fprintf(out, ".nodeset v(edge%zu)=", l->w->lines);
-    dea_export_number(out, u);
+    dea_part_number(out, u);
     if (l->axis) {
-        write_guess(l, "point", -1, (double)l->from);
-        write_guess(l, "axis", -1, symbol_at(l, l->from));
+        write_guess(l, "point", (double)l->from);
+        write_guess(l, "axis", symbol_at(l, l->from));
     }
-    for (int i = 0; i < l->network.pool.count; i++) {
-        if (l->text.written[i] && l->text.moves[i]) {
-            write_guess(l, "x", i, values[i]);
-        }
-    }
+    char inside[32];
+    snprintf(inside, sizeof inside, "xline%zu%s", l->w->lines, l->w->dialect->inside);
+    dea_part_text_start(&l->text, inside, values);
     fputc('\n', out);
     free(values);
     return DEA_OK;
@@ -220,8 +207,8 @@ static dea_status write_line(line_text *l, dea_error *error)
     }
     l->text.node = "v(edge)";
     l->text.symbols = symbols;
-    move_symbol(&l->text);
-    dea_export_share(&l->text);
+    dea_part_text_move(&l->text, 0);
+    dea_part_text_share(&l->text);
     dea_part_text_use(&l->text, l->elastic);
     dea_part_text_use(&l->text, l->load);
     write_place(l);
@@ -232,7 +219,7 @@ static dea_status write_line(line_text *l, dea_error *error)
     }
     dea_part_text_nodes(&l->text);
     write_forces(l);
-    fprintf(out, ".ends\nxline%zu k edge%zu line%zu\n", l->w->lines, l->w->lines, l->w->lines);
+    fprintf(out, ".ends\nXLINE%zu k edge%zu line%zu\n", l->w->lines, l->w->lines, l->w->lines);
     return write_start(l, error);
 }
 
@@ -291,11 +278,11 @@ static void write_tolerances(const writer *w)
 {
     if (w->dialect->solver) {
         fprintf(w->out, "* tolerances of one point\n%s reltol=", w->dialect->solver);
-        dea_export_number(w->out, fmin(1e-8, 0.1 * w->export->scene->accuracy));
+        dea_part_number(w->out, fmin(1e-8, 0.1 * w->export->scene->accuracy));
         fputs(" abstol=", w->out);
-        dea_export_number(w->out, 1e-18 * w->force);
+        dea_part_number(w->out, 1e-18 * w->force);
         fputs(" vntol=", w->out);
-        dea_export_number(w->out, 1e-18 * w->length);
+        dea_part_number(w->out, 1e-18 * w->length);
         fputc('\n', w->out);
     }
 }
@@ -305,7 +292,7 @@ static void write_analysis(const writer *w, const char *names)
     FILE *out = w->out;
     write_tolerances(w);
     fputs(w->dialect->sweep, out);
-    fputs("* the sweep over the index of the points\nvindex k 0 0\n", out);
+    fputs("* the sweep over the index of the points\nVINDEX k 0 0\n", out);
     if (w->export->dialect->save) {
         fprintf(out, "%s%s\n", w->export->dialect->save, names);
     }
@@ -314,8 +301,8 @@ static void write_analysis(const writer *w, const char *names)
         fprintf(out, "* every row number n %zu, n = 0, 1, 2 ..., is a point; those between lead from one to the next\n",
                 w->parts);
     }
-    fprintf(out, ".dc vindex 0 %zu ", w->points - 1);
-    dea_export_number(out, 1.0 / (double)w->parts);
+    fprintf(out, ".dc VINDEX 0 %zu ", w->points - 1);
+    dea_part_number(out, 1.0 / (double)w->parts);
     fputs("\n.end\n", out);
 }
 

@@ -132,7 +132,7 @@ void dea_expression_text_nodes(const dea_expression_text *text)
 {
     for (int i = 0; i < text->pool->count; i++) {
         if (has_node(text, i)) {
-            fprintf(text->out, "bx%d x%d 0 v=", i, i);
+            fprintf(text->out, "BX%d x%d 0 v=", i, i);
             expression(text, i, false);
             fputc('\n', text->out);
         }

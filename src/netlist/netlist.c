@@ -10,7 +10,7 @@
 static void write_axis(FILE *out, const dea_netlist_study *study)
 {
     const dea_axis *axis = study->axis;
-    fputs("vindex k 0 0\n", out);
+    fputs("VINDEX k 0 0\n", out);
     if (!axis) {
         return;
     }
@@ -21,7 +21,7 @@ static void write_axis(FILE *out, const dea_netlist_study *study)
         dea_netlist_number(out, axis->values[axis->count - 1] - axis->values[0]);
         fputs(" axis_last=", out);
         dea_netlist_number(out, (double)(axis->count - 1));
-        fputs("\nbaxis axis 0 v=({axis_from})+({axis_span})*v(k)/{axis_last}\n", out);
+        fputs("\nBAXIS axis 0 v=({axis_from})+({axis_span})*v(k)/{axis_last}\n", out);
         return;
     }
     for (size_t i = 0; i < study->count; i++) {
@@ -30,10 +30,10 @@ static void write_axis(FILE *out, const dea_netlist_study *study)
         fputc('\n', out);
     }
     if (study->count == 1) {
-        fputs("vaxis axis 0 {a0}\n", out);
+        fputs("VAXIS axis 0 {a0}\n", out);
         return;
     }
-    fputs("baxis axis 0 v=pwl(v(k)", out);
+    fputs("BAXIS axis 0 v=pwl(v(k)", out);
     for (size_t i = 0; i < study->count; i++) {
         fprintf(out, ",%zu,{a%zu}", study->from + i, i);
     }
@@ -48,9 +48,9 @@ static void write_forces(const dea_expression_text *text, const dea_network *net
     for (int i = 0; i < network->element_count; i++) {
         fprintf(out, "* %s: %s\n", network->elements[i].name, network->elements[i].meaning);
     }
-    fputs("* elastic force of all springs [N], from the edge to the frame\nbspring edge 0 i=", out);
+    fputs("* elastic force of all springs [N], from the edge to the frame\nBSPRING edge 0 i=", out);
     dea_expression_text_write(text, elastic);
-    fputs("\n* electrostatic force f_dea [N], onto the edge\nbforce 0 edge i=", out);
+    fputs("\n* electrostatic force f_dea [N], onto the edge\nBFORCE 0 edge i=", out);
     if (study->ramp) {
         dea_expression_text_factor(text, load);
         fprintf(out, "*v(k)/%zu", study->ramp);
@@ -94,7 +94,7 @@ static void write_all(dea_expression_text *text, const dea_network *network, dea
     dea_netlist_number(out, 1e-21 * study->force_scale);
     fputs("\n.save v(edge)\n", out);
     const size_t last = study->ramp ? study->ramp : study->from + study->count - 1;
-    fprintf(out, ".dc vindex %zu %zu 1\n.end\n", study->ramp ? 0 : study->from, last);
+    fprintf(out, ".dc VINDEX %zu %zu 1\n.end\n", study->ramp ? 0 : study->from, last);
 }
 
 dea_status dea_netlist_write(dea_network *network, const dea_netlist_study *study, char **text, dea_error *error)

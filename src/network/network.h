@@ -73,6 +73,18 @@ typedef struct dea_network {
  * The caller frees it with dea_network_free(), also after a failure. */
 dea_status dea_network_build(const dea_scene *scene, const dea_model *model, const dea_axis *axis, dea_network *network,
                              dea_error *error);
+/* Numbers of a scene that have a dimension and stay symbols 1, 2, ... of its network: its expressions are then the same whatever
+ * the units. Symbol 0 is that of the axis. */
+enum { DEA_QUANTITIES = 4 + DEA_LAW_CONSTANTS, DEA_QUANTITY_NAME = 24 };
+typedef struct dea_quantities {
+    int count;
+    char names[DEA_QUANTITIES + 1][DEA_QUANTITY_NAME]; /* by symbol; of symbol 0 "" */
+    double values[DEA_QUANTITIES + 1];                 /* in SI, or the units of the scene */
+} dea_quantities;
+dea_status dea_network_build_named(const dea_scene *scene, const dea_model *model, const dea_axis *axis,
+                                   dea_quantities *quantities, dea_network *network, dea_error *error);
+/* Name of a law's constant as a parameter: in lower case, of a list with the number of its entry. */
+void dea_constant_name(const dea_law *law, size_t index, char name[DEA_QUANTITY_NAME]);
 /* The same from symbols whose pool is that of the zeroed network. */
 dea_status dea_network_build_symbols(const dea_symbols *symbols, const dea_model *model, dea_network *network, dea_error *error);
 void dea_network_free(dea_network *network);

@@ -677,17 +677,17 @@ static void check_card(const char *line, size_t length, const dea_dialect *diale
     static const char *const reserved[] = {".param e=",   ".param pi=",  ".param time=", ".param temper=",
                                            ".param min=", ".param max=", ".param abs=",  ".param hertz="};
     const bool pspice = strcmp(dialect->name, "pspice") == 0;
-    bool wrong = line[0] == ' ' || line[0] == '\t' || holds(line, length, "^") || holds(line, length, "**") ||
-                 holds(line, length, "?") || (!pspice && holds(line, length, "log(")) || (pspice && line[0] == 'b') ||
+    bool wrong = !(strchr(".+", line[0]) || isupper((unsigned char)line[0])) || holds(line, length, "^") || holds(line, length, "**") ||
+                 holds(line, length, "?") || (!pspice && holds(line, length, "log(")) || (pspice && line[0] == 'B') ||
                  (pspice && holds(line, length, "ln("));
     for (size_t i = 0; i < sizeof reserved / sizeof *reserved; i++) {
         wrong = wrong || holds(line, length, reserved[i]);
     }
     for (size_t i = 0; i < length; i++) {
-        wrong = wrong || isupper((unsigned char)line[i]) || (unsigned char)line[i] > '~';
+        wrong = wrong || (unsigned char)line[i] > '~';
     }
-    const char *expression = strstr(line, line[0] == 'b' ? "=" : "value=");
-    if (*dialect->open && expression && expression < line + length && strchr("beg", line[0])) {
+    const char *expression = strstr(line, line[0] == 'B' ? "=" : "value=");
+    if (*dialect->open && expression && expression < line + length && strchr("BEG", line[0])) {
         wrong = wrong || expression[strcspn(expression, "=") + 1] != '{' || line[length - 1] != '}';
     }
     if (wrong) {

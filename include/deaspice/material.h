@@ -122,7 +122,7 @@ typedef struct dea_film {
     double constants[DEA_LAW_CONSTANTS]; /**< long-term */
     bool valid;                          /**< constants in range, and the pre-stretch where the law holds */
     double prestretch;                   /**< lambda_pre [1] */
-    double permittivity;                 /**< absolute permittivity at the pre-stretch [F/m] */
+    double permittivity;                 /**< absolute permittivity at the pre-stretch, of a stack times layers^2 [F/m] */
     double breakdown;                    /**< breakdown strength [V/m], +inf: none */
     double slope;                        /**< dsigma/dlambda at the pre-stretch [Pa] */
     double curvature;                    /**< d2sigma/dlambda2 at the pre-stretch [Pa] */

@@ -11,13 +11,16 @@
 extern "C" {
 #endif
 
-/** One static point: film, geometry and the voltage across the film. */
+/** One static point: film, geometry and the voltage across the film. A stack of n films of thickness H is one film of thickness
+ * n H and n^2 times the permittivity: its pressure eps (U/H)^2 stays that of one layer, stiffness, force, mass and capacitance
+ * are n times those. */
 typedef struct dea_point {
     dea_film film;
     dea_kind kind;
     double frame_radius;   /**< r [m] */
     double coverage;       /**< B [1] */
-    double film_thickness; /**< H [m] */
+    double film_thickness; /**< H, of all layers together [m] */
+    double layers;         /**< of the stack [1]: the field is layers U/H */
     double voltage;        /**< U across the film [V] */
     double focal_length;   /**< of a lens at rest [m], NAN: no optics */
     double refractive_index; /**< of its liquid [1] */
@@ -72,6 +75,7 @@ typedef enum dea_form {
 /** Form of a model. */
 DEA_API dea_form dea_model_form(const dea_model *model);
 
+
 /** Number of models. */
 DEA_API size_t dea_model_count(void);
 /** Model number @p index from the cheapest up, NULL past the end. The library owns it. */
@@ -82,6 +86,10 @@ DEA_API const dea_model *dea_model_find(const char *name);
 /** Mass of film and electrodes that moves with the disc edge [kg], 0 without density: Rayleigh with the shape of Lame's solution,
  * the electrodes' mass per area counted over the pre-stretched film (physics: section 5). */
 DEA_API double dea_point_mass(const dea_scene *scene, const dea_point *point);
+
+/** First in-plane radial resonance of the exact membrane at rest, undamped and relaxed, with what dea_point_mass() counts [Hz]; NAN
+ * without density or where the film has no stiffness (physics: section 5, with electrodes). */
+DEA_API double dea_point_resonance(const dea_scene *scene, const dea_point *point);
 
 /** Focal length [m] of a plano-convex cap of liquid of fixed volume, V = pi h (3 a^2 + h^2)/6, over an aperture of radius
  * @p radius [m] at rest that is strained by @p strain [1]; @p rest is the focal length at strain 0 [m]. NAN where no cap has that:

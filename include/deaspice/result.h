@@ -129,6 +129,8 @@ typedef struct dea_layout {
     size_t point_size;   /**< rows and what stands behind them [bytes] */
 } dea_layout;
 
+/** Appends a column. */
+DEA_API void dea_layout_add(dea_layout *layout, dea_column column);
 /** Layout of the scene's study: which columns depends on what the scene has (electrical port, optics). */
 DEA_API dea_layout dea_layout_of(const dea_scene *scene);
 /** Time of sample @p index of a transient, frequency of row @p index of an AC study. */

@@ -40,6 +40,7 @@ typedef struct dea_actuator {
     double electrode_mass;   /**< mass per area of the electrodes [kg/m^2], >= 0, NAN: none */
     double focal_length;     /**< lens optics at rest [m], > 0, NAN: none */
     double refractive_index; /**< of the lens liquid [1], > 1, NAN: none */
+    double layers;           /**< films of that thickness in a stack, electrically parallel [1], whole, >= 1, default 1 */
 } dea_actuator;
 
 /** Kinds of waveform. A file and a list of points are both points. */
@@ -88,16 +89,25 @@ typedef struct dea_axis {
     char column[DEA_NAME_LENGTH]; /**< result column with its unit, e.g. voltage_V */
     char unit[16];                /**< SI unit, "1" where the quantity has no dimension */
     size_t offset;                /**< place of the scalar inside dea_scene, a double */
-    bool changes_film;            /**< moves the material or the pre-stretch, not only geometry or drive */
+    bool changes_film;            /**< moves the material, the pre-stretch or the layers, not only geometry or drive */
     bool uniform;                 /**< values[i] = from + (to - from) i/(count - 1) */
     double *values;               /**< count values [unit], owned by the scene */
     size_t count;                 /**< >= 1 */
 } dea_axis;
 
-/** What a study asks for. */
-typedef enum dea_study_kind { DEA_STUDY_SWEEP, DEA_STUDY_TRANSIENT, DEA_STUDY_AC } dea_study_kind;
+/** Kinds of study: code, and name of the row that tells all of it (src/study), which is its key too. */
+#define DEA_STUDY_LIST(X)                                                                                                        \
+    X(DEA_STUDY_SWEEP, sweep)                                                                                                    \
+    X(DEA_STUDY_TRANSIENT, transient)                                                                                            \
+    X(DEA_STUDY_AC, ac)
 
-enum { DEA_STUDIES = DEA_STUDY_AC + 1 };
+/** What a study asks for. */
+typedef enum dea_study_kind {
+#define X(code, name) code,
+    DEA_STUDY_LIST(X)
+#undef X
+        DEA_STUDIES
+} dea_study_kind;
 
 /** Most windows over which a transient averages, and most samples of one. */
 enum { DEA_WINDOWS = 8, DEA_SAMPLES_MAX = 4000000 };
@@ -158,7 +168,7 @@ typedef struct dea_scene {
     bool full;               /**< a transient leaves out nothing (see needs.h), default false; never read from a file */
     dea_reduction reduction; /**< never read from a file: set by dea_needs_find() */
     double accuracy;         /**< wanted relative error of the solution of the chosen model [1], 0 < accuracy < 1, default 1e-6 */
-    dea_study_kind study;    /**< sweep, transient or AC */
+    dea_study_kind study;    /**< what is asked for */
     dea_transient transient; /**< of a transient */
     dea_ac ac;               /**< of an AC study */
     dea_axis *axes;          /**< axes of the sweep, or of `over`, in the order of the file; none is one point */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "bench/work.h"
+#include "study/study.h"
 
 /* Rows that a study keeps: the references of all models. */
 enum { MOST_ROWS = DEA_SAMPLES_MAX, ROUNDS = 25 };
@@ -20,7 +21,7 @@ dea_bench_options dea_bench_options_default(void)
 
 static bool can_do(const dea_scene *scene, const dea_model *model)
 {
-    return (scene->actuator.kind == DEA_DOT || model->lens) && (scene->study == DEA_STUDY_SWEEP || model->dynamic);
+    return (scene->actuator.kind == DEA_DOT || model->lens) && (!dea_study_of(scene)->moves || model->dynamic);
 }
 
 void dea_bench_all_models(dea_scene *scene)
@@ -61,20 +62,9 @@ static void count_units(dea_bench_work *work)
 {
     dea_bench *bench = work->bench;
     const double points = (double)work->points;
-    switch (bench->scene->study) {
-    case DEA_STUDY_SWEEP:
-        bench->units = points;
-        bench->unit = "point";
-        break;
-    case DEA_STUDY_TRANSIENT:
-        bench->units = points * bench->scene->transient.until;
-        bench->unit = "simulated_second";
-        break;
-    case DEA_STUDY_AC:
-        bench->units = points * (double)work->layout.rows;
-        bench->unit = "frequency";
-        break;
-    }
+    const dea_study *study = dea_study_of(bench->scene);
+    bench->units = points * (study->timed ? bench->scene->transient.until : (double)work->layout.rows);
+    bench->unit = study->unit;
     bench->rows = work->points * work->layout.rows;
 }
 
@@ -142,7 +132,7 @@ static dea_status refer_all(dea_bench_work *work, dea_error *error)
 {
     const size_t models = work->bench->model_count;
     const bool alone = dea_bench_membrane(work) == &work->truths[models];
-    const size_t count = models + (work->bench->scene->study == DEA_STUDY_SWEEP && alone);
+    const size_t count = models + (!dea_study_of(work->bench->scene)->along && alone);
     const double allowance = reference_share * work->options->budget / (double)count;
     dea_status status = DEA_OK;
     for (size_t i = 0; i < count && status == DEA_OK; i++) {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "bench/work.h"
+#include "study/study.h"
 
 /* Rungs of a long step of the climb to a reference; and rungs that are enough where only errors of models are judged, 1e-6. */
 enum { CLIMB = 3, MODEL_RUNGS = 5 };
@@ -274,7 +275,7 @@ dea_status dea_bench_judge_models(dea_bench_work *work, dea_error *error)
 {
     const dea_bench *bench = work->bench;
     const dea_bench_truth *field = dea_bench_membrane(work);
-    if (bench->scene->study != DEA_STUDY_SWEEP || !field->known) {
+    if (dea_study_of(bench->scene)->along || !field->known) {
         return DEA_OK;
     }
     double *errors = malloc(work->points * sizeof *errors);

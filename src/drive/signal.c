@@ -208,6 +208,14 @@ double dea_segment_voltage(const dea_signal *signal, const dea_segment *segment,
     return segment->start + (segment->end - segment->start) * ((time - segment->from) / (segment->to - segment->from));
 }
 
+double dea_segment_voltage_since(const dea_signal *signal, const dea_segment *segment, double since)
+{
+    if (segment->sine || segment->start == segment->end) {
+        return dea_segment_voltage(signal, segment, segment->from + since);
+    }
+    return segment->start + (segment->end - segment->start) * fmin(since / (segment->to - segment->from), 1.0);
+}
+
 double dea_segment_slope(const dea_signal *signal, const dea_segment *segment, double time)
 {
     if (segment->sine) {

@@ -28,6 +28,9 @@ double dea_segment_voltage(const dea_signal *signal, const dea_segment *segment,
 double dea_segment_slope(const dea_signal *signal, const dea_segment *segment, double time);
 double dea_segment_curvature(const dea_signal *signal, const dea_segment *segment, double time);
 
+/* Voltage at a time counted from the begin of the segment, so that a short edge late in a run keeps its digits [V]. */
+double dea_segment_voltage_since(const dea_signal *signal, const dea_segment *segment, double since);
+
 /* The segment of a time, searched from segment number @p near on: from < time <= to, the first one at its begin too. */
 size_t dea_signal_find(const dea_signal *signal, size_t near, double time);
 

@@ -1,7 +1,7 @@
 /* Who solves which model: the engines that can, in the scene's order or by what they cost. */
 #include <stdio.h>
 
-#include "deaspice/engine.h"
+#include "study/study.h"
 
 /* Engines that the scene names, else all. */
 static const dea_engine *candidate(const dea_scene *scene, size_t index)
@@ -59,7 +59,7 @@ dea_crew dea_crew_of(const dea_scene *scene, const dea_engine *engine, const dea
         }
         insert(&crew, place, next);
     }
-    if (scene->study == DEA_STUDY_SWEEP) {
+    if (!dea_study_of(scene)->along) {
         keep_here(&crew);
     }
     return crew;

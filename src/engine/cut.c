@@ -1,4 +1,5 @@
 #include "engine/cut.h"
+#include "study/study.h"
 
 #include <stdint.h>
 
@@ -40,7 +41,7 @@ static size_t best_block(const dea_scene *scene, const dea_engine *engine, bool 
 
 static size_t block_size(const dea_scene *scene, size_t best, bool isolated, size_t points, size_t total)
 {
-    if (scene->study != DEA_STUDY_SWEEP)
+    if (dea_study_of(scene)->solve)
         return 1; /* a point is a whole run */
     size_t block = smaller(best, larger(divide_up(total, BLOCKS_WANTED), divide_up(best, SMALLEST_SHARE)));
     if (!isolated)

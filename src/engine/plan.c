@@ -1,4 +1,5 @@
 #include "engine/plan.h"
+#include "study/study.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -175,7 +176,7 @@ void dea_attempt_remark(const dea_attempt *attempt, const dea_plan *plan, const 
         return;
     char place[256];
     const size_t first = span->first + attempt->next;
-    if (plan->scene->study == DEA_STUDY_SWEEP) { /* of many points, it names its own */
+    if (!dea_study_of(plan->scene)->along) { /* of many points, it names its own */
         dea_plan_log(plan, damage, "%s, %s: %s", asked_first(plan, span->model, attempt), span->model->name, why);
         return;
     }
@@ -207,7 +208,7 @@ void dea_attempt_abandon(dea_attempt *attempt, const dea_plan *plan, void *point
 double dea_plan_patience(const dea_plan *plan, const dea_model *model, size_t count)
 {
     double patience = 0.0;
-    const bool sweep = plan->scene->study == DEA_STUDY_SWEEP;
+    const bool sweep = !dea_study_of(plan->scene)->along;
     const dea_crew crew = dea_crew_of(plan->scene, plan->engine, model);
     for (size_t i = 0; i < crew.count; i++)
         patience += sweep ? crew.engines[i]->patience : crew.engines[i]->run_patience;

@@ -1,9 +1,7 @@
 #include "engine/solve.h"
 
-#include "deaspice/needs.h"
 #include "engine/line.h"
-#include "network/swing.h"
-#include "result/scales.h"
+#include "study/study.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -64,86 +62,16 @@ void dea_sessions_end(dea_sessions *sessions)
 
 /* ---- one engine */
 
-/* A transient whose energies do not add up says so, where the engine itself has said nothing. */
-static void doubt_balance(const dea_scene *scene, const dea_summary *summary, dea_error *error)
-{
-    if (summary->residual > 10.0 * scene->accuracy && error->message[0] == '\0')
-        dea_fail(
-            error, DEA_OK,
-            "its energy balance is off by %.2g, more than ten times the accuracy: current and energies are not to be trusted",
-            summary->residual);
-}
-
-/* Of a window that reaches past the last row with numbers there is no mean. */
-static void drop_means(const dea_scene *scene, const dea_sample *samples, size_t rows, dea_summary *summary)
-{
-    size_t good = 0;
-    while (good < rows && isfinite(samples[good].displacement)) {
-        good++;
-    }
-    const double last = good == rows ? scene->transient.until : good > 0 ? samples[good - 1].time : -1.0;
-    for (size_t i = 0; i < DEA_WINDOWS; i++) {
-        if (i >= scene->transient.average_count || scene->transient.averages[i].to > last) {
-            summary->averages[i] = (dea_average){(double)NAN, (double)NAN};
-        }
-    }
-}
-
-/* The swing of the film with all that a run may leave out, unless the engine has found it in its own way. */
-static void tell_swing(dea_swing swing, dea_summary *summary)
-{
-    if (isnan(summary->resonance)) {
-        summary->resonance = swing.frequency;
-        summary->decay = swing.decay;
-    }
-}
-
-/* One transient, without what it does not need: the engine gets what accuracy that leaves. */
-static dea_status run_transient(const dea_plan *plan, const dea_task *task, dea_scene *here, void *result, dea_error *error)
-{
-    const dea_engine *engine = task->engine;
-    const dea_model *model = task->model;
-    void *session = task->session;
-    dea_summary *summary = dea_layout_summary(&plan->layout, result);
-    dea_needs needs;
-    if (here->full) {
-        here->reduction.ring = (double)INFINITY;
-        const dea_status whole = engine->transient(session, here, model, result, summary, error);
-        tell_swing(dea_swing_free(here, model), summary);
-        return whole;
-    }
-    dea_status status = dea_needs_find(here, model, engine, &needs, error);
-    if (status == DEA_OK) {
-        here->reduction = dea_needs_reduction(needs.omissions, needs.count);
-        here->accuracy -= needs.bound;
-        status = engine->transient(session, here, model, result, summary, error);
-    }
-    tell_swing((dea_swing){needs.resonance, needs.decay}, summary);
-    summary->omitted = needs.bound;
-    summary->error += needs.bound;
-    summary->velocity_error += dea_scales_allowance(offsetof(dea_sample, velocity)) * needs.bound;
-    summary->current_error += dea_scales_allowance(offsetof(dea_sample, current)) * needs.bound;
-    return status;
-}
-
-/* One transient or frequency response. */
+/* One point of those that are solved one by one. */
 static dea_status run_point(const dea_plan *plan, const dea_task *task, size_t point, void *result, dea_error *error)
 {
     dea_scene here = *plan->scene; /* shares title, waveform and axes, changes only scalars */
     dea_axes_place(&here, point);
-    dea_status status;
-    if (here.study == DEA_STUDY_TRANSIENT)
-        status = run_transient(plan, task, &here, result, error);
-    else
-        status = task->engine->ac(task->session, &here, task->model, result, dea_layout_band(&plan->layout, result), error);
+    const dea_status status =
+        dea_study_of(&here)->solve(task->engine, task->session, &here, task->model, &plan->layout, result, error);
     if (status == DEA_ERROR_USAGE && plan->cut.total > 1) {
         dea_layout_fail(plan->scene, &plan->layout, result);
         return DEA_OK;
-    }
-    if (status == DEA_OK && here.study == DEA_STUDY_TRANSIENT) {
-        dea_summary *summary = dea_layout_summary(&plan->layout, result);
-        drop_means(&here, result, plan->layout.rows, summary);
-        doubt_balance(&here, summary, error);
     }
     return status;
 }
@@ -157,7 +85,7 @@ static char *point_at(const dea_plan *plan, void *points, size_t index)
 static dea_status solve_by(const dea_plan *plan, dea_sessions *sessions, const dea_engine *engine, const dea_errand *range,
                            void *points, dea_error *error)
 {
-    const bool sweep = plan->scene->study == DEA_STUDY_SWEEP;
+    const bool sweep = !dea_study_of(plan->scene)->solve;
     dea_status status = session_begin(sessions, engine, error);
     const dea_task task = {engine, session_of(sessions, engine)->state, range->model};
     if (status == DEA_OK && sweep)
@@ -282,7 +210,7 @@ dea_status dea_plan_solve(const dea_plan *plan, dea_sessions *sessions, const de
     const dea_status status = solve_first(plan, sessions, &crew, range, &by, points, error);
     if (status != DEA_OK)
         return status;
-    if (plan->scene->study == DEA_STUDY_SWEEP)
+    if (!dea_study_of(plan->scene)->along)
         explain_rows(plan, range, points, error);
     hands->by[by] = range->count;
     solve_again(plan, sessions, &crew, by, range, points, hands, error);

@@ -1,4 +1,5 @@
 #include "engine/engines.h"
+#include "study/study.h"
 
 #include <string.h>
 
@@ -16,11 +17,10 @@ const dea_engine *dea_engine_at(size_t index)
 
 const char *dea_engine_refuses(const dea_engine *engine, const dea_scene *scene, const dea_model *model)
 {
-    if (scene->study == DEA_STUDY_TRANSIENT && !engine->transient)
-        return "it has no time domain";
-    if (scene->study == DEA_STUDY_AC && !engine->ac)
-        return "it has no frequency domain";
-    if (scene->study != DEA_STUDY_SWEEP && !model->dynamic)
+    const dea_study *study = dea_study_of(scene);
+    if (study->offered && !study->offered(engine))
+        return study->engine_fails;
+    if (study->moves && !model->dynamic)
         return "the model is static";
     return engine->refuses ? engine->refuses(scene, model) : NULL;
 }

@@ -9,7 +9,8 @@ void dea_film_prepare(const dea_scene *scene, dea_film *film)
 
     dea_material_long_term(material, constants);
     *film = dea_law_film(material->law, constants, stretch);
-    film->permittivity = DEA_EPSILON_0 * dea_material_permittivity(material, stretch);
+    const double layers = scene->actuator.layers;
+    film->permittivity = DEA_EPSILON_0 * dea_material_permittivity(material, stretch) * (layers * layers);
     film->breakdown = isnan(material->breakdown) ? INFINITY : material->breakdown;
     film->modulus = isnan(material->modulus) ? film->slope : material->modulus * dea_material_long_term_share(material);
 }
@@ -29,7 +30,8 @@ void dea_point_place(const dea_scene *scene, dea_point *point)
     point->kind = actuator->kind;
     point->frame_radius = actuator->frame_radius;
     point->coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
-    point->film_thickness = actuator->film_thickness;
+    point->film_thickness = actuator->layers * actuator->film_thickness;
+    point->layers = actuator->layers;
     point->voltage = scene->drive.voltage * film_share(&scene->drive);
     point->focal_length = actuator->focal_length;
     point->refractive_index = actuator->refractive_index;
@@ -78,6 +80,43 @@ double dea_point_mass(const dea_scene *scene, const dea_point *point)
     const double electrode = point->kind == DEA_DOT ? moving_disc(radius) : moving_annulus(radius, b);
     const double areal = isnan(scene->actuator.electrode_mass) ? 0.0 : scene->actuator.electrode_mass;
     return scene->material.density * point->film_thickness * film + areal * electrode;
+}
+
+/* The membrane at rest, W11 (w'' + w'/R - w/R^2) + m omega^2 w = 0 in the reference film of thickness H with m its mass per volume,
+ * that of the electrodes spread over it: w = J1(k R) on the disc, J1(k R) Y1(k F) - Y1(k R) J1(k F) on the annulus, k = omega
+ * sqrt(m/W11). w and w' are continuous at A; this is what is left of that. */
+static double mode_gap(double omega, const double pace[2], double a, double f)
+{
+    const double in = omega * pace[0], out = omega * pace[1], x = in * a, y = out * a, rim = out * f;
+    const double disc = j1(x), disc_slope = in * (j0(x) - disc / x);
+    const double annulus = j1(y) * y1(rim) - y1(y) * j1(rim);
+    const double annulus_slope = out * ((j0(y) - j1(y) / y) * y1(rim) - (y0(y) - y1(y) / y) * j1(rim));
+    return disc_slope * annulus - disc * annulus_slope;
+}
+
+/* The first zero lies between those of films that are all as heavy as the heavier and the lighter region: k F = 3.8317. */
+double dea_point_resonance(const dea_scene *scene, const dea_point *point)
+{
+    static const double bessel_root = 3.8317059702075123156; /* of J1 */
+    enum { SCAN = 64 };
+    const double l0 = point->film.prestretch, f = point->frame_radius / l0, a = point->coverage * f;
+    const double areal = isnan(scene->actuator.electrode_mass) ? 0.0 : scene->actuator.electrode_mass;
+    const double bare = scene->material.density, coated = bare + areal * l0 * l0 / point->film_thickness;
+    const double disc = point->kind == DEA_DOT ? coated : bare, annulus = point->kind == DEA_DOT ? bare : coated;
+    const double pace[2] = {sqrt(disc / point->film.w11), sqrt(annulus / point->film.w11)};
+    double low = bessel_root / (f * fmax(pace[0], pace[1])), high = bessel_root / (f * fmin(pace[0], pace[1]));
+    const double ratio = pow(high / low, 1.0 / SCAN), sign = mode_gap(0.5 * low, pace, a, f);
+    double next = low;
+    for (int i = 0; i < SCAN && high > low && mode_gap(next, pace, a, f) * sign > 0.0; i++) {
+        low = next;
+        next *= ratio;
+    }
+    high = next;
+    while (high - low > 1e-13 * high) {
+        const double middle = 0.5 * (low + high);
+        *(mode_gap(middle, pace, a, f) * sign > 0.0 ? &low : &high) = middle;
+    }
+    return 0.5 * (low + high) / (2.0 * DEA_PI);
 }
 
 /* h = 2 a sinh(asinh(3 V/(pi a^3))/3), f = (a^2 + h^2)/(2 h (n - 1)). */

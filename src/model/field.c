@@ -137,16 +137,73 @@ static double jump_at_edge(const membrane *m, double l)
     return NAN;
 }
 
-static void note(const membrane *m, radial_state s, extremes *x)
+/* What limits the film at one place of the annulus, and its slopes over x: the slope of s1 is s2 - s1. */
+typedef struct limits {
+    double s1, s2, area;      /* [Pa], [1] */
+    double s2_slope, area_slope;
+} limits;
+
+static limits limits_at(const membrane *m, radial_state s)
 {
-    const double l2 = m->film->prestretch + s.e;
-    const double l1 = l2 - s.d;
+    const double l2 = m->film->prestretch + s.e, l1 = l2 - s.d, area = l1 * l2, k = m->annulus_k;
     const dea_stress stress = stress_at(m, l1, l2);
-    const double area = l1 * l2;
-    x->least_stress = fmin(x->least_stress, fmin(stress.p1 - m->annulus_k * area * l2, stress.p2 - m->annulus_k * area * l1));
+    const radial_state slope = slope_at(m, s);
+    const double l2_slope = slope.e, l1_slope = slope.e - slope.d;
+    return (limits){.s1 = stress.p1 - k * area * l2,
+                    .s2 = stress.p2 - k * area * l1,
+                    .area = area,
+                    .s2_slope = (stress.w12 - 2.0 * k * area) * l1_slope + (stress.w22 - k * l1 * l1) * l2_slope,
+                    .area_slope = l1_slope * l2 + l1 * l2_slope};
+}
+
+static void note(const membrane *m, limits at, extremes *x)
+{
+    x->least_stress = fmin(x->least_stress, fmin(at.s1, at.s2));
     if (m->annulus_k > 0.0) {
-        x->largest_area = fmax(x->largest_area, area);
+        x->largest_area = fmax(x->largest_area, at.area);
     }
+}
+
+static double area_slope(const limits *at)
+{
+    return at->area_slope;
+}
+
+static double hoop_slope(const limits *at)
+{
+    return -at->s2_slope;
+}
+
+/* Notes the largest value between two places a step apart of what has a slope there that changes its sign from + to -. (s1 is least
+ * where it crosses s2, which is larger to one side of that.) */
+static void note_between(const membrane *m, radial_state from, double step, limits ends[2], double (*slope)(const limits *),
+                         extremes *x)
+{
+    double low = 0.0, high = step, rise = slope(&ends[0]), fall = slope(&ends[1]);
+    for (int i = 0; i < 60 && rise > 0.0 && fall < 0.0 && high - low > 1e-9 * step; i++) {
+        radial_state there;
+        const double chord = low + (high - low) * rise / (rise - fall), middle = 0.5 * (low + high);
+        const double at = i % 3 == 2 ? middle : fmin(fmax(chord, low + 1e-3 * (high - low)), high - 1e-3 * (high - low));
+        if (!advance(m, from, at, &there)) {
+            return;
+        }
+        const limits found = limits_at(m, there);
+        const double value = slope(&found);
+        note(m, found, x);
+        *(value > 0.0 ? &low : &high) = at;
+        *(value > 0.0 ? &rise : &fall) = value;
+    }
+}
+
+/* Notes a step. */
+static void note_step(const membrane *m, radial_state from, double step, radial_state to, extremes *x)
+{
+    limits ends[2] = {limits_at(m, from), limits_at(m, to)};
+    note(m, ends[1], x);
+    if (m->annulus_k > 0.0) {
+        note_between(m, from, step, ends, area_slope, x);
+    }
+    note_between(m, from, step, ends, hoop_slope, x);
 }
 
 /* Integrates from the edge, where the disc has the stretch lambda_pre + edge, to the frame; returns e there. x may be NULL. */
@@ -161,7 +218,7 @@ static double miss_at_frame(const membrane *m, double edge, extremes *x)
         const double disc = stress_at(m, l, l).p1 - m->disc_k * l * l * l;
         const bool lens = m->annulus_k > 0.0;
         *x = (extremes){disc, lens ? (l - s.d) * l : l * l, lens ? (l - s.d) * l * l : l * l * l, 0.0};
-        note(m, s, x);
+        note(m, limits_at(m, s), x);
     }
     const double longest = m->length / ceil(m->length / m->mesh.step);
     double step = longest;
@@ -175,12 +232,12 @@ static double miss_at_frame(const membrane *m, double edge, extremes *x)
             step = 0.5 * now;
             continue;
         }
+        if (x) {
+            note_step(m, s, now, next, x);
+        }
         s = next;
         rest = now < rest * (1.0 - 1e-12) ? rest - now : 0.0;
         step = fmin(longest, 2.0 * step);
-        if (x) {
-            note(m, s, x);
-        }
     }
     if (x) {
         x->charge = s.c;
@@ -395,6 +452,50 @@ static bool trace(const membrane *full, double sign, double end, double *edge)
     return false;
 }
 
+/* The film of a point, with its Maxwell pressure M. */
+static membrane membrane_of(const dea_point *point, double pressure, dea_field_mesh mesh)
+{
+    const bool dot = point->kind == DEA_DOT;
+    return (membrane){&point->film, dot ? pressure : 0.0, dot ? 0.0 : pressure, -log(point->coverage), mesh};
+}
+
+/* Integrates over a stretch of x in steps that are short enough. */
+static bool advance_to(const membrane *m, double length, radial_state *s)
+{
+    double step = length;
+    for (double rest = length; rest > 0.0;) {
+        radial_state next;
+        const double now = fmin(step, rest);
+        if (!isfinite(s->d) || now < shortest_step * fmin(length, m->mesh.step)) {
+            return false;
+        }
+        if (now > m->mesh.step || !advance(m, *s, now, &next)) {
+            step = 0.5 * now;
+            continue;
+        }
+        *s = next;
+        rest = now < rest * (1.0 - 1e-12) ? rest - now : 0.0;
+    }
+    return isfinite(s->d);
+}
+
+bool dea_field_profile(const dea_point *point, double strain, size_t count, const double *x, dea_stretches *stretches)
+{
+    const double nominal = dea_point_nominal_field(point), pre = point->film.prestretch;
+    const membrane m = membrane_of(point, point->film.permittivity * nominal * nominal, (dea_field_mesh){longest_step, 1e-13});
+    const double edge = pre * strain;
+    radial_state s = {jump_at_edge(&m, pre + edge), edge, 0.0};
+    double last = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        if (!advance_to(&m, x[i] - last, &s)) {
+            return false;
+        }
+        last = x[i];
+        stretches[i] = (dea_stretches){pre + s.e - s.d, pre + s.e};
+    }
+    return true;
+}
+
 void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row)
 {
     const dea_film *film = &point->film;
@@ -402,7 +503,7 @@ void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row)
     const double nominal = dea_point_nominal_field(point);
     const double pressure = film->permittivity * nominal * nominal; /* M */
     const double b = point->coverage;
-    const membrane m = {film, dot ? pressure : 0.0, dot ? 0.0 : pressure, -log(b), mesh};
+    const membrane m = membrane_of(point, pressure, mesh);
     const double sign = dea_point_sign(point);
     double edge = 0.0;
 
@@ -442,5 +543,6 @@ const dea_model dea_model_field = {
     .leaves_out = "bending, all out of plane",
     .lens = true,
     .solve = solve,
+    .dynamic = true,
     .membrane = true,
 };

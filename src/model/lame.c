@@ -10,12 +10,12 @@ static bool is_taut(double rest, double a, double b, double d1, double d2)
     return rest + (a * d1 + b * d2) > 0.0 && rest + (b * d1 + a * d2) > 0.0;
 }
 
-/* Share of its terms below which the net stiffness is computed again in long double: their rounding would be seen. */
+/* Share of its terms below which a difference is computed again in long double: their rounding would be seen. */
 static const double nearly = 1e-2;
 
 /* 1/(2 pi H n) of disc, annulus and softening together [Pa], in long double from the constants of the film: just before pull-in
  * the terms cancel. W11 + W12 + W11 (1 + B^2)/(1 - B^2) - W12 = 2 W11/(1 - B^2). */
-static double fine_stiffness(const dea_point *point)
+static long double fine_stiffness(const dea_point *point)
 {
     const dea_film *film = &point->film;
     const dea_law *law = film->law;
@@ -24,7 +24,17 @@ static double fine_stiffness(const dea_point *point)
     const long double b2 = (long double)point->coverage * point->coverage,
                       field = (long double)point->voltage / point->film_thickness;
     const long double share = point->kind == DEA_DOT ? 3.0L : (1.0L + b2) / (1.0L - b2) - 2.0L;
-    return (double)(2.0L * w11 / (1.0L - b2) - share * film->permittivity * field * field * y);
+    return 2.0L * w11 / (1.0L - b2) - share * film->permittivity * field * field * y;
+}
+
+/* Area of a lens' annulus over that at rest where the edge of the disc comes to the frame's radius on the other side of the centre,
+ * as a linear film lets it: 1 - (B (1 + s))^2 cancels there. */
+static double fine_area(const dea_point *point)
+{
+    const long double b = point->coverage, field = (long double)point->voltage / point->film_thickness;
+    const long double soft = point->film.permittivity * field * field * point->film.prestretch * point->film.prestretch;
+    const long double edge = b * (1.0L - soft / fine_stiffness(point));
+    return (double)((1.0L - edge) * (1.0L + edge) / (1.0L - b * b));
 }
 
 static void solve(const dea_point *point, double accuracy, dea_row *row)
@@ -48,7 +58,7 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     /* 1/n over 2 pi H: disc a + b, annulus a (1 + B^2)/(1 - B^2) - b */
     double stiffness = disc1 + disc2 + annulus1 * q - annulus2;
     if (fabs(stiffness) < nearly * film->w11 * inverse) {
-        stiffness = fine_stiffness(point);
+        stiffness = (double)fine_stiffness(point);
     }
     if (m > 0.0 && !(stiffness > 0.0)) {
         dea_row_refuse(row, DEA_STATE_PULL_IN);
@@ -66,7 +76,8 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     const bool taut = is_taut(disc_rest, disc1, disc2, change, change) &&
                       is_taut(annulus_rest, annulus1, annulus2, -q * change, change) &&
                       is_taut(annulus_rest, annulus1, annulus2, rim, 0.0);
-    const double area = dot ? (1.0 + strain) * (1.0 + strain) : (1.0 - edge * edge) * inverse;
+    const bool cancels = !dot && fabs(1.0 - edge * edge) < nearly;
+    const double area = dot ? (1.0 + strain) * (1.0 + strain) : cancels ? fine_area(point) : (1.0 - edge * edge) * inverse;
     const double force = 2.0 * DEA_PI * point->film_thickness * load * dea_point_divide(point);
     /* C_0 + C_1 u + C_2 u^2/2 with C_1 = 2 F_DEA/U^2, C_2 = -2/(n_el U^2) */
     const double share = dot ? 3.0 : q - 2.0, rest = dot ? b2 : 1.0 - b2;

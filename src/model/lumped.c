@@ -3,6 +3,20 @@
 #include "expression/formula.h"
 #include "network/network.h"
 
+/* A difference of terms of size 1 below which it is computed again in long double. */
+static const double nearly = 1e-2;
+
+/* Area of a lens' annulus over that at rest where the edge of the disc comes to the frame's radius on the other side of the centre,
+ * as a linear film lets it: 1 - (B (1 + s))^2 cancels there. */
+static double fine_area(const dea_point *point)
+{
+    const dea_film *film = &point->film;
+    const long double b = point->coverage, field = (long double)point->voltage / point->film_thickness,
+                      y = (long double)film->prestretch * film->prestretch;
+    const long double edge = b * (1.0L - (1.0L - b) * film->permittivity * field * field * y * y / film->modulus);
+    return (double)((1.0L - edge) * (1.0L + edge) / (1.0L - b * b));
+}
+
 static void solve(const dea_point *point, double accuracy, dea_row *row)
 {
     (void)accuracy;
@@ -20,7 +34,8 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     /* passive stretch: Eq. 17 of a dot, the disc of a lens; electroded area: the disc of a dot, the annulus of a lens */
     const bool dot = point->kind == DEA_DOT;
     const bool taut = dot ? film->prestretch * (1.0 - edge) > 1.0 - b : film->prestretch * stretch > 1.0;
-    const double area = dot ? stretch * stretch : (1.0 - edge * edge) / (1.0 - b * b);
+    const double left = 1.0 - edge * edge;
+    const double area = dot ? stretch * stretch : fabs(left) < nearly ? fine_area(point) : left / (1.0 - b * b);
     /* C_0 + C_1 u with C_1 u = 2 F_DEA/U^2 u = +-4 pi eps lambda_pre^2 r_a^2 s/H */
     const double rest = dot ? b * b : 1.0 - b * b;
     const double capacitance = dea_point_full_capacitance(point) * (rest + 4.0 * sign * b * b * strain);

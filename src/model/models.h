@@ -26,7 +26,7 @@ static inline double dea_point_divide(const dea_point *point)
     return point->coverage * point->frame_radius;
 }
 
-/* U/H [V/m]. */
+/* U/H [V/m], in a stack the field of one layer over their number. */
 static inline double dea_point_nominal_field(const dea_point *point)
 {
     return point->voltage / point->film_thickness;
@@ -92,7 +92,7 @@ typedef struct dea_found {
 /* Fills a row from what the model found and what follows from that. */
 static inline void dea_row_fill(dea_row *row, const dea_point *point, dea_found found)
 {
-    const double field = fabs(dea_point_nominal_field(point) * found.stretch);
+    const double field = fabs(dea_point_nominal_field(point) * point->layers * found.stretch);
     const double radius = dea_point_divide(point);
     const double displacement = found.strain * radius;
     if (!(isfinite(found.strain) && isfinite(displacement) && isfinite(found.force) && isfinite(field))) {

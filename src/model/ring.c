@@ -69,6 +69,9 @@ static double between(const guess *a, const guess *b)
     return b->x - b->excess * (slope - b->excess * (second - a->excess * (second - first) * over));
 }
 
+/* Share of the load that may be left at the last place before a root. */
+static const double little = 0.1;
+
 /* False where the iteration from rest does not settle; @p at is the last place but the root, which lies next to it. The error of
  * the cubic goes with the square of both last steps: where that is below rounding no further one is needed. */
 static bool settle(const rings *r, const dea_path *path, double m, double *x, ring_place *at)
@@ -84,7 +87,8 @@ static bool settle(const rings *r, const dea_path *path, double m, double *x, ri
         *x = next = b.excess != a.excess ? between(&a, &b) : b.x - b.excess / b.slope;
         const double step = next - b.x;
         const double left = step * last / path->share;
-        const bool is_root = fabs(b.excess) <= 2.0 * fabs(b.slope * step); /* next to the end steps are short, too */
+        /* next to the end steps are short, too, or none at all where a cubic goes through values of sizes too far apart */
+        const bool is_root = fabs(b.excess) <= fmin(2.0 * fabs(b.slope * step), little * m * at->path.weight);
         if (is_root && fabs(step) <= 1e-3 * next && left * left <= 1e-17 * next * path->share) {
             return next < path->end;
         }
@@ -239,7 +243,7 @@ static void build(const dea_symbols *symbols, dea_network *network)
                     SCALE(network->sign, force));
     network->capacitance = MUL(dea_symbols_capacitance(symbols), SQUARE(e.area));
     network->end = symbols->kind == DEA_DOT ? dea_symbols_annulus_width(symbols) : MUL(symbols->coverage, symbols->frame_radius);
-    network->field = MUL(MUL(DIV(symbols->voltage, symbols->film_thickness), SQUARE(symbols->prestretch)), e.area);
+    network->field = MUL(MUL(dea_symbols_nominal_field(symbols), SQUARE(symbols->prestretch)), e.area);
     limit_tension(symbols, network, &e);
 }
 

@@ -7,6 +7,7 @@
 #include "engine/line.h"
 #include "needs/probes.h"
 #include "needs/trial.h"
+#include "study/study.h"
 
 static const double safety = 1.5;       /* bound over the largest error of the probes */
 static const double trial_share = 0.03; /* of the model error: what a run may be off by that a model is judged by */
@@ -168,10 +169,10 @@ static dea_status small_error(const dea_scene *scene, const dea_model *model, co
 static dea_status error_at(const dea_scene *here, const dea_model *model, const dea_model *truth, double enough, double *change,
                            dea_error *error)
 {
-    if (here->study == DEA_STUDY_TRANSIENT) {
+    if (dea_study_of(here)->timed) {
         return moving_error(here, model, truth, enough, change, error);
     }
-    if (here->study == DEA_STUDY_AC) {
+    if (dea_study_of(here)->phasors) {
         return small_error(here, model, truth, change, error);
     }
     *change = static_error(here, model, truth);
@@ -199,7 +200,7 @@ static dea_status bound_of(const dea_scene *scene, const dea_model *model, const
 
 static bool fits(const dea_scene *scene, const dea_engine *engine, const dea_model *model)
 {
-    const bool kind = (model->lens || scene->actuator.kind == DEA_DOT) && (model->dynamic || scene->study == DEA_STUDY_SWEEP);
+    const bool kind = (model->lens || scene->actuator.kind == DEA_DOT) && (model->dynamic || !dea_study_of(scene)->moves);
     return kind && dea_crew_of(scene, engine, model).count > 0;
 }
 
@@ -234,7 +235,8 @@ const dea_model *dea_needs_truth(dea_study_kind study)
     for (size_t i = 0; i < dea_model_count(); i++) {
         const dea_model *model = dea_model_at(i);
         const bool finer = !truth || dea_model_form(model) >= dea_model_form(truth);
-        truth = finer && (study == DEA_STUDY_SWEEP || model->dynamic) ? model : truth;
+        const bool moves = dea_study_at(study)->moves, costly = moves && model->membrane; /* a run of it at every probe */
+        truth = finer && !costly && (model->dynamic || !moves) ? model : truth;
     }
     return truth;
 }

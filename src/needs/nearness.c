@@ -2,8 +2,9 @@
 
 #include <math.h>
 
-#include "drive/signal.h"
+#include "network/dynamics.h"
 #include "needs/probes.h"
+#include "study/study.h"
 
 /* Of the solutions that are compared: the membrane costs some 20 us a probe then, and no printed digit is of it. */
 static const double accuracy = 1e-6;
@@ -13,21 +14,6 @@ static size_t most_probes(const dea_scene *scene)
 {
     static const size_t most[] = {1, 17, 5, 3, 2};
     return scene->axis_count < sizeof most / sizeof *most ? most[scene->axis_count] : 1;
-}
-
-/* Puts the voltage of the comparison into the scene's drive. */
-static dea_status set_voltage(dea_scene *scene, dea_error *error)
-{
-    dea_signal signal;
-    dea_status status = DEA_OK;
-    if (scene->study == DEA_STUDY_AC) {
-        scene->drive.voltage = scene->ac.bias;
-    } else if (scene->study == DEA_STUDY_TRANSIENT) {
-        status = dea_signal_open(scene, &signal, error);
-        scene->drive.voltage = signal.largest;
-        dea_signal_close(&signal);
-    }
-    return status;
 }
 
 static void compare(const dea_scene *scene, const dea_model *model, const dea_model *truth, dea_nearness *nearness)
@@ -43,17 +29,36 @@ static void compare(const dea_scene *scene, const dea_model *model, const dea_mo
     nearness->compared++;
 }
 
+/* The swing of the whole film, relaxed and undamped: branches and dampers change it and the membrane's alike. */
+static dea_status compare_swings(const dea_scene *scene, const dea_model *model, dea_nearness *nearness, dea_error *error)
+{
+    dea_dynamics dynamics;
+    dea_status status = dea_dynamics_open(scene, model, &dynamics, error);
+    if (status == DEA_OK && dynamics.mass > 0.0) {
+        const double omega = sqrt(dea_dynamics_stiffness(&dynamics, 0.0, 0.0, true) / dynamics.mass);
+        const double deviation = omega / (2.0 * DEA_PI * dea_point_resonance(scene, &dynamics.point)) - 1.0;
+        nearness->slow = fmin(nearness->slow, deviation); /* of a NAN and a number the number */
+        nearness->fast = fmax(nearness->fast, deviation);
+    }
+    dea_dynamics_close(&dynamics);
+    return status;
+}
+
 dea_status dea_nearness_measure(const dea_scene *scene, const dea_model *model, dea_nearness *nearness, dea_error *error)
 {
     const dea_model *truth = dea_model_at(dea_model_count() - 1); /* the finest */
     const size_t most = most_probes(scene), count = dea_probe_count(scene, most);
+    dea_status (*const rest)(dea_scene *, dea_error *) = dea_study_of(scene)->rest;
     dea_status status = DEA_OK;
-    *nearness = (dea_nearness){.whole = count == dea_scene_point_count(scene)};
+    *nearness = (dea_nearness){.slow = (double)NAN, .fast = (double)NAN, .whole = count == dea_scene_point_count(scene)};
     for (size_t i = 0; i < count && status == DEA_OK; i++) {
         dea_scene here = dea_probe_scene(scene, most, i);
-        status = set_voltage(&here, error);
+        status = rest ? rest(&here, error) : DEA_OK;
         if (status == DEA_OK) {
             compare(&here, model, truth, nearness);
+        }
+        if (status == DEA_OK && rest) {
+            status = compare_swings(&here, model, nearness, error);
         }
     }
     return status;

@@ -8,6 +8,7 @@
 
 #include "needs/surrogate.h"
 #include "network/swing.h"
+#include "study/study.h"
 
 static const double budget = 0.25;     /* of the accuracy: all omissions */
 static const double one_share = 0.5;   /* most that one omission takes of what is left of it */
@@ -469,7 +470,13 @@ dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const 
     planner p = {.engine = engine, .needs = needs, .left = budget * scene->accuracy};
     bool usable;
     *needs = (dea_needs){.resonance = (double)NAN, .decay = (double)NAN};
-    if (scene->study != DEA_STUDY_TRANSIENT || engine->omits == 0) {
+    if (!dea_study_of(scene)->timed || engine->omits == 0) {
+        return DEA_OK;
+    }
+    if (model->membrane) { /* no stand-in of one node tells what its modes do */
+        const dea_swing swing = dea_swing_free(scene, model);
+        needs->resonance = swing.frequency;
+        needs->decay = swing.decay;
         return DEA_OK;
     }
     dea_status status = dea_surrogate_open(scene, model, &p.surrogate, &usable, error);

@@ -1,5 +1,7 @@
 #include "netlist/export.h"
 
+#include "study/study.h"
+
 void dea_export_head(const dea_export *export, const char *meaning)
 {
     const dea_scene *scene = export->scene;
@@ -23,7 +25,7 @@ static dea_status refuse_models(const dea_scene *scene, dea_error *error)
 
 static dea_status refuse_runs(const dea_scene *scene, dea_error *error)
 {
-    if (!scene->models[0]->dynamic) {
+    if (!scene->models[0]->dynamic || scene->models[0]->membrane) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is one of statics alone: --model lumped has a time domain",
                         scene->models[0]->name);
     }
@@ -38,15 +40,12 @@ static dea_status refuse_runs(const dea_scene *scene, dea_error *error)
 
 dea_status dea_export_netlist(dea_export *export, dea_error *error)
 {
-    static dea_status (*const writers[])(dea_export *, dea_error *) = {
-        [DEA_STUDY_SWEEP] = dea_export_sweep,
-        [DEA_STUDY_TRANSIENT] = dea_export_transient,
-        [DEA_STUDY_AC] = dea_export_ac,
-    };
+    const dea_study *study = dea_study_of(export->scene);
     export->note[0] = '\0';
-    dea_status status = refuse_models(export->scene, error);
-    if (status == DEA_OK && export->scene->study != DEA_STUDY_SWEEP) {
+    dea_status status = study->netlist ? refuse_models(export->scene, error)
+                                       : dea_fail(error, DEA_ERROR_UNSUPPORTED, "no netlist does a study of %s", study->name);
+    if (status == DEA_OK && study->along) {
         status = refuse_runs(export->scene, error);
     }
-    return status == DEA_OK ? writers[export->scene->study](export, error) : status;
+    return status == DEA_OK ? study->netlist(export, error) : status;
 }

@@ -32,5 +32,8 @@ dea_status dea_export_ac(dea_export *export, dea_error *error);
 
 /* First lines of every netlist: the title of the scene as a comment, the tool, what voltages and currents mean. */
 void dea_export_head(const dea_export *export, const char *meaning);
+/* Points `from` to `to`, excluded, of an axis as the voltage v(axis) of the index v(k); a list as a sum of its steps, each of which
+ * rises between two indices. */
+void dea_export_axis(const dea_dialect *dialect, const dea_axis *axis, size_t from, size_t to, FILE *out);
 
 #endif

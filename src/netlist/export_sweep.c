@@ -73,26 +73,22 @@ static void find_stretch(line_text *l)
     l->w->left_out += l->w->points - (l->to - l->from);
 }
 
-static void write_parameter_sum(const line_text *l, const char *sign, const char *name)
+static void write_parameter_sum(const dea_dialect *dialect, FILE *out, const char *sign, const char *name)
 {
-    fputs(sign, l->w->out);
-    dea_dialect_parameter(l->w->dialect, l->w->out, name);
+    fputs(sign, out);
+    dea_dialect_parameter(dialect, out, name);
 }
 
-/* The axis as a voltage of the index; a list as a sum of its steps, each of which rises between two indices. */
-static void write_axis(const line_text *l)
+void dea_export_axis(const dea_dialect *dialect, const dea_axis *axis, size_t from, size_t to, FILE *out)
 {
-    FILE *out = l->w->out;
-    const dea_axis *axis = l->axis;
-    const size_t last = l->to - 1;
+    const bool uniform = axis->uniform && axis->count > 1;
     fprintf(out, "* index of the point, held inside the points that have an equilibrium, and the value of %s there [%s]\n",
             axis->key, axis->unit);
-    dea_dialect_source_begin(l->w->dialect, out, DEA_VOLTAGE, "point", "point", "0");
-    fprintf(out, "min(max(v(k),%zu),%zu)", l->from, last);
-    dea_dialect_source_end(l->w->dialect, out);
-    const bool uniform = axis->uniform && axis->count > 1;
-    dea_part_value(out, "axis_from", axis->values[uniform ? 0 : l->from]);
-    for (size_t i = l->from + 1; i < l->to && !uniform; i++) {
+    dea_dialect_source_begin(dialect, out, DEA_VOLTAGE, "point", "point", "0");
+    fprintf(out, "min(max(v(k),%zu),%zu)", from, to - 1);
+    dea_dialect_source_end(dialect, out);
+    dea_part_value(out, "axis_from", axis->values[uniform ? 0 : from]);
+    for (size_t i = from + 1; i < to && !uniform; i++) {
         char name[32];
         snprintf(name, sizeof name, "axis_step%zu", i);
         dea_part_value(out, name, axis->values[i] - axis->values[i - 1]);
@@ -100,19 +96,19 @@ static void write_axis(const line_text *l)
     if (uniform) {
         dea_part_value(out, "axis_span", axis->values[axis->count - 1] - axis->values[0]);
     }
-    dea_dialect_source_begin(l->w->dialect, out, DEA_VOLTAGE, "axis", "axis", "0");
-    write_parameter_sum(l, "", "axis_from");
+    dea_dialect_source_begin(dialect, out, DEA_VOLTAGE, "axis", "axis", "0");
+    write_parameter_sum(dialect, out, "", "axis_from");
     if (uniform) {
-        write_parameter_sum(l, "+", "axis_span");
+        write_parameter_sum(dialect, out, "+", "axis_span");
         fprintf(out, "*v(point)/%zu", axis->count - 1);
     }
-    for (size_t i = l->from + 1; i < l->to && !uniform; i++) {
+    for (size_t i = from + 1; i < to && !uniform; i++) {
         char name[32];
         snprintf(name, sizeof name, "axis_step%zu", i);
-        write_parameter_sum(l, "+", name);
+        write_parameter_sum(dialect, out, "+", name);
         fprintf(out, "*min(max(v(point)-%zu,0),1)", i - 1);
     }
-    dea_dialect_source_end(l->w->dialect, out);
+    dea_dialect_source_end(dialect, out);
 }
 
 static void write_forces(const line_text *l)
@@ -207,7 +203,7 @@ static dea_status write_line(line_text *l, dea_error *error)
     }
     l->text.node = "v(edge)";
     l->text.symbols = symbols;
-    dea_part_text_move(&l->text, 0);
+    dea_part_text_move_symbol(&l->text, 0);
     dea_part_text_share(&l->text);
     dea_part_text_use(&l->text, l->elastic);
     dea_part_text_use(&l->text, l->load);
@@ -215,7 +211,7 @@ static dea_status write_line(line_text *l, dea_error *error)
     fprintf(out, ".subckt line%zu k edge\n", l->w->lines);
     dea_part_text_parameters(&l->text);
     if (l->axis) {
-        write_axis(l);
+        dea_export_axis(l->w->dialect, l->axis, l->from, l->to, out);
     }
     dea_part_text_nodes(&l->text);
     write_forces(l);

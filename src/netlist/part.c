@@ -22,13 +22,14 @@ enum {
     Y_FREE,
     RHO,
     AREAL,
+    LAYERS,
     VOLTAGE,  /* always replaced by a number */
     CONSTANT, /* the first of those of the law */
     SYMBOLS = CONSTANT + DEA_LAW_CONSTANTS
 };
 
 static const char *const symbol_names[SYMBOLS] = {"radius",  "cover",  "thick", "stretch", "eps_r",
-                                                  "y_given", "y_free", "rho",   "areal",   "",
+                                                  "y_given", "y_free", "rho",   "areal",   "layer", "",
                                                   "film1",   "film2",  "film3", "film4",   "film5",
                                                   "film6",   "film7",  "film8"};
 _Static_assert(DEA_LAW_CONSTANTS == 8, "one name a constant");
@@ -111,9 +112,10 @@ static dea_symbols symbols_of(dea_pool *pool, const part *p)
                            .law = p->law,
                            .frame_radius = s[RADIUS],
                            .coverage = s[COVER],
-                           .film_thickness = s[THICK],
+                           .film_thickness = MUL(s[LAYERS], s[THICK]),
+                           .layers = s[LAYERS],
                            .prestretch = s[STRETCH],
-                           .permittivity = SCALE(DEA_EPSILON_0, s[EPS_R]),
+                           .permittivity = MUL(SCALE(DEA_EPSILON_0, s[EPS_R]), SQUARE(s[LAYERS])),
                            .breakdown = NUM(INFINITY),
                            .voltage = s[VOLTAGE]};
     for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
@@ -315,6 +317,7 @@ static int write_checks(const part *p, const form *of)
         {"frame_radius", "radius", "1e-6", "1e3"},
         {"coverage", "cover", "1e-6", "0.999999"},
         {"film_thickness", "thick", "1e-9", "1"},
+        {"layers", "layer", "1", "1e6"},
         {"prestretch", "stretch", "1", "100"},
         {"permittivity+permittivity_per_stretch*prestretch", "eps_r", "1e-3", "1e9"},
         {"density", "rho", "0", "1e6"},
@@ -656,6 +659,7 @@ size_t dea_part_parameters(const dea_scene *scene, const dea_model *model, dea_p
     add(list, &count, "coverage", "1", dot ? "electrode radius over frame radius, B" : "lens radius over frame radius, B",
         coverage);
     add(list, &count, "film_thickness", "m", "thickness before pre-stretch, H", actuator->film_thickness);
+    add(list, &count, "layers", "1", "films of that thickness, electrically parallel", actuator->layers);
     add(list, &count, "prestretch", "1", "equi-biaxial pre-stretch", actuator->prestretch);
     add_film(scene, list, &count);
     if (form_of(model)->modulus) {
@@ -825,6 +829,7 @@ dea_scene dea_part_paper(dea_kind kind)
                      .coverage = 0.5,
                      .divide_radius = none,
                      .film_thickness = 1e-4,
+                     .layers = 1.0,
                      .prestretch = 1.2,
                      .electrode_mass = none,
                      .focal_length = none,

@@ -52,7 +52,7 @@ typedef struct dea_part_parameter {
     double value; /* its default */
 } dea_part_parameter;
 
-enum { DEA_PART_PARAMETERS = 24 + 2 * DEA_PRONY_MAX };
+enum { DEA_PART_PARAMETERS = 32 + 2 * DEA_PRONY_MAX };
 
 /* The parameters of the part of a scene, in the order of the .subckt card; returns how many there are. */
 size_t dea_part_parameters(const dea_scene *scene, const dea_model *model, dea_part_parameter list[DEA_PART_PARAMETERS]);

@@ -87,15 +87,6 @@ void dea_part_text_close(dea_part_text *text)
     *text = (dea_part_text){0};
 }
 
-void dea_part_text_move(dea_part_text *text, int symbol)
-{
-    for (int i = 0; i < text->pool->count; i++) {
-        const dea_term *term = &text->pool->terms[i];
-        const bool it = term->operation == DEA_SYMBOL && term->a == symbol;
-        text->moves[i] = text->moves[i] || it || (term->operation >= DEA_ADD && (text->moves[term->a] || text->moves[term->b]));
-    }
-}
-
 /* A parameter times or below another term. */
 static bool is_scaled(const dea_part_text *text, const dea_term *term)
 {
@@ -234,17 +225,25 @@ typedef struct stream {
 
 static void write_term(const stream *s, dea_expr ref);
 
+/* Terms that move with the swept scalar alone are the same for all nodes. */
+static const char *suffix_of(const dea_part_text *text, dea_expr ref)
+{
+    return text->suffix && text->places[ref] > 0 ? text->suffix : "";
+}
+
 static void write_operand(const stream *s, dea_expr ref, bool brackets)
 {
     const dea_part_text *t = s->text;
     const dea_term *term = &t->pool->terms[ref];
     char name[DEA_PART_NAME];
-    if (t->moves[ref] && t->written[ref] && (t->dividing || !s->divisor)) {
-        fprintf(t->out, "v(%s)", dea_part_text_parameter(t, ref, name));
+    if (t->moves[ref] && t->written[ref] && (t->dividing || !s->divisor || t->places[ref] == 0)) {
+        fprintf(t->out, "v(%s%s)", dea_part_text_parameter(t, ref, name), suffix_of(t, ref));
     } else if (term->operation == DEA_NODE) {
-        fputs(t->node, t->out);
+        fputs(t->nodes ? t->nodes[term->a] : t->node, t->out);
     } else if (is_plain(term)) {
         fprintf(t->out, "%d", (int)term->number);
+    } else if (term->operation == DEA_SYMBOL && t->moves[ref]) {
+        fputs(t->symbols[term->a], t->out);
     } else if (s->source && !t->moves[ref]) {
         dea_dialect_parameter(t->dialect, t->out, dea_part_text_parameter(t, ref, name));
     } else if (term->operation == DEA_SYMBOL || (t->written[ref] && !t->moves[ref])) {
@@ -305,7 +304,7 @@ static bool gets_card(const dea_part_text *text, dea_expr ref)
 static void write_meaning(const dea_part_text *text, dea_expr ref)
 {
     const dea_part_name *own = name_of(text, ref);
-    if (own) {
+    if (own && *own->meaning) {
         dea_dialect_comment(text->out, own->meaning);
     }
 }
@@ -380,18 +379,34 @@ void dea_part_text_parameters(dea_part_text *text)
     }
 }
 
-void dea_part_text_nodes(dea_part_text *text)
+void dea_part_text_move_symbol(dea_part_text *text, int index)
+{
+    for (int i = 0; i < text->pool->count; i++) {
+        const dea_term *term = &text->pool->terms[i];
+        const bool made = term->operation >= DEA_ADD;
+        const bool swept = made ? text->moves[term->a] || text->moves[term->b] : term->operation == DEA_SYMBOL && term->a == index;
+        text->moves[i] = text->moves[i] || swept;
+        text->nodal[i] = text->nodal[i] || (made && swept && text->places[i] == 0 && !dea_expr_is_scaled(text->pool, i));
+    }
+}
+
+static void write_node(dea_part_text *text, dea_expr ref)
 {
     const stream s = {text, true, false};
+    char own[DEA_PART_NAME], name[2 * DEA_PART_NAME];
+    write_meaning(text, ref);
+    snprintf(name, sizeof name, "%s%s", dea_part_text_parameter(text, ref, own), suffix_of(text, ref));
+    dea_dialect_source_begin(text->dialect, text->out, DEA_VOLTAGE, name, name, "0");
+    write_term(&s, ref);
+    dea_dialect_source_end(text->dialect, text->out);
+    text->written[ref] = true;
+}
+
+void dea_part_text_nodes(dea_part_text *text)
+{
     for (int i = 0; i < text->pool->count; i++) {
         if (gets_node(text, i)) {
-            char name[DEA_PART_NAME];
-            write_meaning(text, i);
-            (void)dea_part_text_parameter(text, i, name);
-            dea_dialect_source_begin(text->dialect, text->out, DEA_VOLTAGE, name, name, "0");
-            write_term(&s, i);
-            dea_dialect_source_end(text->dialect, text->out);
-            text->written[i] = true;
+            write_node(text, i);
         }
     }
 }
@@ -404,6 +419,34 @@ void dea_part_text_start(const dea_part_text *text, const char *inside, const do
             fprintf(text->out, " v(%s%s)=", inside, dea_part_text_parameter(text, i, name));
             dea_part_number(text->out, values[i]);
         }
+    }
+}
+
+void dea_part_text_swept(dea_part_text *text)
+{
+    for (int i = 0; i < text->pool->count; i++) {
+        if (text->nodal[i] && text->places[i] == 0 && text->uses[i] > 0) {
+            write_node(text, i);
+        }
+    }
+}
+
+void dea_part_text_nodes_of(dea_part_text *text, dea_expr ref)
+{
+    const dea_term *term = &text->pool->terms[ref];
+    if (text->moves[ref] && !text->written[ref] && term->operation >= DEA_ADD) {
+        dea_part_text_nodes_of(text, term->a);
+        dea_part_text_nodes_of(text, term->b);
+        if (text->nodal[ref] && text->uses[ref] > 1) {
+            write_node(text, ref);
+        }
+    }
+}
+
+void dea_part_text_again(dea_part_text *text)
+{
+    for (int i = 0; i < text->pool->count; i++) {
+        text->written[i] = text->written[i] && !(text->moves[i] && text->places[i] > 0);
     }
 }
 

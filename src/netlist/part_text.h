@@ -4,6 +4,7 @@
 #ifndef DEA_PART_TEXT_H
 #define DEA_PART_TEXT_H
 
+#include "deaspice/material.h"
 #include "expression/expression.h"
 #include "netlist/dialect.h"
 
@@ -29,6 +30,8 @@ typedef struct dea_part_text {
     const char *const *symbols; /* names of the parameters behind the pool's symbols */
     const char *node;           /* what stands for the displacement [m], a factor */
     const double *values;       /* of all terms at rest: parameters are written as these numbers; NULL: as formulas */
+    const char *const *nodes;   /* what stands for each node of a pool of several, NULL: `node` for all */
+    const char *suffix;         /* of the nodes of shared terms that move with nodes of the pool, NULL: none */
     dea_part_name *names;       /* owned */
     size_t name_count;
     int *uses;      /* owned: how often a term is written */
@@ -50,8 +53,6 @@ typedef struct dea_part_text {
 bool dea_part_text_open(dea_part_text *text, const dea_pool *pool, const dea_dialect *dialect, FILE *out);
 void dea_part_text_close(dea_part_text *text);
 
-/* The symbol of that number moves as the displacement does: a voltage. */
-void dea_part_text_move(dea_part_text *text, int symbol);
 /* Every moving term that is used twice gets a node of its own, but for a mere parameter times another: simulators differentiate an
  * expression by each of its nodes, so that short ones are worth it. Where all nodes are given their values at the start. */
 void dea_part_text_share(dea_part_text *text);
@@ -59,6 +60,8 @@ void dea_part_text_share(dea_part_text *text);
 void dea_part_text_root(dea_part_text *text, const char *name);
 /* Names a term; the first of two names of a term stays. */
 void dea_part_text_name(dea_part_text *text, dea_expr ref, const char *name, const char *meaning);
+/* Lets symbol number @p index move as the displacement does: its name is that of a voltage. Terms of it alone may be nodes. */
+void dea_part_text_move_symbol(dea_part_text *text, int index);
 /* Declares that a source will write the expression, as a whole or as a number on a card of its own. */
 void dea_part_text_use(dea_part_text *text, dea_expr ref);
 /* Declares an expression that is written beside the network, after all else is declared: its parameters get cards, its terms no
@@ -71,6 +74,12 @@ void dea_part_text_use_as_factor(dea_part_text *text, dea_expr ref);
 /* The cards that the declared expressions need: .param, then nodes of shared moving terms. */
 void dea_part_text_parameters(dea_part_text *text);
 void dea_part_text_nodes(dea_part_text *text);
+/* The nodes of terms that a symbol alone moves; before those of dea_part_text_nodes(). */
+void dea_part_text_swept(dea_part_text *text);
+/* Those that one declared expression needs. */
+void dea_part_text_nodes_of(dea_part_text *text, dea_expr ref);
+/* Forgets those of dea_part_text_nodes_of(): the same expressions of other nodes are next. */
+void dea_part_text_again(dea_part_text *text);
 
 /* ` v(name)=0.5` for every node, for .ic and .nodeset; @p inside stands before the names, @p values are those of all terms. */
 void dea_part_text_start(const dea_part_text *text, const char *inside, const double *values);

@@ -133,19 +133,21 @@ static dea_status compile(dea_network *network, dea_dynamics *d, dea_error *erro
     return status == DEA_OK ? dea_balance_open(network, &d->balance, error) : status;
 }
 
-/* The film sees its own voltage as symbol 0, whatever the resistances leave of the source's. */
-static dea_status build(const dea_scene *scene, dea_dynamics *d, dea_error *error)
+/* The film sees its own voltage, whatever the resistances leave of the source's. */
+static dea_scene film_of(const dea_scene *scene)
 {
     dea_scene film = *scene;
-    dea_network network;
-    const dea_axis voltage = {.offset = offsetof(dea_scene, drive.voltage)};
     film.drive.series_resistance = film.drive.leakage_resistance = (double)NAN;
     film.drive.voltage = 1.0;
-    dea_film_prepare(&film, &d->point.film);
-    dea_point_place(&film, &d->point);
-    if (!dea_point_valid(&d->point) || !(scene->actuator.electrode_mass >= 0.0 || isnan(scene->actuator.electrode_mass))) {
-        return dea_fail(error, DEA_ERROR_USAGE, "the scene has a number out of its range");
-    }
+    return film;
+}
+
+/* That voltage is symbol 0. */
+static dea_status build(const dea_scene *scene, dea_dynamics *d, dea_error *error)
+{
+    const dea_scene film = film_of(scene);
+    dea_network network;
+    const dea_axis voltage = {.offset = offsetof(dea_scene, drive.voltage)};
     dea_status status = dea_network_build(&film, d->model, &voltage, &network, error);
     if (status == DEA_OK) {
         status = compile(&network, d, error);
@@ -154,21 +156,29 @@ static dea_status build(const dea_scene *scene, dea_dynamics *d, dea_error *erro
     return status;
 }
 
-dea_status dea_dynamics_open(const dea_scene *scene, const dea_model *model, dea_dynamics *d, dea_error *error)
+static dea_status place(const dea_scene *scene, dea_dynamics *d, dea_error *error)
+{
+    const dea_scene film = film_of(scene);
+    dea_film_prepare(&film, &d->point.film);
+    dea_point_place(&film, &d->point);
+    if (!dea_point_valid(&d->point) || !(scene->actuator.electrode_mass >= 0.0 || isnan(scene->actuator.electrode_mass))) {
+        return dea_fail(error, DEA_ERROR_USAGE, "the scene has a number out of its range");
+    }
+    return DEA_OK;
+}
+
+dea_status dea_dynamics_settle(const dea_scene *scene, const dea_model *model, dea_dynamics *d, dea_error *error)
 {
     *d = (dea_dynamics){.model = model,
                         .radius = NAN,
                         .focal_length = scene->actuator.focal_length,
                         .refractive_index = scene->actuator.refractive_index,
                         .linear = model->linear != NULL};
-    if (!model->dynamic) {
-        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s has no time domain", model->name);
-    }
     d->softens = !scene->reduction.softening;
     if (!dea_dynamics_relax(d, scene)) {
         return dea_fail(error, DEA_ERROR_USAGE, "the shares g of the branches sum to 1 or more");
     }
-    const dea_status status = build(scene, d, error);
+    const dea_status status = place(scene, d, error);
     if (status != DEA_OK) {
         return status;
     }
@@ -185,6 +195,16 @@ dea_status dea_dynamics_open(const dea_scene *scene, const dea_model *model, dea
                         d->focal_length * (d->refractive_index - 1.0), d->radius);
     }
     return DEA_OK;
+}
+
+dea_status dea_dynamics_open(const dea_scene *scene, const dea_model *model, dea_dynamics *d, dea_error *error)
+{
+    const dea_status status = dea_dynamics_settle(scene, model, d, error);
+    if (!model->dynamic || model->membrane) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s has %s", model->name,
+                        model->dynamic ? "more than one node" : "no time domain");
+    }
+    return status == DEA_OK ? build(scene, d, error) : status;
 }
 
 void dea_dynamics_close(dea_dynamics *dynamics)

@@ -57,6 +57,9 @@ typedef struct dea_edge {
 dea_status dea_dynamics_open(const dea_scene *scene, const dea_model *model, dea_dynamics *dynamics, dea_error *error);
 void dea_dynamics_close(dea_dynamics *dynamics);
 
+/* All of them but the functions of u, which are none of a film with more nodes than one: point, masses, damper, branches, port. */
+dea_status dea_dynamics_settle(const dea_scene *scene, const dea_model *model, dea_dynamics *dynamics, dea_error *error);
+
 /* The stresses, as many as the dynamics have, and phi under 1 V, of a network that was built under 1 V for these dynamics. */
 void dea_dynamics_stresses(const dea_dynamics *dynamics, dea_network *network, dea_network_stress *stresses);
 dea_expr dea_dynamics_push(const dea_dynamics *dynamics, dea_network *network);

@@ -15,6 +15,20 @@ dea_expr dea_hyperelastic_principal(const dea_symbols *symbols, dea_expr e1, dea
     return dea_expr_change(pool, form.stress[0]);
 }
 
+void dea_hyperelastic_nominal(const dea_symbols *symbols, dea_expr e1, dea_expr e2, dea_expr stress[2])
+{
+    dea_pool *pool = symbols->pool;
+    const dea_expr stretch[2] = {ADD(NUM(1.0), e1), ADD(NUM(1.0), e2)};
+    dea_law_form form = {0};
+    if (!pool->exhausted) {
+        symbols->law->form(pool, symbols->constants, MUL(symbols->prestretch, stretch[0]), MUL(symbols->prestretch, stretch[1]),
+                           &form);
+    }
+    for (int a = 0; a < 2; a++) {
+        stress[a] = dea_expr_change(pool, DIV(form.stress[a], stretch[a]));
+    }
+}
+
 dea_expr dea_hyperelastic_change(const dea_symbols *symbols, dea_expr e)
 {
     return dea_hyperelastic_principal(symbols, e, e);
@@ -30,7 +44,7 @@ dea_expr dea_hyperelastic_field(const dea_symbols *symbols, dea_expr e)
 {
     dea_pool *pool = symbols->pool;
     const dea_expr stretch = MUL(symbols->prestretch, ADD(NUM(1.0), e));
-    return MUL(DIV(symbols->voltage, symbols->film_thickness), SQUARE(stretch));
+    return MUL(dea_symbols_nominal_field(symbols), SQUARE(stretch));
 }
 
 dea_expr dea_hyperelastic_force(const dea_symbols *symbols, dea_expr strain, dea_expr e)

@@ -74,7 +74,7 @@ void dea_network_limit_area(const dea_symbols *symbols, dea_network *network)
         const dea_expr edge = SQUARE(MUL(symbols->coverage, stretch));
         area = DIV(SUB(one, edge), SUB(one, SQUARE(symbols->coverage)));
     }
-    const dea_expr rest = MUL(DIV(symbols->voltage, symbols->film_thickness), SQUARE(symbols->prestretch));
+    const dea_expr rest = MUL(dea_symbols_nominal_field(symbols), SQUARE(symbols->prestretch));
     network->field = MUL(rest, area);
 }
 
@@ -157,7 +157,7 @@ dea_tangent dea_symbols_tangent(const dea_symbols *symbols)
     return (dea_tangent){DIV(along, l), DIV(slope[1], l)};
 }
 
-static dea_symbols symbols_of(const dea_scene *scene, const dea_axis *axis, dea_pool *pool)
+dea_symbols dea_symbols_of(const dea_scene *scene, const dea_axis *axis, dea_pool *pool)
 {
     const dea_actuator *actuator = &scene->actuator;
     const dea_material *material = &scene->material;
@@ -166,7 +166,8 @@ static dea_symbols symbols_of(const dea_scene *scene, const dea_axis *axis, dea_
     s.frame_radius = scalar(pool, scene, axis, &actuator->frame_radius);
     const dea_expr divide = scalar(pool, scene, axis, &actuator->divide_radius);
     s.coverage = given(pool, divide) ? DIV(divide, s.frame_radius) : scalar(pool, scene, axis, &actuator->coverage);
-    s.film_thickness = scalar(pool, scene, axis, &actuator->film_thickness);
+    s.layers = scalar(pool, scene, axis, &actuator->layers);
+    s.film_thickness = MUL(s.layers, scalar(pool, scene, axis, &actuator->film_thickness));
     s.prestretch = scalar(pool, scene, axis, &actuator->prestretch);
     s.law = material->law;
     for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
@@ -177,13 +178,19 @@ static dea_symbols symbols_of(const dea_scene *scene, const dea_axis *axis, dea_
     s.modulus = given(pool, modulus) ? MUL(share, modulus) : dea_symbols_modulus(&s);
     const dea_expr slope = scalar(pool, scene, axis, &material->permittivity_per_stretch);
     const dea_expr relative = ADD(scalar(pool, scene, axis, &material->permittivity), MUL(slope, s.prestretch));
-    s.permittivity = SCALE(DEA_EPSILON_0, relative);
+    s.permittivity = MUL(SCALE(DEA_EPSILON_0, relative), SQUARE(s.layers));
     const dea_expr breakdown = scalar(pool, scene, axis, &material->breakdown);
     s.breakdown = given(pool, breakdown) ? breakdown : NUM(INFINITY);
     s.voltage = film_voltage(pool, scene, axis);
     s.focal_length = scalar(pool, scene, axis, &actuator->focal_length);
     s.refractive_index = scalar(pool, scene, axis, &actuator->refractive_index);
     return s;
+}
+
+dea_expr dea_symbols_nominal_field(const dea_symbols *symbols)
+{
+    dea_pool *pool = symbols->pool;
+    return MUL(symbols->layers, DIV(symbols->voltage, symbols->film_thickness));
 }
 
 dea_expr dea_symbols_pressure(const dea_symbols *symbols)
@@ -324,7 +331,7 @@ static dea_status build(const dea_scene *scene, const dea_model *model, const de
     if (network->pool.exhausted) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built");
     }
-    dea_symbols symbols = symbols_of(scene, axis, &network->pool);
+    dea_symbols symbols = dea_symbols_of(scene, axis, &network->pool);
     if (quantities && !network->pool.exhausted) {
         *quantities = (dea_quantities){0};
         const dea_expr modulus = scalar(&network->pool, scene, axis, &scene->material.modulus);

@@ -17,12 +17,13 @@ typedef struct dea_symbols {
     dea_kind kind;
     dea_expr frame_radius;         /* r [m] */
     dea_expr coverage;             /* B [1] */
-    dea_expr film_thickness;       /* H [m] */
+    dea_expr film_thickness;       /* H, of all layers together [m] */
+    dea_expr layers;               /* of the stack [1] */
     dea_expr prestretch;           /* lambda_pre [1] */
     const dea_law *law;                    /* of the film */
     dea_expr constants[DEA_LAW_CONSTANTS]; /* of it, long-term; those out of use 0 */
     dea_expr modulus;              /* Y [Pa]: the scene's, or dsigma/dlambda at the pre-stretch */
-    dea_expr permittivity;         /* absolute [F/m] */
+    dea_expr permittivity;         /* absolute, times layers^2 [F/m] */
     dea_expr breakdown;            /* breakdown strength [V/m], +inf: none */
     dea_expr voltage;              /* across the film [V] */
     dea_expr focal_length;         /* of a lens at rest [m], NAN: no optics */
@@ -112,6 +113,8 @@ dea_expr dea_network_elastic(dea_network *network);
 dea_expr dea_network_load(dea_network *network);
 
 /* Shared pieces of the models' networks. */
+/* The symbols of a scene: numbers, or expressions of symbol 0 where the axis (may be NULL) enters. */
+dea_symbols dea_symbols_of(const dea_scene *scene, const dea_axis *axis, dea_pool *pool);
 /* Cauchy stress of the film at the pre-stretch, the same in all directions of its plane [Pa]. */
 dea_expr dea_symbols_rest_stress(const dea_symbols *symbols);
 /* Tangent moduli W11 and W12 at the pre-stretch [Pa]. */
@@ -121,6 +124,8 @@ typedef struct dea_tangent {
 dea_tangent dea_symbols_tangent(const dea_symbols *symbols);
 /* Y = dsigma/dlambda at the pre-stretch [Pa]. */
 dea_expr dea_symbols_modulus(const dea_symbols *symbols);
+/* True field of the film at rest in one of its layers, layers U/H [V/m] without pre-stretch. */
+dea_expr dea_symbols_nominal_field(const dea_symbols *symbols);
 /* M = eps (U/H)^2 [Pa]. */
 dea_expr dea_symbols_pressure(const dea_symbols *symbols);
 /* eps lambda_pre^4/H^2 [Pa/V^2], the electrostatic stress at the pre-stretch per U^2. */

@@ -123,3 +123,138 @@ void dea_rings_cut(const dea_point *point, dea_rings_mesh mesh, dea_rings *rings
     cut_element(&disc, mesh.disc, frame, point, rings);
     cut_element(&annulus, mesh.annulus, frame, point, rings);
 }
+
+void dea_rings_slopes_of(size_t degree, dea_rings_slopes *slopes)
+{
+    lobatto rule;
+    make_lobatto(degree, &rule);
+    for (size_t q = 0; q <= degree; q++) {
+        slopes->places[q] = rule.places[q];
+        slopes->weights[q] = rule.weights[q];
+        for (size_t n = 0; n <= degree; n++) {
+            slopes->of[q][n] = rule.slopes[q][n];
+        }
+    }
+}
+
+/* Values at places of an element, along R or ln R, and the weights of their polynomial in the barycentric form. */
+typedef struct samples {
+    size_t count;
+    double places[DEA_RINGS_DEGREE + 1], values[DEA_RINGS_DEGREE + 1], weights[DEA_RINGS_DEGREE + 1];
+} samples;
+
+static samples samples_of(const dea_rings *rings, bool disc, const double *values)
+{
+    samples s = {0};
+    for (size_t q = 0; q < rings->ring_count; q++) {
+        const dea_ring *ring = &rings->rings[q];
+        if (ring->disc == disc) {
+            s.places[s.count] = disc || !rings->mesh.logarithmic ? ring->radius : log(ring->radius);
+            s.values[s.count++] = values[q];
+        }
+    }
+    const double width = 0.25 * (s.places[s.count - 1] - s.places[0]); /* keeps the products near 1 */
+    for (size_t i = 0; i < s.count; i++) {
+        double product = 1.0;
+        for (size_t k = 0; k < s.count; k++) {
+            product *= k == i ? 1.0 : (s.places[i] - s.places[k]) / width;
+        }
+        s.weights[i] = 1.0 / product;
+    }
+    return s;
+}
+
+static double polynomial(const samples *s, double x)
+{
+    double over = 0.0, under = 0.0;
+    for (size_t i = 0; i < s->count; i++) {
+        if (x == s->places[i]) {
+            return s->values[i];
+        }
+        const double share = s->weights[i] / (x - s->places[i]);
+        over += share * s->values[i];
+        under += share;
+    }
+    return over / under;
+}
+
+/* Largest value of the polynomial between two places, by golden sections. */
+static double largest_between(const samples *s, double low, double high)
+{
+    static const double golden = 0.6180339887498949;
+    double a = high - golden * (high - low), b = low + golden * (high - low);
+    double at_a = polynomial(s, a), at_b = polynomial(s, b);
+    for (int i = 0; i < 40; i++) { /* an extreme is flat: half of the digits of its place are enough */
+        const bool left = at_a > at_b;
+        *(left ? &high : &low) = left ? b : a;
+        *(left ? &b : &a) = left ? a : b;
+        *(left ? &at_b : &at_a) = left ? at_a : at_b;
+        const double fresh = left ? high - golden * (high - low) : low + golden * (high - low);
+        *(left ? &a : &b) = fresh;
+        *(left ? &at_a : &at_b) = polynomial(s, fresh);
+    }
+    return fmax(at_a, at_b);
+}
+
+double dea_rings_largest(const dea_rings *rings, bool disc, const double *values)
+{
+    const samples s = samples_of(rings, disc, values);
+    const size_t parts = 4 * s.count;
+    const double first = disc ? 0.0 : s.places[0], last = s.places[s.count - 1];
+    double largest = polynomial(&s, first);
+    double place = first;
+    for (size_t i = 1; i <= parts; i++) {
+        const double x = i == parts ? last : first + (last - first) * (double)i / (double)parts, value = polynomial(&s, x);
+        place = value > largest ? x : place;
+        largest = fmax(largest, value);
+    }
+    const double width = (last - first) / (double)parts;
+    return s.count < 3 ? largest : fmax(largest, largest_between(&s, fmax(first, place - width), fmin(last, place + width)));
+}
+
+/* Lagrange polynomial number @p n of the rule at x. */
+static double lagrange(const lobatto *rule, size_t n, double x)
+{
+    double value = 1.0;
+    for (size_t i = 0; i <= rule->degree; i++) {
+        value *= i == n ? 1.0 : (x - rule->places[i]) / (rule->places[n] - rule->places[i]);
+    }
+    return value;
+}
+
+/* One element; its nodes begin with number @p from of one mesh and @p to of the other, 0 being the centre, and do not move at
+ * both ends of the film. */
+static void transfer_element(size_t degree, size_t from, size_t from_count, size_t finer, size_t to, size_t to_count, double *matrix)
+{
+    lobatto rule, other;
+    make_lobatto(degree, &rule);
+    make_lobatto(finer, &other);
+    for (size_t q = 0; q <= finer; q++) {
+        for (size_t n = 0; n <= degree; n++) {
+            const size_t row = to + q, column = from + n;
+            if (row > 0 && row <= to_count && column > 0 && column <= from_count) {
+                matrix[(row - 1) * from_count + column - 1] = lagrange(&rule, n, other.places[q]);
+            }
+        }
+    }
+}
+
+void dea_rings_transfer(dea_rings_mesh from, dea_rings_mesh to, double *matrix)
+{
+    const size_t from_count = from.disc + from.annulus - 1, to_count = to.disc + to.annulus - 1;
+    for (size_t i = 0; i < from_count * to_count; i++) {
+        matrix[i] = 0.0;
+    }
+    transfer_element(from.disc, 0, from_count, to.disc, 0, to_count, matrix);
+    transfer_element(from.annulus, from.disc, from_count, to.annulus, to.disc, to_count, matrix);
+}
+
+void dea_rings_move(const double *matrix, size_t from_count, const double *u, size_t to_count, double *v)
+{
+    for (size_t i = 0; i < to_count; i++) {
+        v[i] = 0.0;
+        for (size_t n = 0; n < from_count; n++) {
+            v[i] += matrix[i * from_count + n] * u[n];
+        }
+    }
+}

@@ -46,4 +46,21 @@ typedef struct dea_rings {
 /* Cuts the film of a point into rings; its numbers are in their ranges. */
 void dea_rings_cut(const dea_point *point, dea_rings_mesh mesh, dea_rings *rings);
 
+/* Reference element of a degree, 1 ... DEA_RINGS_DEGREE, over x in [-1, 1]: its places and their weights, and the derivatives of
+ * its polynomials there. */
+typedef struct dea_rings_slopes {
+    double places[DEA_RINGS_DEGREE + 1], weights[DEA_RINGS_DEGREE + 1];
+    double of[DEA_RINGS_DEGREE + 1][DEA_RINGS_DEGREE + 1]; /* [place][node] */
+} dea_rings_slopes;
+void dea_rings_slopes_of(size_t degree, dea_rings_slopes *slopes);
+
+/* Largest value over the disc, or over the annulus, of what has these values at the rings (ring_count of them, those of the other
+ * element are not looked at): of the polynomial through them, since it may lie between two places. */
+double dea_rings_largest(const dea_rings *rings, bool disc, const double *values);
+
+/* The matrix (rows: moving nodes of @p to, columns: those of @p from) that takes displacements of one mesh to the nodes of
+ * another by the polynomials of its elements; both even in R or in ln R. And its product with displacements. */
+void dea_rings_transfer(dea_rings_mesh from, dea_rings_mesh to, double *matrix);
+void dea_rings_move(const double *matrix, size_t from_count, const double *u, size_t to_count, double *v);
+
 #endif

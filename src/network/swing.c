@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "network/membrane.h"
+
 enum { POLES = DEA_PRONY_MAX + 1 };
 
 typedef struct relaxation {
@@ -88,9 +90,8 @@ static double distance_above(const film *f, size_t pole)
 
 /* Every branch has a real root above its pole. Of all roots the sum is -r/m - sum q_i and the product (-1)^n K prod q_i/m, so
  * that two are left with the sum 2 sigma and the product p below: complex where p > sigma^2. */
-dea_swing dea_swing_of(dea_dynamics *dynamics, double u, double voltage)
+static dea_swing swing_of(film f)
 {
-    const film f = film_at(dynamics, u, voltage);
     const dea_swing none = {(double)NAN, (double)NAN};
     if (!(f.mass > 0.0) || !(f.stiffness > 0.0)) {
         return none;
@@ -106,12 +107,48 @@ dea_swing dea_swing_of(dea_dynamics *dynamics, double u, double voltage)
     return square > 0.0 ? (dea_swing){sqrt(square) / (2.0 * DEA_PI), 0.5 * sum} : none;
 }
 
+dea_swing dea_swing_of(dea_dynamics *dynamics, double u, double voltage)
+{
+    return swing_of(film_at(dynamics, u, voltage));
+}
+
+/* At rest the damper of the membrane is its stiffness times 1 + P/(lambda_pre W11), whatever its electrodes weigh: of
+ * int (e_1^2 + e_2^2) and int e_1 e_2, which both are made of, the second is 0 between a centre and a frame that do not move. So its
+ * modes stay those of the undamped film, and each has the one pair of roots. */
+static dea_swing swing_of_membrane(const dea_membrane *m)
+{
+    static const double rest[DEA_RINGS_NODES] = {0.0};
+    const dea_dynamics *d = &m->film;
+    const dea_film *material = &d->point.film;
+    double stiffness[DEA_RINGS_NODES * DEA_RINGS_NODES], shapes[DEA_RINGS_NODES * DEA_RINGS_NODES], frequencies[DEA_RINGS_NODES];
+    dea_membrane_look look;
+    if (!m->heavy || !dea_membrane_look_at(m, rest, &look)) {
+        return (dea_swing){(double)NAN, (double)NAN};
+    }
+    dea_membrane_stiffness(m, &look, 0.0, NULL, 0.0, stiffness);
+    if (!dea_membrane_modes(m, stiffness, frequencies, shapes)) {
+        return (dea_swing){(double)NAN, (double)NAN};
+    }
+    film f = {.mass = 1.0, .stiffness = frequencies[0] * frequencies[0]};
+    const double viscous = f.stiffness * (1.0 + material->tension / (material->prestretch * material->w11));
+    f.resistance = d->retardation * viscous;
+    for (size_t i = 0; i < d->branch_count; i++) {
+        f.poles[f.count++] = (relaxation){viscous * d->branches[i].share, d->branches[i].tau};
+    }
+    return swing_of(f);
+}
+
 dea_swing dea_swing_free(const dea_scene *scene, const dea_model *model)
 {
     dea_scene full = *scene; /* borrows what the scene owns */
     dea_dynamics dynamics;
     dea_swing swing = {(double)NAN, (double)NAN};
     full.reduction = (dea_reduction){0};
+    if (model->membrane) {
+        dea_membrane membrane;
+        const dea_status status = dea_membrane_open(&full, model, dea_membrane_usual_mesh(scene), &membrane, NULL);
+        return status == DEA_OK ? swing_of_membrane(&membrane) : swing;
+    }
     if (dea_dynamics_open(&full, model, &dynamics, NULL) == DEA_OK) {
         swing = dea_swing_of(&dynamics, 0.0, 0.0);
     }

@@ -8,6 +8,7 @@
 
 #include "deaspice/model.h"
 #include "scene/keys.h"
+#include "study/study.h"
 #include "support/digest.h"
 #include "support/number.h"
 #include "support/text.h"
@@ -85,7 +86,6 @@ static void put_scalars(FILE *out, const dea_scene *scene)
 static void put_lists(FILE *out, const dea_scene *scene)
 {
     const dea_material *material = &scene->material;
-    const dea_transient *transient = &scene->transient;
     const dea_waveform *wave = &scene->drive.waveform;
     if (material->law->entries > 1) {
         fprintf(out, "material.law=%s\n", material->law->name);
@@ -97,16 +97,15 @@ static void put_lists(FILE *out, const dea_scene *scene)
     fprintf(out, "drive.waveform.kind=%d\n", (int)wave->kind);
     put_numbers(out, "drive.waveform.times", wave->times, wave->point_count);
     put_numbers(out, "drive.waveform.voltages", wave->voltages, wave->point_count);
-    put_numbers(out, "study.transient.average", &transient->averages[0].from, 2 * transient->average_count);
-    fprintf(out, "study.transient.start=%s\n", transient->from_bias ? "bias" : "rest");
-    fprintf(out, "study.ac.points_per_decade=%zu\nfull=%d\n", scene->ac.points_per_decade, scene->full ? 1 : 0);
+    if (dea_study_of(scene)->identify) {
+        dea_study_of(scene)->identify(out, scene);
+    }
+    fprintf(out, "full=%d\n", scene->full ? 1 : 0);
 }
 
 static void put_study(FILE *out, const dea_scene *scene)
 {
-    static const char *const studies[] = {
-        [DEA_STUDY_SWEEP] = "sweep", [DEA_STUDY_TRANSIENT] = "transient", [DEA_STUDY_AC] = "ac"};
-    fprintf(out, "study=%s\nmodel=", studies[scene->study]);
+    fprintf(out, "study=%s\nmodel=", dea_study_of(scene)->name);
     for (size_t i = 0; i < scene->model_count; i++) {
         fprintf(out, "%s%s", i > 0 ? "," : "", scene->models[i]->name);
     }

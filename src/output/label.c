@@ -94,6 +94,7 @@ static void axis_names(const dea_axis *axis, char words[DEA_NAME_LENGTH], const 
         {"actuator.prestretch", "Pre-stretch", "λ"},
         {"actuator.frame_radius", "Frame radius", "r"},
         {"actuator.film_thickness", "Film thickness", "H"},
+        {"actuator.layers", "Layers", "n"},
         {"drive.voltage", "Voltage", "U"},
         {"drive.waveform.step.voltage", "Step voltage", "U"},
         {"drive.waveform.sine.offset", "Offset voltage", ""},

@@ -9,6 +9,7 @@
 #include "deaspice/measures.h"
 #include "deaspice/model.h"
 #include "scene/keys.h"
+#include "study/study.h"
 
 #include <dlfcn.h>
 #include <math.h>
@@ -22,7 +23,7 @@
 #define DEA_VERSION "unknown"
 #endif
 
-enum { SLAB_VALUES = 4096, HELD_BYTES = 1 << 25, TEXT_LENGTH = 512, SUMMARIES = 12, AVERAGES = 2 };
+enum { SLAB_VALUES = 4096, HELD_BYTES = 1 << 25, TEXT_LENGTH = 512, FIGURES = 16, AVERAGES = 2 };
 
 /* Largest number of doubles in one variable of the 64-bit offset format: 2^32 - 4 bytes. */
 static const uint64_t offset_values = UINT64_C(4294967292) / sizeof(double);
@@ -51,29 +52,8 @@ typedef struct netcdf_library {
 #undef X
 } netcdf_library;
 
-/* Name, meaning and unit of a variable over the axes. */
-typedef struct figure {
-    const char *name, *long_name, *unit;
-    size_t offset; /* of the double in dea_summary or dea_average */
-} figure;
-
-static const figure summaries[SUMMARIES] = {
-    {"estimated_error", "estimated error of the displacement, relative to its peak", "1", offsetof(dea_summary, error)},
-    {"estimated_velocity_error", "estimated error of the velocity, relative to its scale", "1",
-     offsetof(dea_summary, velocity_error)},
-    {"estimated_current_error", "estimated error of the current, relative to its scale", "1", offsetof(dea_summary, current_error)},
-    {"work_J", "work of the source", "J", offsetof(dea_summary, work)},
-    {"electric_energy_J", "change of the energy in the film's capacitance", "J", offsetof(dea_summary, electric)},
-    {"elastic_energy_J", "change of the elastic energy", "J", offsetof(dea_summary, elastic)},
-    {"kinetic_energy_J", "change of the kinetic energy", "J", offsetof(dea_summary, kinetic)},
-    {"dissipated_energy_J", "energy dissipated in dampers, branches and resistances", "J", offsetof(dea_summary, dissipated)},
-    {"energy_residual", "residual of the energy balance, relative to the largest energy", "1", offsetof(dea_summary, residual)},
-    {"peak_current_A", "largest magnitude of the source's current", "A", offsetof(dea_summary, peak_current)},
-    {"peak_current_time_s", "time of the largest current", "s", offsetof(dea_summary, peak_time)},
-    {"resonance_Hz", "damped swing of the free film", "Hz", offsetof(dea_summary, resonance)},
-};
-
-static const figure averages[AVERAGES] = {
+/* Over the axes and windows. */
+static const dea_column averages[AVERAGES] = {
     {"average_strain", "mean radial strain of the disc edge over the window", "1", offsetof(dea_average, strain)},
     {"average_displacement_m", "mean radial displacement of the disc edge over the window", "m",
      offsetof(dea_average, displacement)},
@@ -82,6 +62,7 @@ static const figure averages[AVERAGES] = {
 typedef struct grid {
     netcdf_library nc;
     const dea_scene *scene;
+    const dea_study *study;
     dea_layout layout;
     const char *target;              /* for messages */
     int file;                        /* -1: not open */
@@ -92,7 +73,7 @@ typedef struct grid {
     int *axes;                       /* variable of each axis */
     int columns[DEA_LAYOUT_COLUMNS]; /* variables of the rows; that of the first may be a coordinate */
     int state, model;
-    int summaries[SUMMARIES], averages[AVERAGES], window[2];
+    int figures[FIGURES], averages[AVERAGES], window[2];
     int failed; /* first status of the library that is not 0 */
     char *held; /* points that wait, NULL in a sweep; owned */
     size_t held_first, held_count, held_room;
@@ -179,8 +160,8 @@ static bool is_used(const dea_scene *scene, const dea_key *key)
         {"drive.waveform.sine.", wave == DEA_WAVE_SINE},
         {"drive.waveform.", wave != DEA_WAVE_NONE},
         {"study.transient.average.", false},
-        {"study.transient.", scene->study == DEA_STUDY_TRANSIENT},
-        {"study.ac.", scene->study == DEA_STUDY_AC},
+        {dea_study_of(scene)->path, true},
+        {"study.", false},
         {"material.prony.", false},
         {"", true},
     };
@@ -270,17 +251,14 @@ static void put_prony(grid *file)
 static void put_provenance(grid *file, const char *engine)
 {
     const dea_scene *scene = file->scene;
-    static const char *const studies[][2] = {[DEA_STUDY_SWEEP] = {"static study", "points"},
-                                             [DEA_STUDY_TRANSIENT] = {"transient study", "runs"},
-                                             [DEA_STUDY_AC] = {"frequency response", "runs"}};
     char models[TEXT_LENGTH] = "", history[TEXT_LENGTH];
     for (size_t i = 0, used = 0; i < scene->model_count && used < sizeof models; i++) {
         const int more = snprintf(models + used, sizeof models - used, "%s%s (%s)", i > 0 ? ", " : "", scene->models[i]->name,
                                   scene->models[i]->equation);
         used += (size_t)more;
     }
-    snprintf(history, sizeof history, "deaspice %s: %s of %zu %s by engine %s", DEA_VERSION, studies[scene->study][0],
-             dea_scene_point_count(scene) * scene->model_count, studies[scene->study][1], engine);
+    snprintf(history, sizeof history, "deaspice %s: %s of %zu %s by engine %s", DEA_VERSION, file->study->title,
+             dea_scene_point_count(scene) * scene->model_count, file->study->points[1], engine);
     put_text(file, NC_GLOBAL, "Conventions", "CF-1.10");
     put_text(file, NC_GLOBAL, "title", scene->title);
     put_text(file, NC_GLOBAL, "source", "deaspice " DEA_VERSION);
@@ -293,7 +271,7 @@ static void put_provenance(grid *file, const char *engine)
     put_scalars(file);
     put_listed_law(file);
     put_prony(file);
-    if (scene->study == DEA_STUDY_TRANSIENT) {
+    if (file->study->timed) {
         static const char *const waves[] = {
             [DEA_WAVE_NONE] = "none", [DEA_WAVE_STEP] = "step", [DEA_WAVE_POINTS] = "points", [DEA_WAVE_SINE] = "sine"};
         put_text(file, NC_GLOBAL, "waveform", waves[scene->drive.waveform.kind]);
@@ -387,13 +365,18 @@ static void define_columns(grid *file)
     grid_keep(file, file->nc.nc_put_att_schar(file->file, file->state, "flag_values", NC_BYTE, DEA_STATE_COUNT, codes));
 }
 
-/* Variables over the axes: what a transient tells besides its samples, and its averages over a dimension of windows. */
-static void define_summaries(grid *file)
+/* Variables over the axes: what a point tells besides its rows. */
+static void define_figures(grid *file)
 {
-    for (size_t i = 0; i < SUMMARIES; i++) {
-        file->summaries[i] = define_numbers(file, summaries[i].name, summaries[i].long_name, summaries[i].unit, file->lead,
-                                            file->point_rank);
+    for (size_t i = 0; i < file->study->figure_count; i++) {
+        const dea_column *told = &file->study->figures[i];
+        file->figures[i] = define_numbers(file, told->name, told->long_name, told->unit, file->lead, file->point_rank);
     }
+}
+
+/* Averages of a transient over a dimension of windows. */
+static void define_averages(grid *file)
+{
     if (file->scene->transient.average_count == 0) {
         return;
     }
@@ -448,7 +431,7 @@ static void put_coordinates(grid *file)
     if (has_coordinate(file)) {
         put_rows_coordinate(file);
     }
-    if (scene->study == DEA_STUDY_TRANSIENT) {
+    if (file->study->timed) {
         put_windows(file);
     }
 }
@@ -475,8 +458,9 @@ static void grid_define(grid *file, const char *path, const char *engine)
         define_axis(file, i, file->lead + file->point_rank - scene->axis_count + i);
     }
     define_columns(file);
-    if (scene->study == DEA_STUDY_TRANSIENT) {
-        define_summaries(file);
+    define_figures(file);
+    if (file->study->timed) {
+        define_averages(file);
     }
     grid_keep(file, file->nc.nc_enddef(file->file));
     put_coordinates(file);
@@ -498,7 +482,7 @@ static dea_status grid_allocate(grid *file)
 {
     const dea_scene *scene = file->scene;
     const size_t points = dea_scene_point_count(scene) * scene->model_count, fit = HELD_BYTES / file->layout.point_size;
-    file->lead = scene->study != DEA_STUDY_SWEEP ? 1 : 0;
+    file->lead = file->study->along ? 1 : 0;
     file->point_rank = scene->axis_count + (scene->model_count > 1 ? 1 : 0);
     const size_t most = file->point_rank + 2;
     file->shape = calloc(3 * most, sizeof *file->shape);
@@ -563,8 +547,8 @@ static void slab_put(grid *file, const char *row, size_t count, size_t rows)
     grid_keep(file, file->nc.nc_put_vara_schar(file->file, file->state, file->start, file->edge, file->states));
 }
 
-/* A figure of @p count points, whose summaries or averages stand at @p values, a point's size apart. */
-static void put_figures(grid *file, const int *variables, const figure *figures, size_t kinds, const char *values, size_t count)
+/* Figures of @p count points, which stand at @p values, a point's size apart. */
+static void put_figures(grid *file, const int *variables, const dea_column *figures, size_t kinds, const char *values, size_t count)
 {
     for (size_t i = 0; i < kinds; i++) {
         for (size_t j = 0; j < count; j++) {
@@ -575,11 +559,9 @@ static void put_figures(grid *file, const int *variables, const figure *figures,
     }
 }
 
-static void put_summaries(grid *file, const char *point, size_t count)
+static void put_averages(grid *file, const char *summary, size_t count)
 {
     const size_t window = file->lead + file->point_rank;
-    const char *summary = point + file->layout.rows * file->layout.row_size;
-    put_figures(file, file->summaries, summaries, SUMMARIES, summary, count);
     file->edge[window] = 1;
     for (size_t i = 0; i < file->scene->transient.average_count; i++) {
         file->start[window] = i;
@@ -600,8 +582,10 @@ static void put_slab(grid *file, const char *point, size_t count)
         }
         slab_put(file, point + row * file->layout.row_size, count, taken);
     }
-    if (file->scene->study == DEA_STUDY_TRANSIENT) {
-        put_summaries(file, point, count);
+    const char *behind = point + rows * file->layout.row_size;
+    put_figures(file, file->figures, file->study->figures, file->study->figure_count, behind, count);
+    if (file->study->timed) {
+        put_averages(file, behind, count);
     }
 }
 
@@ -667,6 +651,7 @@ static dea_status grid_open(const dea_scene *scene, const char *engine, dea_atom
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
     opened->scene = scene;
+    opened->study = dea_study_of(scene);
     opened->layout = dea_layout_of(scene);
     opened->target = file->target;
     opened->file = -1;

@@ -1,4 +1,5 @@
 #include "output/picture.h"
+#include "study/study.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -416,7 +417,7 @@ static dea_status dots_open(dea_plot *plot, dea_error *error)
 
 static bool is_sweep(const dea_plot *plot)
 {
-    return plot->scene->study == DEA_STUDY_SWEEP;
+    return !dea_study_of(plot->scene)->along;
 }
 
 dea_status dea_plot_begin(const dea_scene *scene, const char *path, const dea_plot_options *options, dea_plot **plot,

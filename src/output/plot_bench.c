@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "study/study.h"
 #include "output/bench.h"
 #include "output/picture.h"
 #include "output/series.h"
@@ -273,21 +274,9 @@ static void write_curve(const sheet *page, FILE *script, size_t i)
     }
 }
 
-static const char *time_label(const dea_bench *bench)
-{
-    switch (bench->scene->study) {
-    case DEA_STUDY_TRANSIENT:
-        return "Wall time per simulated second";
-    case DEA_STUDY_AC:
-        return "Wall time per frequency";
-    default:
-        return "Wall time per point";
-    }
-}
-
 static const char *error_label(const dea_bench *bench)
 {
-    return bench->scene->study == DEA_STUDY_TRANSIENT ? "Numerical error, relative to the peak" : "Numerical error, relative";
+    return dea_study_of(bench->scene)->timed ? "Numerical error, relative to the peak" : "Numerical error, relative";
 }
 
 /* Opens a panel: its place, its labels and ranges; @p tag is empty where it stands alone. */
@@ -307,7 +296,7 @@ static void write_work(sheet *page, FILE *script)
     const dea_bench *bench = page->bench;
     const panel *part = &page->work;
     dea_span errors = part->y;
-    write_panel(page, script, part, time_label(bench), error_label(bench), page->statics ? "(a)" : "");
+    write_panel(page, script, part, dea_study_of(bench->scene)->unit_label, error_label(bench), page->statics ? "(a)" : "");
     dea_span_write(script, "y", &part->y, part->box.height, dea_name_power);
     if (page->references) {
         errors.low = 3.0 * page->floor;

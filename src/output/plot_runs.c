@@ -1,6 +1,7 @@
 /* Panels of transients, one above the other along time, and of frequency responses: magnitudes above phases. */
 #include "output/label.h"
 #include "output/picture.h"
+#include "study/study.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -532,7 +533,7 @@ dea_status dea_plot_draw_runs(dea_plot *plot, dea_error *error)
     dea_gnuplot *picture = &plot->picture;
     sheet page = {.runs = &plot->runs,
                   .series = dea_series_of(scene, SIZE_MAX, plot->runs.count / scene->model_count),
-                  .response = scene->study == DEA_STUDY_AC,
+                  .response = dea_study_of(scene)->phasors,
                   .top = dea_plot_top(scene->title),
                   .canvas = picture->canvas};
     dea_legend legend = {.count = 0};

@@ -10,6 +10,7 @@
  * The format has no missing value, and an ngspice that plots a vector of NAN never ends: rows without numbers are left out, and
  * with them runs that have no others. */
 #include "output/writer.h"
+#include "study/study.h"
 #include "support/number.h"
 #include "support/text.h"
 
@@ -47,6 +48,7 @@ typedef struct trace {
 
 typedef struct raw {
     const dea_scene *scene;
+    const dea_study *study;
     dea_layout layout;
     dea_atomic *file;
     trace traces[RAW_TRACES];
@@ -119,7 +121,7 @@ static void traces_choose(raw *out)
     }
     for (size_t i = 0; i < layout->column_count; i++) {
         const dea_column *column = &layout->columns[i];
-        const bool scale = i == 0 && scene->study != DEA_STUDY_SWEEP;
+        const bool scale = i == 0 && out->study->along;
         const bool polar = i + 1 < layout->column_count && strcmp(column[1].unit, "degree") == 0;
         const char *type = type_of(column->unit);
         trace *added = trace_add(out, polar ? TRACE_POLAR : TRACE_COLUMN, scale ? type : column->name, type);
@@ -187,22 +189,19 @@ static void run_describe(const raw *out, char text[RAW_TITLE])
 static void header_write(raw *out, size_t points)
 {
     const dea_scene *scene = out->scene;
-    static const char *const names[] = {[DEA_STUDY_SWEEP] = "DC transfer characteristic",
-                                        [DEA_STUDY_TRANSIENT] = "Transient Analysis",
-                                        [DEA_STUDY_AC] = "AC Analysis"};
-    const bool is_point = scene->study == DEA_STUDY_SWEEP && !out->is_sweep;
+    const bool is_point = !out->study->along && !out->is_sweep;
     char title[RAW_TITLE], run[RAW_TITLE];
     dea_text_clip(*scene->title ? scene->title : "deaspice", RAW_TITLE, title, sizeof title);
     run_describe(out, run);
     raw_print(out, "Title: %s%s\n", title, run);
     raw_print(out, "Date: %s\n", out->date);
-    raw_print(out, "Plotname: %s\n", is_point ? "Operating Point" : names[scene->study]);
+    raw_print(out, "Plotname: %s\n", is_point ? "Operating Point" : out->study->plot_name);
     raw_print(out, "Command: * ngspice raw file written by deaspice " DEA_VERSION "\n");
-    raw_print(out, "Flags: %s\n", scene->study == DEA_STUDY_AC ? "complex" : "real");
+    raw_print(out, "Flags: %s\n", out->study->phasors ? "complex" : "real");
     raw_print(out, "No. Variables: %zu\nNo. Points: %zu\nVariables:\n", out->trace_count, points);
     for (size_t i = 0; i < out->trace_count; i++) {
         const trace *vector = &out->traces[i];
-        const bool is_frequency = i == 0 && scene->study == DEA_STUDY_AC;
+        const bool is_frequency = i == 0 && out->study->phasors;
         raw_print(out, "\t%zu\t%s\t%s%s\n", i, vector->name, vector->type, is_frequency ? " grid=3" : "");
     }
     raw_print(out, "Binary:\n");
@@ -235,7 +234,7 @@ static void row_write(raw *out, size_t index, const char *row)
             value[1] = magnitude * sin(phase);
         }
         raw_put(out, value[0]);
-        if (scene->study == DEA_STUDY_AC) {
+        if (out->study->phasors) {
             raw_put(out, value[1]);
         }
     }
@@ -321,9 +320,10 @@ static dea_status raw_open(const dea_scene *scene, const char *engine, dea_atomi
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
     out->scene = scene;
+    out->study = dea_study_of(scene);
     out->layout = dea_layout_of(scene);
     out->file = file;
-    out->is_sweep = scene->study == DEA_STUDY_SWEEP && scene->axis_count > 0;
+    out->is_sweep = !out->study->along && scene->axis_count > 0;
     out->inner = 1;
     out->length = out->layout.rows;
     if (out->is_sweep) {

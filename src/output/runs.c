@@ -1,4 +1,5 @@
 #include "output/runs.h"
+#include "study/study.h"
 
 #include <complex.h>
 #include <math.h>
@@ -20,14 +21,10 @@ static double value_at(const dea_runs *runs, const void *point, size_t row, size
 /* Columns that a picture of the study shows: those that the layout has, the first in the largest panel. */
 static void quantities_choose(const dea_scene *scene, dea_runs *runs)
 {
-    static const size_t transient[] = {offsetof(dea_sample, strain), offsetof(dea_sample, voltage), offsetof(dea_sample, current),
-                                       offsetof(dea_sample, focal_length)};
-    static const size_t ac[] = {offsetof(dea_response, displacement), offsetof(dea_response, displacement_phase),
-                                offsetof(dea_response, impedance), offsetof(dea_response, impedance_phase)};
-    const size_t *offsets = scene->study == DEA_STUDY_AC ? ac : transient;
-    for (size_t i = 0; i < DEA_RUNS_QUANTITIES; i++) {
+    const dea_study *study = dea_study_of(scene);
+    for (size_t i = 0; i < study->drawn_count; i++) {
         for (size_t k = 0; k < runs->layout.column_count; k++) {
-            if (runs->layout.columns[k].offset == offsets[i]) {
+            if (runs->layout.columns[k].offset == study->drawn[i]) {
                 runs->quantities[runs->quantity_count++] = k;
             }
         }
@@ -45,7 +42,7 @@ dea_status dea_runs_open(const dea_scene *scene, dea_runs *runs, dea_error *erro
         return dea_fail(error, DEA_ERROR_USAGE, "nothing to draw: each run is a single point");
     }
     quantities_choose(scene, runs);
-    const bool filled = scene->study == DEA_STUDY_AC || runs->layout.rows > DEA_RUNS_POINTS;
+    const bool filled = dea_study_of(scene)->phasors || runs->layout.rows > DEA_RUNS_POINTS;
     const size_t most = filled ? DEA_RUNS_POINTS : runs->layout.rows;
     runs->runs = calloc(runs->count, sizeof *runs->runs);
     runs->room = malloc(runs->count * runs->quantity_count * 2 * most * sizeof *runs->room);

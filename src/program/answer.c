@@ -8,6 +8,7 @@
 #include "needs/nearness.h"
 #include "network/swing.h"
 #include "program/omissions.h"
+#include "study/study.h"
 #include "support/number.h"
 
 dea_answer dea_answer_begin(void)
@@ -111,9 +112,10 @@ static const char *print_axes(const dea_scene *scene, const dea_spot *spot, cons
 static void print_place(const dea_scene *scene, const dea_spot *spot)
 {
     const char *before = print_axes(scene, spot, " at ");
-    if (scene->study == DEA_STUDY_TRANSIENT) {
-        fprintf(stderr, "%st = ", before);
-        print_quantity(dea_layout_place(scene, spot->row), "s", 6);
+    const char *sign = dea_study_of(scene)->sign;
+    if (sign) {
+        fprintf(stderr, "%s%s = ", before, sign);
+        print_quantity(dea_layout_place(scene, spot->row), dea_layout_of(scene).columns[0].unit, 6);
     }
 }
 
@@ -219,7 +221,7 @@ static void print_rest(const dea_answer *answer, const dea_scene *scene, const d
         fputs(", R_s C ", stderr);
         print_quantity(here.drive.series_resistance * capacitance, "s", 4);
     }
-    if (isfinite(swing.frequency) && scene->study != DEA_STUDY_TRANSIENT) {
+    if (isfinite(swing.frequency) && !dea_study_of(scene)->timed) {
         fputs(", first resonance ", stderr);
         print_quantity(swing.frequency, "Hz", 4);
     }
@@ -248,25 +250,34 @@ static const char *deviation_text(char *text, double deviation)
     return text;
 }
 
+/* " WHAT off by LOW to HIGH", one number where both print alike. */
+static void print_deviation(const char *what, double least, double largest)
+{
+    char low[DEA_NUMBER_LENGTH], high[DEA_NUMBER_LENGTH];
+    fprintf(stderr, " %s off by %s", what, deviation_text(low, least));
+    if (strcmp(low, deviation_text(high, largest)) != 0) {
+        fprintf(stderr, " to %s", high);
+    }
+}
+
 /* How far the model is from the membrane, at rest under the drive of the study. */
 static void print_nearness(const dea_scene *scene, const dea_model *model)
 {
-    static const char *const drives[] = {
-        [DEA_STUDY_SWEEP] = "", [DEA_STUDY_TRANSIENT] = " at rest under the largest voltage", [DEA_STUDY_AC] = " at the bias"};
-    char low[DEA_NUMBER_LENGTH], high[DEA_NUMBER_LENGTH];
     dea_nearness near;
-    if (model->membrane || dea_nearness_measure(scene, model, &near, NULL) != DEA_OK || near.compared + near.unlike == 0) {
+    if (model->membrane || dea_nearness_measure(scene, model, &near, NULL) != DEA_OK ||
+        (near.compared + near.unlike == 0 && isnan(near.slow))) {
         return;
     }
-    fprintf(stderr, "  against the membrane (field)%s:", drives[scene->study]);
+    fprintf(stderr, "  against the membrane (field)%s:", dea_study_of(scene)->at);
     if (near.compared > 0) {
-        fprintf(stderr, " strain off by %s", deviation_text(low, near.low));
-        if (strcmp(low, deviation_text(high, near.high)) != 0) {
-            fprintf(stderr, " to %s", high);
-        }
+        print_deviation("strain", near.low, near.high);
     }
     if (near.unlike > 0) {
         fprintf(stderr, "%s pull-in of one alone at %zu", near.compared > 0 ? "," : "", near.unlike);
+    }
+    if (!isnan(near.slow)) {
+        fputs(near.compared + near.unlike > 0 ? "," : "", stderr);
+        print_deviation("first resonance", near.slow, near.fast);
     }
     if (!near.whole) {
         fprintf(stderr, ", %zu of %zu points compared", near.compared + near.unlike, dea_scene_point_count(scene));
@@ -276,7 +287,7 @@ static void print_nearness(const dea_scene *scene, const dea_model *model)
 
 void dea_answer_print(const dea_answer *answer, const dea_scene *scene, size_t model, bool truth)
 {
-    if (scene->study == DEA_STUDY_AC) {
+    if (dea_study_of(scene)->phasors) {
         print_rest(answer, scene, scene->models[model]);
         if (truth) {
             print_nearness(scene, scene->models[model]);

@@ -1,4 +1,5 @@
 #include "program/audience.h"
+#include "study/study.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -121,7 +122,7 @@ dea_exit dea_audience_tell(const dea_arguments *arguments, const dea_findings *f
         dea_covered_warn(&findings->covered, findings->scene);
     }
     if (failed > 0) {
-        dea_complain("%zu %s were not solved", failed, findings->scene->study == DEA_STUDY_SWEEP ? "points" : "rows");
+        dea_complain("%zu %s were not solved", failed, dea_study_of(findings->scene)->along ? "rows" : "points");
     }
     return failed > 0 ? DEA_EXIT_FAILED : DEA_EXIT_DONE;
 }

@@ -6,7 +6,7 @@
 
 #include "deaspice/needs.h"
 #include "program/omissions.h"
-#include "result/compare.h"
+#include "study/study.h"
 
 static const double choice_fine = 0.05; /* of a model error's bound: accuracy of the runs that measure it */
 
@@ -88,7 +88,7 @@ dea_bounds dea_check_omissions(const dea_arguments *arguments, const dea_scene *
 {
     dea_bounds all = {0};
     unsigned done = 0; /* parts of engines that were checked: another one with the same leaves out the same */
-    for (size_t e = 0; e < dea_engine_count() && scene->study == DEA_STUDY_TRANSIENT; e++) {
+    for (size_t e = 0; e < dea_engine_count() && dea_study_of(scene)->timed; e++) {
         const dea_engine *engine = dea_engine_at(e);
         const bool wanted = dea_engine_named(scene, engine);
         if (!wanted || engine->omits == 0 || engine->omits == done || dea_engine_refuses(engine, scene, scene->models[0])) {
@@ -145,7 +145,7 @@ static double run_model(const dea_arguments *arguments, const dea_scene *scene, 
 static double change_of(const dea_comparison *comparison)
 {
     double worst = comparison->worst[0];
-    for (size_t c = 1; c < comparison->column_count && comparison->scene->study == DEA_STUDY_AC; c++) {
+    for (size_t c = 1; c < comparison->column_count && dea_study_of(comparison->scene)->phasors; c++) {
         worst = fmax(worst, comparison->worst[c]);
     }
     return worst;

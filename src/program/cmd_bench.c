@@ -5,6 +5,7 @@
 #include "deaspice/bench.h"
 #include "output/progress.h"
 #include "program/program.h"
+#include "study/study.h"
 
 enum { CELL = 24 };
 
@@ -17,22 +18,6 @@ static void take_log(void *user, const char *line)
 {
     dea_progress_clear(user);
     dea_complain("%s", line);
-}
-
-/* How the time of a point, simulated second or frequency is printed: factor and head of its column. */
-static double unit_scale(const dea_bench *bench, const char **head)
-{
-    switch (bench->scene->study) {
-    case DEA_STUDY_TRANSIENT:
-        *head = "ms/sim_s";
-        return 1e3;
-    case DEA_STUDY_AC:
-        *head = "us/freq";
-        return 1e6;
-    default:
-        *head = "us/point";
-        return 1e6;
-    }
 }
 
 static void print_reference(const dea_bench_model *model)
@@ -82,18 +67,13 @@ static void print_model_error(const dea_bench_model *model)
 
 static void print_heading(const char *path, const dea_bench *bench, const dea_bench_model *model)
 {
-    const bool sweep = bench->scene->study == DEA_STUDY_SWEEP;
     printf("%s: %s (%s), %zu %s\n", path, model->model->name, model->model->equation, bench->rows,
-           sweep                                        ? "points"
-           : bench->scene->study == DEA_STUDY_TRANSIENT ? "samples"
-                                                        : "frequencies");
+           dea_study_of(bench->scene)->rows[1]);
     print_reference(model);
     print_limits(model);
     print_model_error(model);
-    const char *head;
-    unit_scale(bench, &head);
     printf("  %-8s %-12s %8s %9s %9s %9s %5s %9s %9s  %s\n", "engine", "accuracy", "error", "time_ms", "25_%", "75_%", "runs",
-           "start_ms", head, "verdict");
+           "start_ms", dea_study_of(bench->scene)->unit_head, "verdict");
 }
 
 static const char *accuracy_text(const dea_bench_setting *setting, char text[CELL])
@@ -150,8 +130,7 @@ static void print_setting(const dea_bench *bench, const dea_bench_setting *setti
     static const char *const words[] = {
         [DEA_BENCH_REFUSED] = "cannot", [DEA_BENCH_SKIPPED] = "skipped", [DEA_BENCH_FAILED] = "FAILED"};
     char accuracy[CELL], error[CELL];
-    const char *head;
-    const double scale = unit_scale(bench, &head);
+    const double scale = dea_study_of(bench->scene)->unit_scale;
     if (setting->state != DEA_BENCH_MEASURED) {
         printf("  %-8s %-12s %s: %s\n", setting->engine->name,
                setting->state == DEA_BENCH_REFUSED ? "-" : accuracy_text(setting, accuracy), words[setting->state],

@@ -5,7 +5,7 @@
 
 #include "program/check_omissions.h"
 #include "program/program.h"
-#include "result/compare.h"
+#include "study/study.h"
 
 /* Rows of all runs that a check keeps as its reference. */
 enum { MOST_ROWS = DEA_SAMPLES_MAX };
@@ -30,24 +30,26 @@ static void take_log(void *user, const char *line)
 static void print_heading(const char *path, const dea_comparison *comparison, double tolerance)
 {
     const dea_scene *scene = comparison->scene;
-    const bool sweep = scene->study == DEA_STUDY_SWEEP;
-    printf("%s: %s (%s), %zu %s%s", path, scene->models[0]->name, scene->models[0]->equation, comparison->points,
-           sweep ? "point" : "run", comparison->points == 1 ? "" : "s");
-    if (!sweep) {
-        printf(" of %zu %s", comparison->layout.rows, scene->study == DEA_STUDY_AC ? "frequencies" : "samples");
+    const dea_study *study = dea_study_of(scene);
+    printf("%s: %s (%s), %zu %s", path, scene->models[0]->name, scene->models[0]->equation, comparison->points,
+           study->points[comparison->points != 1]);
+    if (study->along) {
+        printf(" of %zu %s", comparison->layout.rows, study->rows[1]);
     }
-    printf(", tolerance %g\n  %-10s %9s %9s", tolerance, "engine", "time_s", sweep ? "us/point" : "us/run");
+    char each[16];
+    snprintf(each, sizeof each, "us/%s", study->points[0]);
+    printf(", tolerance %g\n  %-10s %9s %9s", tolerance, "engine", "time_s", each);
     for (size_t c = 0; c < comparison->column_count; c++) {
         printf(" %12s", comparison->columns[c].head);
     }
     if (scene->transient.average_count > 0) {
         printf(" %12s", "mean");
     }
-    if (scene->study == DEA_STUDY_TRANSIENT) {
+    if (study->timed) {
         printf(" %9s", "resonance");
     }
     printf(" %8s", "states");
-    if (scene->study == DEA_STUDY_TRANSIENT) {
+    if (study->timed) {
         printf(" %9s %9s", "estimate", "balance");
     }
     puts("  verdict");
@@ -72,7 +74,7 @@ static void print_line(const dea_engine *engine, const dea_comparison *compariso
     if (comparison->scene->transient.average_count > 0) {
         print_cell(12, !comparison->filling, comparison->mean);
     }
-    if (comparison->scene->study == DEA_STUDY_TRANSIENT) {
+    if (dea_study_of(comparison->scene)->timed) {
         print_cell(9, !comparison->filling, comparison->swing);
     }
     if (comparison->filling) {
@@ -80,7 +82,7 @@ static void print_line(const dea_engine *engine, const dea_comparison *compariso
     } else {
         printf(" %8zu", comparison->states);
     }
-    if (comparison->scene->study == DEA_STUDY_TRANSIENT) {
+    if (dea_study_of(comparison->scene)->timed) {
         print_cell(9, true, comparison->error);
         print_cell(9, true, comparison->residual);
     }
@@ -206,7 +208,7 @@ static void check_scene(const dea_arguments *arguments, const char *path, dea_ta
         return;
     }
     scene.engine_count = named;
-    const double both = scene.study == DEA_STUDY_TRANSIENT ? 2.0 : 1.0; /* each engine may be off by the accuracy */
+    const double both = dea_study_of(&scene)->timed ? 2.0 : 1.0; /* each engine may be off by the accuracy */
     const double tolerance = isnan(arguments->tolerance) ? both * scene.accuracy : arguments->tolerance;
     for (size_t i = 0; i < scene.model_count && dea_signals_caught() == 0; i++) {
         dea_scene alone = scene;

@@ -2,6 +2,7 @@
 
 #include "program/audience.h"
 #include "program/journaled.h"
+#include "study/study.h"
 
 static dea_exit run_scene(const dea_arguments *arguments, const dea_scene *scene)
 {
@@ -29,7 +30,7 @@ static dea_exit run_scene(const dea_arguments *arguments, const dea_scene *scene
     status = dea_audience_close(&audience, status, &error);
     if (status == DEA_OK && audience.lost > 0) {
         dea_complain("%zu %s lost their workers and may go well in another run", audience.lost,
-                     scene->study == DEA_STUDY_SWEEP ? "points" : "runs");
+                     dea_study_of(scene)->points[1]);
     }
     if (status == DEA_OK) {
         return dea_audience_tell(arguments, &audience.findings, seconds);

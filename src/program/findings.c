@@ -5,6 +5,7 @@
 
 #include "deaspice/model.h"
 #include "program/omissions.h"
+#include "study/study.h"
 #include "support/number.h"
 
 static const double negligible = 1e-4; /* overshoot: below it is what samples and an engine's error make of none */
@@ -33,7 +34,7 @@ static void print_quantity(double value, const char *unit)
 dea_findings dea_findings_begin(const dea_scene *scene, FILE *averages)
 {
     const double none = (double)NAN;
-    const bool averaged = scene->study == DEA_STUDY_TRANSIENT && scene->transient.average_count > 0;
+    const bool averaged = dea_study_of(scene)->timed && scene->transient.average_count > 0;
     dea_findings findings = {.scene = scene,
                              .layout = dea_layout_of(scene),
                              .averages = averaged ? averages : NULL,
@@ -119,6 +120,7 @@ static void take_response(dea_findings *findings, const void *point)
 
 void dea_findings_take(dea_findings *findings, size_t first, const void *points, size_t count)
 {
+    const dea_study *study = dea_study_of(findings->scene);
     const dea_layout *layout = &findings->layout;
     for (size_t i = 0; i < count; i++) {
         const char *point = (const char *)points + i * layout->point_size;
@@ -128,9 +130,9 @@ void dea_findings_take(dea_findings *findings, size_t first, const void *points,
         for (size_t k = 0; k < layout->rows; k++) {
             findings->states[dea_layout_state(layout, point + k * layout->row_size)]++;
         }
-        if (findings->scene->study == DEA_STUDY_TRANSIENT) {
+        if (study->timed) {
             take_transient(findings, first + i, point);
-        } else if (findings->scene->study == DEA_STUDY_AC) {
+        } else if (study->phasors) {
             take_response(findings, point);
         }
     }
@@ -175,14 +177,12 @@ static void print_engines(const dea_findings *findings)
 
 static void print_amount(const dea_findings *findings)
 {
-    static const char *const rows[] = {
-        [DEA_STUDY_SWEEP] = "point", [DEA_STUDY_TRANSIENT] = "sample", [DEA_STUDY_AC] = "frequenc"};
-    const bool sweep = findings->scene->study == DEA_STUDY_SWEEP, ac = findings->scene->study == DEA_STUDY_AC;
-    const size_t count = sweep ? findings->points : findings->layout.rows;
-    if (!sweep && findings->points != 1) {
-        fprintf(stderr, "%zu runs of ", findings->points);
+    const dea_study *study = dea_study_of(findings->scene);
+    const size_t count = study->along ? findings->layout.rows : findings->points;
+    if (study->along && findings->points != 1) {
+        fprintf(stderr, "%zu %s of ", findings->points, study->points[1]);
     }
-    fprintf(stderr, "%zu %s%s", count, rows[findings->scene->study], ac ? count == 1 ? "y" : "ies" : count == 1 ? "" : "s");
+    fprintf(stderr, "%zu %s", count, study->rows[count != 1]);
 }
 
 /* Three digits, rounded outwards. */
@@ -382,19 +382,20 @@ static void print_responses(const dea_findings *findings)
 
 void dea_findings_print(const dea_findings *findings, double seconds)
 {
+    const dea_study *study = dea_study_of(findings->scene);
     for (size_t i = 0; i < findings->scene->model_count && findings->points > 0; i++) {
         dea_answer_print(&findings->answers[i], findings->scene, i, !findings->alone);
     }
-    if (findings->scene->study == DEA_STUDY_TRANSIENT) {
+    if (study->timed) {
         print_motions(findings);
-    } else if (findings->scene->study == DEA_STUDY_AC) {
+    } else if (study->phasors) {
         print_responses(findings);
     }
     print_amount(findings);
     fprintf(stderr, " in %.3g s", seconds);
     print_engines(findings);
     print_states(findings);
-    if (findings->scene->study == DEA_STUDY_TRANSIENT) {
+    if (study->timed) {
         print_errors(findings);
     }
 }

@@ -7,6 +7,7 @@
 
 #include "output/journal.h"
 #include "program/audience.h"
+#include "study/study.h"
 
 /* A run that goes into a journal, and from there to its audience. */
 typedef struct recorder {
@@ -142,7 +143,7 @@ static dea_status open_journal(recorder *run, dea_error *error)
 
 static const char *noun(const recorder *run)
 {
-    return run->study.scene->study == DEA_STUDY_SWEEP ? "points" : "runs";
+    return dea_study_of(run->study.scene)->points[1];
 }
 
 static void tell_taken(const recorder *run)

@@ -9,6 +9,7 @@
 #include "network/dynamics.h"
 #include "result/scales.h"
 #include "result/state.h"
+#include "study/study.h"
 
 /* Numbers below this share of a column's largest reference value are compared with that instead of with themselves. */
 static const double negligible = 1e-9;
@@ -16,40 +17,13 @@ static const double negligible = 1e-9;
 /* Columns that engines must agree on. */
 static void choose_columns(dea_comparison *comparison)
 {
-    static const struct {
-        dea_study_kind study;
-        size_t offset;
-        dea_measure measure;
-        const char *head;
-    } known[] = {
-        {DEA_STUDY_SWEEP, offsetof(dea_row, strain), DEA_OVER_ITSELF, "strain"},
-        {DEA_STUDY_SWEEP, offsetof(dea_row, displacement), DEA_OVER_ITSELF, "displacement"},
-        {DEA_STUDY_SWEEP, offsetof(dea_row, force), DEA_OVER_ITSELF, "force"},
-        {DEA_STUDY_SWEEP, offsetof(dea_row, field), DEA_OVER_ITSELF, "field"},
-        {DEA_STUDY_SWEEP, offsetof(dea_row, capacitance), DEA_OVER_ITSELF, "capacitance"},
-        {DEA_STUDY_SWEEP, offsetof(dea_row, charge), DEA_OVER_ITSELF, "charge"},
-        {DEA_STUDY_SWEEP, offsetof(dea_row, area_strain), DEA_OVER_ITSELF, "area_strain"},
-        {DEA_STUDY_SWEEP, offsetof(dea_row, focal_length), DEA_OVER_ITSELF, "focal_length"},
-        {DEA_STUDY_TRANSIENT, offsetof(dea_sample, displacement), DEA_OVER_PEAK, "displacement"},
-        {DEA_STUDY_TRANSIENT, offsetof(dea_sample, strain), DEA_OVER_PEAK, "strain"},
-        {DEA_STUDY_TRANSIENT, offsetof(dea_sample, velocity), DEA_OVER_PEAK, "velocity"},
-        {DEA_STUDY_TRANSIENT, offsetof(dea_sample, force), DEA_OVER_PEAK, "force"},
-        {DEA_STUDY_TRANSIENT, offsetof(dea_sample, current), DEA_OVER_PEAK, "current"},
-        {DEA_STUDY_TRANSIENT, offsetof(dea_sample, charge), DEA_OVER_PEAK, "charge"},
-        {DEA_STUDY_TRANSIENT, offsetof(dea_sample, focal_length), DEA_OVER_PEAK, "focal_length"},
-        {DEA_STUDY_TRANSIENT, offsetof(dea_sample, film_voltage), DEA_OVER_PEAK, "film_voltage"},
-        {DEA_STUDY_AC, offsetof(dea_response, displacement), DEA_OVER_ITSELF, "displacement"},
-        {DEA_STUDY_AC, offsetof(dea_response, displacement_phase), DEA_OVER_RADIAN, "phase"},
-        {DEA_STUDY_AC, offsetof(dea_response, impedance), DEA_OVER_ITSELF, "impedance"},
-        {DEA_STUDY_AC, offsetof(dea_response, impedance_phase), DEA_OVER_RADIAN, "phase"},
-    };
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
-        for (size_t k = 0; known[i].study == comparison->scene->study && k < comparison->layout.column_count; k++) {
-            if (comparison->layout.columns[k].offset == known[i].offset) {
-                const double allowance =
-                    known[i].study == DEA_STUDY_TRANSIENT ? dea_scales_allowance(known[i].offset) : 1.0;
-                comparison->columns[comparison->column_count++] =
-                    (dea_compared){k, known[i].measure, known[i].head, allowance};
+    const dea_study *study = dea_study_of(comparison->scene);
+    for (size_t i = 0; i < study->compared_count; i++) {
+        const dea_study_column *known = &study->compared[i];
+        for (size_t k = 0; k < comparison->layout.column_count; k++) {
+            if (comparison->layout.columns[k].offset == known->offset) {
+                const double allowance = study->timed ? dea_scales_allowance(known->offset) : 1.0;
+                comparison->columns[comparison->column_count++] = (dea_compared){k, known->measure, known->head, allowance};
             }
         }
     }
@@ -89,7 +63,7 @@ static double peak_of(const dea_comparison *comparison, const char *point, size_
 /* What the columns of a point of the reference count by. */
 static dea_status find_peaks(const dea_comparison *comparison, size_t number, const char *point, double peaks[DEA_COMPARED_COLUMNS])
 {
-    const bool moving = comparison->scene->study == DEA_STUDY_TRANSIENT;
+    const bool moving = dea_study_of(comparison->scene)->timed;
     dea_sample of = dea_sample_refused(0.0, 0.0, DEA_STATE_OK);
     if (moving) {
         dea_scene here = *comparison->scene;
@@ -150,7 +124,7 @@ static bool are_at_limit(const dea_comparison *comparison, size_t number, const 
 {
     dea_sample samples[2];
     dea_scene placed = *comparison->scene;
-    if (placed.study != DEA_STUDY_TRANSIENT) {
+    if (!dea_study_of(&placed)->timed) {
         return false;
     }
     memcpy(&samples[0], row, sizeof *samples);
@@ -223,7 +197,7 @@ static dea_status take_point(dea_comparison *comparison, size_t number, const ch
     for (size_t i = 0; i < layout->rows; i++) {
         comparison->failed += is_failed(comparison, point + i * layout->row_size) ? 1 : 0;
     }
-    if (comparison->scene->study == DEA_STUDY_TRANSIENT) {
+    if (dea_study_of(comparison->scene)->timed) {
         dea_summary summary;
         memcpy(&summary, point + layout->rows * layout->row_size, sizeof summary);
         comparison->error = fmax(comparison->error, summary.error);
@@ -242,7 +216,7 @@ static dea_status take_point(dea_comparison *comparison, size_t number, const ch
     }
     if (!comparison->filling) {
         compare_rows(comparison, number, point, reference, peaks);
-        if (comparison->scene->study == DEA_STUDY_TRANSIENT) {
+        if (dea_study_of(comparison->scene)->timed) {
             compare_summaries(comparison, point, reference, peaks[0]); /* of the displacement */
         }
     }
@@ -257,7 +231,7 @@ dea_status dea_comparison_open(dea_comparison *comparison, const dea_scene *scen
                                    .filling = true,
                                    .at_limit = negligible};
     choose_columns(comparison);
-    if (scene->study == DEA_STUDY_AC) {
+    if (dea_study_of(scene)->phasors) {
         set_least_response(comparison);
     }
     dea_comparison_forget(comparison);

@@ -207,11 +207,10 @@ static double relaxed(const dea_scene *scene, double voltage)
 {
     dea_dynamics dynamics;
     double u = (double)NAN;
-    if (dea_dynamics_open(scene, scene->models[0], &dynamics, NULL) != DEA_OK ||
+    if (dea_dynamics_settle(scene, scene->models[0], &dynamics, NULL) != DEA_OK ||
         !dea_dynamics_equilibrium(&dynamics, voltage / (1.0 + dynamics.series * dynamics.conductance), &u)) {
         u = (double)NAN;
     }
-    dea_dynamics_close(&dynamics);
     return u;
 }
 

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "network/membrane.h"
+
 static const double missed = 0.01;  /* share of what the largest voltage does at rest below which a peak counts as that */
 static const double promised = 10.0; /* accuracies, of what follows from displacement and charge */
 
@@ -11,23 +13,37 @@ double dea_scales_allowance(size_t offset)
     return offset == offsetof(dea_sample, displacement) || offset == offsetof(dea_sample, strain) ? 1.0 : promised;
 }
 
-/* Time in which the film answers a jump; *creep: only by its branches, of those that are not held [s]. */
-static double answer_time(dea_dynamics *d, bool *creep)
+/* The film at rest, whatever its nodes. */
+typedef struct rest {
+    double length;      /* displacement under the largest voltage [m] */
+    double force;       /* F_DEA under it [N] */
+    double capacitance; /* [F] */
+    double motional;    /* C' U_max [A s/m] */
+    double swing;       /* sqrt(m/K), the branches held [s], 0 without mass */
+} rest;
+
+static rest rest_of_edge(dea_dynamics *d, double largest)
 {
-    const double held = dea_dynamics_stiffness(d, 0.0, 0.0, false);
     const dea_edge e = dea_dynamics_edge(d, 0.0);
-    double time = d->series * e.capacitance;
-    if (d->mass > 0.0 && held > 0.0) {
-        time = fmax(time, sqrt(d->mass / held));
-    }
-    time = fmax(time, d->retardation);
+    const double held = dea_dynamics_stiffness(d, 0.0, 0.0, false);
+    return (rest){.length = dea_dynamics_scale(d, largest),
+                  .force = fabs(e.push) * largest * largest,
+                  .capacitance = e.capacitance,
+                  .motional = fabs(e.capacitance_slope) * largest,
+                  .swing = d->mass > 0.0 && held > 0.0 ? sqrt(d->mass / held) : 0.0};
+}
+
+/* Time in which the film answers a jump; *creep: only by its branches, of those that are not held [s]. */
+static double answer_time(const dea_dynamics *d, const rest *film, bool *creep)
+{
+    const double time = fmax(fmax(d->series * film->capacitance, film->swing), d->retardation);
     *creep = !(time > 0.0);
     if (*creep) {
         double rate = 0.0;
         for (size_t i = 0; i < d->branch_count; i++) {
             rate += d->branches[i].share / (1.0 + d->total_share) / d->branches[i].tau;
         }
-        time = rate > 0.0 ? 1.0 / rate : (double)INFINITY;
+        return rate > 0.0 ? 1.0 / rate : (double)INFINITY;
     }
     return time;
 }
@@ -58,42 +74,63 @@ static double pace_of(const dea_signal *signal, double first, double time, bool 
     return pace;
 }
 
-static void set_least(dea_scales *scales, dea_dynamics *d, const dea_signal *signal)
+static void set_least(dea_scales *scales, const dea_dynamics *d, const rest *film, double largest)
 {
-    const dea_edge e = dea_dynamics_edge(d, 0.0);
-    const double u = missed * dea_dynamics_scale(d, signal->largest);
+    const double u = missed * film->length;
     scales->least = (dea_sample){.displacement = u,
                                  .strain = u / d->radius,
-                                 .force = missed * fabs(e.push) * signal->largest * signal->largest,
-                                 .charge = missed * e.capacitance * signal->largest,
-                                 .film_voltage = missed * signal->largest,
+                                 .force = missed * film->force,
+                                 .charge = missed * film->capacitance * largest,
+                                 .film_voltage = missed * largest,
                                  .focal_length = missed * fmax(0.0, d->focal_length)};
 }
 
-static void set_rates(dea_scales *scales, dea_dynamics *d, const dea_signal *signal, double first)
+static void set_rates(dea_scales *scales, const dea_dynamics *d, const rest *film, const dea_signal *signal, double first)
 {
     bool creeps;
-    const dea_edge e = dea_dynamics_edge(d, 0.0);
-    const double answer = answer_time(d, &creeps), charging = d->series * e.capacitance;
+    const double answer = answer_time(d, film, &creeps), charging = d->series * film->capacitance;
     scales->pace = pace_of(signal, first, answer, creeps);
     scales->charging = pace_of(signal, first, charging > 0.0 ? charging : (double)INFINITY, !(charging > 0.0));
-    scales->motional = fabs(e.capacitance_slope) * signal->largest;
+    scales->motional = film->motional;
+}
+
+/* The dynamics, and of the film at rest what the scales need. */
+static dea_status look_at_film(const dea_scene *scene, const dea_model *model, double largest, dea_dynamics *d, rest *film)
+{
+    if (model->membrane) {
+        dea_membrane membrane;
+        dea_membrane_rest at;
+        const dea_status status = dea_membrane_open(scene, model, dea_membrane_usual_mesh(scene), &membrane, NULL);
+        *d = membrane.film;
+        if (status == DEA_OK && dea_membrane_at_rest(&membrane, &at)) {
+            const double longest = fmin(d->radius, d->point.frame_radius - d->radius);
+            *film = (rest){fmin(longest, at.compliance * largest * largest), at.force * largest * largest, at.capacitance,
+                           at.capacitance_slope * largest, at.slowest > 0.0 ? 1.0 / at.slowest : 0.0};
+        }
+        return status;
+    }
+    const dea_status status = dea_dynamics_open(scene, model, d, NULL);
+    if (status == DEA_OK) {
+        *film = rest_of_edge(d, largest);
+    }
+    return status;
 }
 
 dea_scales dea_scales_open(const dea_scene *scene, const dea_model *model)
 {
     dea_scene full = *scene; /* borrows what the scene owns */
-    dea_dynamics dynamics;
+    dea_dynamics dynamics = {0};
     dea_signal signal = {0};
     dea_scales scales = {0};
+    rest film = {0};
     full.reduction = (dea_reduction){0};
-    scales.status = dea_dynamics_open(&full, model, &dynamics, NULL);
+    scales.status = dea_signal_open(scene, &signal, NULL);
     if (scales.status == DEA_OK) {
-        scales.status = dea_signal_open(scene, &signal, NULL);
+        scales.status = look_at_film(&full, model, signal.largest, &dynamics, &film);
     }
     if (scales.status == DEA_OK && signal.largest > 0.0) {
-        set_least(&scales, &dynamics, &signal);
-        set_rates(&scales, &dynamics, &signal, scene->transient.from_bias ? signal.segments[0].start : 0.0);
+        set_least(&scales, &dynamics, &film, signal.largest);
+        set_rates(&scales, &dynamics, &film, &signal, scene->transient.from_bias ? signal.segments[0].start : 0.0);
     }
     dea_signal_close(&signal);
     dea_dynamics_close(&dynamics);

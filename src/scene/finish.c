@@ -6,6 +6,7 @@
 
 #include "deaspice/model.h"
 #include "scene/reader.h"
+#include "study/study.h"
 
 /* A key that every scene needs, by the mapping that should hold it. */
 typedef struct need {
@@ -36,6 +37,7 @@ static dea_status needs_check(dea_reader *reader)
         {"actuator", "actuator.frame_radius"}, {"actuator", "actuator.film_thickness"}, {"actuator", "actuator.prestretch"},
         {"material", "material.permittivity"}, {"drive", "drive.voltage"},
     };
+    const dea_study *study = dea_study_of(reader->scene);
     if (!reader->kind_known) {
         return dea_reader_missing(reader, "actuator", "actuator.kind");
     }
@@ -44,7 +46,7 @@ static dea_status needs_check(dea_reader *reader)
     }
     for (size_t i = 0; i < sizeof needs / sizeof *needs; i++) {
         dea_ref ref;
-        if (strcmp(needs[i].path, "drive.voltage") == 0 && reader->scene->study != DEA_STUDY_SWEEP) {
+        if (strcmp(needs[i].path, "drive.voltage") == 0 && (study->waveform || study->bias)) {
             continue;
         }
         if (dea_key_find(needs[i].path, &ref) && isnan(*(const double *)((const char *)reader->scene + dea_ref_offset(&ref)))) {

@@ -6,36 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/reader.h"
+#include "scene/key_forms.h"
+#include "study/study.h"
 #include "support/text.h"
-
-#define AT(member) offsetof(dea_scene, member)
-#define SCALAR(name, member, si, ending, from, to, ends, has, shown, help)                                                       \
-    {                                                                                                                            \
-        .path = name, .read = dea_read_scalar, .offset = AT(member), .unit = si, .suffix = ending, .low = from, .high = to,      \
-        .open = ends, .kinds = has, .words = shown, .accepted = help                                                             \
-    }
-#define PART(name, member, si, ending, from, to, ends, shown, mapping, help)                                                     \
-    {                                                                                                                            \
-        .path = name, .read = dea_read_scalar, .offset = AT(member), .unit = si, .suffix = ending, .low = from, .high = to,      \
-        .open = ends, .kinds = DEA_KEY_BOTH, .words = shown, .within = mapping, .accepted = help                                 \
-    }
-#define ENTRY(name, list, member, si, ending, from, to, ends, shown, help)                                                       \
-    {                                                                                                                            \
-        .path = name, .read = dea_read_scalar, .offset = AT(list[0].member), .stride = sizeof(((dea_scene *)0)->list[0]),        \
-        .unit = si, .suffix = ending, .low = from, .high = to, .open = ends, .kinds = DEA_KEY_BOTH, .words = shown,              \
-        .accepted = help                                                                                                         \
-    }
-#define OTHER(name, reader, help)                                                                                                \
-    {                                                                                                                            \
-        .path = name, .read = reader, .offset = DEA_KEY_NOWHERE, .kinds = DEA_KEY_BOTH, .accepted = help                         \
-    }
 
 #define STEP "drive.waveform.step"
 #define SINE "drive.waveform.sine"
-#define TRANSIENT "study.transient"
-#define AVERAGE "study.transient.average"
-#define AC "study.ac"
 
 static const dea_key keys_before[] = {
     OTHER("title", dea_read_title, "one line of text, at most 1000 bytes"),
@@ -50,6 +26,17 @@ static const dea_key keys_before[] = {
            "a length > 0 and < frame_radius, e.g. 15 mm"),
     SCALAR("actuator.film_thickness", actuator.film_thickness, "m", "_m", 0, INFINITY, true, DEA_KEY_BOTH, 1,
            "a length > 0, e.g. 100 um"),
+    {.path = "actuator.layers",
+     .read = dea_read_scalar,
+     .offset = AT(actuator.layers),
+     .unit = "1",
+     .suffix = "",
+     .low = 1,
+     .high = 1e6,
+     .whole = true,
+     .kinds = DEA_KEY_BOTH,
+     .words = 1,
+     .accepted = "a whole number >= 1, e.g. 5"},
     SCALAR("actuator.prestretch", actuator.prestretch, "1", "", 1, INFINITY, false, DEA_KEY_BOTH, 1, "a stretch >= 1, e.g. 1.2"),
     SCALAR("actuator.electrode_mass", actuator.electrode_mass, "kg/m^2", "_kg_per_m2", 0, INFINITY, false, DEA_KEY_BOTH, 1,
            "a mass per area >= 0, e.g. 25 g/m^2"),
@@ -132,40 +119,19 @@ static const dea_key keys_behind[] = {
     OTHER("model", dea_read_model, "a model name or a list of them"),
     SCALAR("model_error", model_error, "1", "", 0, 1, true, DEA_KEY_BOTH, 0, "a relative error > 0 and < 1, e.g. 1 %"),
     OTHER("engine", dea_read_engine, "auto, an engine, or a list of engines in the order in which they are asked"),
-    OTHER("study", dea_read_mapping, "a mapping with sweep, transient or ac, e.g. {sweep: {}} for the scene as one point"),
-    OTHER("study.sweep", dea_read_later, "a mapping of axes, e.g. {coverage: [0.25, 0.5]}"),
-    OTHER(TRANSIENT, dea_read_mapping, "a mapping with until, every, average, start and over, e.g. {until: 25 s, every: 10 ms}"),
-    PART(TRANSIENT ".until", transient.until, "s", "_s", 0, INFINITY, true, 0, TRANSIENT, "a time > 0, e.g. 25 s"),
-    PART(TRANSIENT ".every", transient.every, "s", "_s", 0, INFINITY, true, 0, TRANSIENT, "a time > 0, e.g. 10 ms"),
-    OTHER(AVERAGE, dea_read_average, "a window of time, e.g. {from: 6 s, to: 8 s}, or a list of at most 8"),
-    PART(AVERAGE ".from", transient.averages[0].from, "s", "_s", 0, INFINITY, false, 0, AVERAGE, "a time >= 0, e.g. 6 s"),
-    PART(AVERAGE ".to", transient.averages[0].to, "s", "_s", 0, INFINITY, true, 0, AVERAGE, "a time > from, e.g. 8 s"),
-    OTHER(AVERAGE ".#", dea_read_mapping, "a window of time, e.g. {from: 6 s, to: 8 s}"),
-    ENTRY(AVERAGE ".#.from", transient.averages, from, "s", "_s", 0, INFINITY, false, 0, "a time >= 0, e.g. 6 s"),
-    ENTRY(AVERAGE ".#.to", transient.averages, to, "s", "_s", 0, INFINITY, true, 0, "a time > from, e.g. 8 s"),
-    OTHER(TRANSIENT ".start", dea_read_start, "rest, bias"),
-    {.path = TRANSIENT ".over",
-     .read = dea_read_later,
-     .offset = DEA_KEY_NOWHERE,
-     .kinds = DEA_KEY_BOTH,
-     .within = TRANSIENT ".over",
-     .accepted = "a mapping of axes, e.g. {coverage: [0.25, 0.5]}"},
-    OTHER(AC, dea_read_mapping, "a mapping with from, to, points_per_decade, bias and over, e.g. {from: 1 Hz, to: 10 kHz}"),
-    PART(AC ".from", ac.from, "Hz", "_Hz", 0, INFINITY, true, 0, AC, "a frequency > 0, e.g. 1 Hz"),
-    PART(AC ".to", ac.to, "Hz", "_Hz", 0, INFINITY, true, 0, AC, "a frequency >= from, e.g. 10 kHz"),
-    OTHER(AC ".points_per_decade", dea_read_points_per_decade, "a whole number 1 ... 10000"),
-    PART(AC ".bias", ac.bias, "V", "_V", -INFINITY, INFINITY, true, 1, AC, "a voltage, e.g. 4500 V"),
-    {.path = AC ".over",
-     .read = dea_read_later,
-     .offset = DEA_KEY_NOWHERE,
-     .kinds = DEA_KEY_BOTH,
-     .within = AC ".over",
-     .accepted = "a mapping of axes, e.g. {coverage: [0.25, 0.5]}"},
+#define X(code, name) #name ", "
+    OTHER("study", dea_read_mapping, "a mapping with " DEA_STUDY_LIST(X) "e.g. {sweep: {}} for the scene as one point"),
+#undef X
+};
+
+/* Here stand the keys of the kinds of study. */
+
+static const dea_key keys_last[] = {
     OTHER("study.over", dea_read_later, "a mapping of axes, e.g. {coverage: [0.25, 0.5]}"),
     SCALAR("accuracy", accuracy, "1", "", 0, 1, true, DEA_KEY_BOTH, 0, "a relative error > 0 and < 1, e.g. 1e-6"),
 };
 
-enum { BEFORE = sizeof keys_before / sizeof *keys_before, BEHIND = sizeof keys_behind / sizeof *keys_behind };
+#define COUNT(keys) (sizeof keys / sizeof *keys)
 
 /* Key number @p index of a law: its mapping or list, what an entry of a list is, and its constants; false past the end. */
 static bool law_key(const dea_law *law, size_t index, dea_key *key)
@@ -196,13 +162,23 @@ static bool law_key(const dea_law *law, size_t index, dea_key *key)
     return true;
 }
 
+/* Key number *@p index of some keys; where there are fewer, it becomes the number in those that follow. */
+static bool listed_key(const dea_key *keys, size_t count, size_t *index, dea_key *key)
+{
+    const bool found = *index < count;
+    if (found) {
+        *key = keys[*index];
+    } else {
+        *index -= count;
+    }
+    return found;
+}
+
 bool dea_key_at(size_t index, dea_key *key)
 {
-    if (index < BEFORE) {
-        *key = keys_before[index];
+    if (listed_key(keys_before, COUNT(keys_before), &index, key)) {
         return true;
     }
-    index -= BEFORE;
     for (size_t i = 0; dea_law_at(i); i++) {
         const dea_law *law = dea_law_at(i);
         const size_t count = law->constant_count + (law->entries > 1 ? 2 : 1);
@@ -211,10 +187,16 @@ bool dea_key_at(size_t index, dea_key *key)
         }
         index -= count;
     }
-    if (index < BEHIND) {
-        *key = keys_behind[index];
+    if (listed_key(keys_behind, COUNT(keys_behind), &index, key)) {
+        return true;
     }
-    return index < BEHIND;
+    for (dea_study_kind kind = 0; kind < DEA_STUDIES; kind++) {
+        const dea_study *study = dea_study_at(kind);
+        if (listed_key(study->keys, study->key_count, &index, key)) {
+            return true;
+        }
+    }
+    return listed_key(keys_last, COUNT(keys_last), &index, key);
 }
 
 /* Copies @p name with every component that is a number below DEA_PRONY_MAX written as "#", the last of them kept in *index. */

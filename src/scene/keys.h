@@ -26,6 +26,7 @@ struct dea_key {
     const char *suffix;   /* of the result column, e.g. "_m" */
     double low, high;     /* range */
     bool open;            /* the range is without its ends */
+    bool whole;           /* only whole numbers are in it */
     unsigned kinds;       /* of actuator that have it */
     size_t words;         /* components of the path that its result column shows at least, 0: cannot be a sweep axis */
     const char *within;   /* key that the scene must give for this one to have a place (the inner `over`: itself), NULL: none */

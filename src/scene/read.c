@@ -7,6 +7,7 @@
 #include "deaspice/model.h"
 #include "deaspice/needs.h"
 #include "scene/reader.h"
+#include "study/study.h"
 
 char *dea_reader_show(const dea_node *node, char out[DEA_TEXT_ROOM])
 {
@@ -128,7 +129,8 @@ static dea_status kind_check(dea_reader *reader, const dea_ref *ref, const dea_n
 
 static bool in_range(const dea_key *key, double value)
 {
-    return key->open ? value > key->low && value < key->high : value >= key->low && value <= key->high;
+    const bool inside = key->open ? value > key->low && value < key->high : value >= key->low && value <= key->high;
+    return inside && !(key->whole && floor(value) != value);
 }
 
 dea_status dea_reader_number(dea_reader *reader, const dea_ref *ref, const dea_node *node, double *value)
@@ -263,7 +265,8 @@ static const char automatic[] = "auto"; /* the name of no model: the cheapest th
 
 /* What a model must be able to do. */
 typedef struct ability {
-    bool lens, dynamic;
+    bool lens;
+    bool dynamic;
 } ability;
 
 static void model_list(ability wanted, char *out, size_t room)
@@ -327,14 +330,13 @@ static dea_status model_fail(dea_reader *reader, const dea_node *node, const cha
 dea_status dea_models_finish(dea_reader *reader)
 {
     dea_scene *scene = reader->scene;
+    const dea_study *study = dea_study_of(scene);
     if (scene->automatic) {
         scene->models[0] = dea_needs_truth(scene->study);
     }
-    const bool transient = scene->study == DEA_STUDY_TRANSIENT;
-    for (size_t i = 0; i < scene->model_count && scene->study != DEA_STUDY_SWEEP; i++) {
+    for (size_t i = 0; i < scene->model_count && study->moves; i++) {
         if (!scene->models[i]->dynamic) {
-            return model_fail(reader, reader->model_names[i],
-                              transient ? "cannot do a transient" : "cannot do a frequency response",
+            return model_fail(reader, reader->model_names[i], study->model_fails,
                               (ability){.lens = scene->actuator.kind == DEA_LENS, .dynamic = true});
         }
     }
@@ -346,7 +348,7 @@ static dea_status model_auto(dea_reader *reader, const dea_node *node)
 {
     reader->model_names[0] = node;
     reader->scene->automatic = true;
-    reader->scene->models[0] = dea_needs_truth(DEA_STUDY_SWEEP);
+    reader->scene->models[0] = dea_needs_truth(reader->scene->study);
     reader->scene->model_count = 1;
     return DEA_OK;
 }

@@ -81,9 +81,6 @@ dea_status dea_read_moduli(dea_reader *reader, const dea_ref *ref, const dea_nod
 dea_status dea_read_waveform(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_points(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_wave_file(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_average(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_start(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_points_per_decade(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 
 /* Refuses the value of a key that is a file's name where no file may be named, or it names none. */
 dea_status dea_reader_names_file(dea_reader *reader, const dea_ref *ref, const dea_node *node);
@@ -109,8 +106,10 @@ dea_status dea_reader_axes(dea_reader *reader, const dea_node *axes);
 void dea_waveform_drop(dea_scene *scene);
 /* Puts defaults into the waveform and checks it as a whole, swept keys at all their values. */
 dea_status dea_waveform_finish(dea_reader *reader);
-/* Puts defaults into a transient or an AC study and checks it as a whole. */
+/* Puts defaults into the study and checks it as a whole. */
 dea_status dea_study_finish(dea_reader *reader);
+/* Gives a bias that the study's own key has not set the static voltage of the drive; fails where there is none. */
+dea_status dea_reader_bias(dea_reader *reader, double *bias);
 /* Refuses models that cannot do the scene's study. */
 dea_status dea_models_finish(dea_reader *reader);
 /* What only the whole material shows: shares that leave no long-term modulus. */

@@ -17,6 +17,7 @@ static dea_status scene_clear(dea_scene *scene)
                      .coverage = NAN,
                      .divide_radius = NAN,
                      .film_thickness = NAN,
+                     .layers = 1.0,
                      .prestretch = NAN,
                      .electrode_mass = NAN,
                      .focal_length = NAN,

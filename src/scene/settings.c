@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "scene/reader.h"
+#include "study/study.h"
 
 /* A setting being parsed. */
 typedef struct setting_reader {
@@ -107,30 +108,48 @@ static dea_node *path_enter(setting_reader *self, const char *path)
     return node;
 }
 
-/* Keys of which a scene gives one: a setting of one takes those of the file away. */
-static void alternatives_remove(setting_reader *self, const char *path)
+/* Of @p count keys of which a scene gives one, a setting of one, @p path, takes those of the file away. */
+static void group_settle(setting_reader *self, const char *const *group, size_t count, const char *path)
 {
-    static const char *const groups[][4] = {
-        {"study.sweep", "study.transient", "study.ac"},
-        {"study.over", "study.transient.over", "study.ac.over"},
-        {"drive.waveform.step", "drive.waveform.points", "drive.waveform.sine", "drive.waveform.file"},
-    };
-    for (size_t i = 0; i < sizeof groups / sizeof *groups; i++) {
-        bool member = false;
-        for (size_t k = 0; k < 4 && groups[i][k]; k++) {
-            member = member || strcmp(groups[i][k], path) == 0;
-        }
-        for (size_t k = 0; member && k < 4 && groups[i][k]; k++) {
-            const char *other = groups[i][k];
-            const char *dot = strrchr(other, '.');
-            const dea_node *node = dea_tree_find(self->reader->root, other);
-            if (node && strcmp(other, path) != 0 && !node->place.origin->setting) {
-                char parent[DEA_NAME_LENGTH];
-                snprintf(parent, sizeof parent, "%.*s", (int)(dot - other), other);
-                dea_tree_remove(path_enter(self, parent), dot + 1);
-            }
+    bool member = false;
+    for (size_t i = 0; i < count; i++) {
+        member = member || strcmp(group[i], path) == 0;
+    }
+    for (size_t i = 0; member && i < count; i++) {
+        const char *dot = strrchr(group[i], '.');
+        const dea_node *node = dea_tree_find(self->reader->root, group[i]);
+        if (node && strcmp(group[i], path) != 0 && !node->place.origin->setting) {
+            char parent[DEA_NAME_LENGTH];
+            snprintf(parent, sizeof parent, "%.*s", (int)(dot - group[i]), group[i]);
+            dea_tree_remove(path_enter(self, parent), dot + 1);
         }
     }
+}
+
+/* Places of the axes of runs; how many there are. */
+static size_t list_overs(const char *overs[DEA_STUDIES + 1])
+{
+    size_t count = 0;
+    overs[count++] = "study.over";
+    for (dea_study_kind kind = 0; kind < DEA_STUDIES; kind++) {
+        if (dea_study_at(kind)->along) {
+            overs[count++] = dea_study_at(kind)->axes;
+        }
+    }
+    return count;
+}
+
+static void alternatives_remove(setting_reader *self, const char *path)
+{
+    static const char *const waves[] = {"drive.waveform.step", "drive.waveform.points", "drive.waveform.sine",
+                                        "drive.waveform.file"};
+    const char *kinds[DEA_STUDIES], *overs[DEA_STUDIES + 1];
+    for (dea_study_kind kind = 0; kind < DEA_STUDIES; kind++) {
+        kinds[kind] = dea_study_at(kind)->path;
+    }
+    group_settle(self, waves, sizeof waves / sizeof *waves, path);
+    group_settle(self, kinds, DEA_STUDIES, path);
+    group_settle(self, overs, list_overs(overs), path);
 }
 
 /* A setting of one law takes the constants of another in the file away. */
@@ -175,11 +194,13 @@ static dea_status graft(setting_reader *self, const dea_ref *ref, dea_node *node
 /* Where the axes of `over` stand: where the scene has them, else where the setting says. */
 static const char *axes_path(const setting_reader *self, const char *said)
 {
-    static const char *const overs[] = {"study.over", "study.transient.over", "study.ac.over"};
-    if (strcmp(said, "study.sweep") == 0) {
-        return said;
+    const char *overs[DEA_STUDIES + 1];
+    const size_t count = list_overs(overs);
+    bool member = false;
+    for (size_t i = 0; i < count; i++) {
+        member = member || strcmp(said, overs[i]) == 0;
     }
-    for (size_t i = 0; i < sizeof overs / sizeof *overs; i++) {
+    for (size_t i = 0; member && i < count; i++) {
         if (dea_tree_find(self->reader->root, overs[i])) {
             return overs[i];
         }
@@ -241,13 +262,12 @@ static dea_status fail_unknown(setting_reader *self)
  */
 static const char *axis_name(const char *name, const char **path)
 {
-    static const char *const paths[] = {"study.sweep", "study.over", "study.transient.over", "study.ac.over"};
     const size_t front = strlen("study.");
-    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
-        const char *start = strncmp(name, "study.", front) == 0 ? paths[i] : paths[i] + front;
+    for (int kind = -1; kind < DEA_STUDIES; kind++) {
+        *path = kind < 0 ? "study.over" : dea_study_at((dea_study_kind)kind)->axes;
+        const char *start = strncmp(name, "study.", front) == 0 ? *path : *path + front;
         const size_t length = strlen(start);
         if (strncmp(name, start, length) == 0 && name[length] == '.') {
-            *path = paths[i];
             return name + length + 1;
         }
     }

@@ -4,70 +4,14 @@
 #include <string.h>
 
 #include "scene/reader.h"
-#include "support/number.h"
-
-enum { PER_DECADE_MAX = 10000 };
-
-static const char *const kinds[] = {[DEA_STUDY_SWEEP] = "sweep", [DEA_STUDY_TRANSIENT] = "transient", [DEA_STUDY_AC] = "ac"};
-enum { KINDS = sizeof kinds / sizeof *kinds };
-
-static dea_status window_read(dea_reader *reader, const dea_ref *ref, const dea_node *node, dea_window *window)
-{
-    *window = (dea_window){.from = NAN, .to = NAN};
-    const dea_status status = node->kind == DEA_NODE_MAPPING ? dea_reader_children(reader, ref->path, node)
-                                                             : dea_reader_refuse(reader, ref, node, "not a window");
-    if (!status && (isnan(window->from) || isnan(window->to))) {
-        return dea_reader_refuse(reader, ref, node, isnan(window->from) ? "from is missing" : "to is missing");
-    }
-    return status;
-}
-
-/* One window, or a list of them. */
-dea_status dea_read_average(dea_reader *reader, const dea_ref *ref, const dea_node *node)
-{
-    dea_transient *transient = &reader->scene->transient;
-    if (node->kind != DEA_NODE_SEQUENCE) {
-        transient->average_count = 1;
-        return window_read(reader, ref, node, &transient->averages[0]);
-    }
-    if (node->count > DEA_WINDOWS) {
-        return dea_reader_refuse(reader, ref, node, "too many windows");
-    }
-    dea_status status = DEA_OK;
-    for (const dea_node *window = node->first; window && !status; window = window->next) {
-        char path[DEA_NAME_LENGTH];
-        dea_ref own;
-        const size_t index = transient->average_count++;
-        snprintf(path, sizeof path, "study.transient.average.%zu", index);
-        status =
-            dea_key_find(path, &own) ? window_read(reader, &own, window, &transient->averages[index]) : dea_reader_memory(reader);
-    }
-    return status;
-}
-
-dea_status dea_read_start(dea_reader *reader, const dea_ref *ref, const dea_node *node)
-{
-    static const char *const words[] = {"rest", "bias", NULL};
-    size_t index = 0;
-    const dea_status status = dea_reader_word(reader, ref, node, words, &index);
-    reader->scene->transient.from_bias = !status && index == 1;
-    return status;
-}
-
-dea_status dea_read_points_per_decade(dea_reader *reader, const dea_ref *ref, const dea_node *node)
-{
-    if (node->kind != DEA_NODE_SCALAR || !dea_count_read(node->text, PER_DECADE_MAX, &reader->scene->ac.points_per_decade)) {
-        return dea_reader_refuse(reader, ref, node, "out of range");
-    }
-    return DEA_OK;
-}
+#include "study/study.h"
 
 static dea_status kind_find(dea_reader *reader, const dea_node *study)
 {
     const dea_node *found = NULL;
     for (const dea_node *child = study->first; child; child = child->next) {
-        for (size_t i = 0; i < KINDS; i++) {
-            if (strcmp(child->key, kinds[i]) != 0) {
+        for (dea_study_kind kind = 0; kind < DEA_STUDIES; kind++) {
+            if (strcmp(child->key, dea_study_at(kind)->name) != 0) {
                 continue;
             }
             if (found) {
@@ -75,7 +19,7 @@ static dea_status kind_find(dea_reader *reader, const dea_node *study)
                                       found->key, child->key);
             }
             found = child;
-            reader->scene->study = (dea_study_kind)i;
+            reader->scene->study = kind;
         }
     }
     return found ? DEA_OK
@@ -107,7 +51,7 @@ static dea_status drive_settle(dea_reader *reader)
     dea_scene *scene = reader->scene;
     dea_given *voltage = dea_reader_given(reader, offsetof(dea_scene, drive.voltage));
     const dea_node *waveform = dea_tree_find(reader->root, "drive.waveform");
-    const bool transient = scene->study == DEA_STUDY_TRANSIENT;
+    const bool transient = dea_study_of(scene)->waveform;
     if (transient && !waveform) {
         return dea_place_fail(
             dea_reader_place(reader, offsetof(dea_scene, drive.voltage), "drive"), reader->error, "drive.waveform",
@@ -130,30 +74,28 @@ static dea_status drive_settle(dea_reader *reader)
     } else {
         return dea_place_fail(&waveform->key_at, reader->error, "drive.waveform",
                               "belongs to study.transient, but the study is %s; accepted: drive.voltage, e.g. 4500 V",
-                              scene->study == DEA_STUDY_AC ? "ac" : "sweep");
+                              dea_study_of(scene)->name);
     }
     return DEA_OK;
 }
 
-/* Axes stand in study.sweep, or in `over` beside or inside the other studies. */
+/* Axes stand in the study's own mapping, or, of runs, in `over` beside it. */
 static dea_status axes_find(dea_reader *reader, const dea_node **axes)
 {
-    const dea_scene *scene = reader->scene;
+    const dea_study *study = dea_study_of(reader->scene);
     const dea_node *over = dea_tree_find(reader->root, "study.over");
-    const char *const inner = scene->study == DEA_STUDY_AC ? "study.ac.over" : "study.transient.over";
-    const dea_node *inside = dea_tree_find(reader->root, inner);
-    if (scene->study == DEA_STUDY_SWEEP) {
-        reader->axes = "study.sweep";
-        *axes = dea_tree_find(reader->root, reader->axes);
-        return over ? dea_place_fail(&over->key_at, reader->error, "study.over",
-                                     "belongs to transient and ac; accepted: its axes in study.sweep")
-                    : DEA_OK;
+    const dea_node *inside = dea_tree_find(reader->root, study->axes);
+    if (over && !study->along) {
+        return dea_place_fail(&over->key_at, reader->error, "study.over", "is not for a %s; accepted: its axes in %s", study->name,
+                              study->axes);
     }
-    reader->axes = inside ? inner : "study.over";
+    if (over && inside) {
+        return dea_place_fail(&over->key_at, reader->error, "study.over", "contradicts %s, which is given too; give one of them",
+                              study->axes);
+    }
+    reader->axes = inside || !study->along ? study->axes : "study.over";
     *axes = inside ? inside : over;
-    return over && inside ? dea_place_fail(&over->key_at, reader->error, "study.over",
-                                           "contradicts %s, which is given too; give one of them", inner)
-                          : DEA_OK;
+    return DEA_OK;
 }
 
 dea_status dea_reader_study(dea_reader *reader)
@@ -177,82 +119,17 @@ dea_status dea_reader_study(dea_reader *reader)
     return dea_reader_axes(reader, axes);
 }
 
-static dea_status fail_value(dea_reader *reader, size_t offset, const char *parent, const char *path, const char *what,
-                             double value, const char *accepted)
+dea_status dea_reader_bias(dea_reader *reader, double *bias)
 {
-    return dea_place_fail(dea_reader_place(reader, offset, parent), reader->error, path, "%s (%g s); accepted: %s", what, value,
-                          accepted);
-}
-
-static dea_status windows_finish(dea_reader *reader)
-{
-    const dea_transient *transient = &reader->scene->transient;
-    for (size_t i = 0; i < transient->average_count; i++) {
-        const dea_window *window = &transient->averages[i];
-        const size_t from = offsetof(dea_scene, transient.averages) + i * sizeof *window + offsetof(dea_window, from);
-        const size_t to = offsetof(dea_scene, transient.averages) + i * sizeof *window + offsetof(dea_window, to);
-        const char *path = dea_reader_given(reader, to)->ref.path;
-        if (window->to > transient->until) {
-            return fail_value(reader, to, "study.transient.average", path, "beyond the end of the run", window->to,
-                              "a time <= until");
-        }
-        if (!(window->from < window->to)) {
-            return fail_value(reader, from, "study.transient.average", dea_reader_given(reader, from)->ref.path, "out of range",
-                              window->from, "a time >= 0 and < to");
-        }
-    }
-    return DEA_OK;
-}
-
-static dea_status transient_finish(dea_reader *reader)
-{
-    dea_transient *transient = &reader->scene->transient;
-    const size_t every = offsetof(dea_scene, transient.every);
-    if (isnan(transient->until)) {
-        return dea_reader_missing(reader, "study.transient", "study.transient.until");
-    }
-    transient->every = isnan(transient->every) ? transient->until / 1000.0 : transient->every;
-    if (!(transient->every > 0.0 && transient->every <= transient->until)) {
-        return fail_value(reader, every, "study.transient", "study.transient.every", "out of range", transient->every,
-                          "a time > 0 and <= until");
-    }
-    if (!(floor(transient->until / transient->every * (1.0 + 1e-12)) + 1.0 <= DEA_SAMPLES_MAX)) {
-        return fail_value(reader, every, "study.transient", "study.transient.every", "too many samples", transient->every,
-                          "at most 4000000 samples up to until");
-    }
-    double whole;
-    transient->grid = dea_number_power(transient->every, &whole);
-    return windows_finish(reader);
-}
-
-static dea_status ac_finish(dea_reader *reader)
-{
-    const dea_scene *scene = reader->scene;
-    dea_ac *ac = &reader->scene->ac;
-    if (isnan(ac->from) || isnan(ac->to)) {
-        return dea_reader_missing(reader, "study.ac", isnan(ac->from) ? "study.ac.from" : "study.ac.to");
-    }
-    const dea_place *place = dea_reader_place(reader, offsetof(dea_scene, ac.to), "study.ac");
-    if (!(ac->from <= ac->to)) {
-        return dea_place_fail(place, reader->error, "study.ac.to", "out of range (%g Hz); accepted: a frequency >= from, %g Hz",
-                              ac->to, ac->from);
-    }
-    if (!(ceil(log10(ac->to / ac->from) * (double)ac->points_per_decade) + 1.0 <= DEA_SAMPLES_MAX)) {
-        return dea_place_fail(place, reader->error, "study.ac.to",
-                              "too many frequencies (%g Hz); accepted: at most 4000000 from %g Hz on", ac->to, ac->from);
-    }
-    ac->bias = isnan(ac->bias) ? scene->drive.voltage : ac->bias;
-    if (isnan(ac->bias)) {
-        return dea_place_fail(&dea_tree_find(reader->root, "study.ac")->place, reader->error, "study.ac.bias",
-                              "missing; accepted: a voltage, e.g. 4500 V, here or as drive.voltage");
-    }
-    return DEA_OK;
+    const dea_study *study = dea_study_of(reader->scene);
+    *bias = isnan(*bias) ? reader->scene->drive.voltage : *bias;
+    return isnan(*bias) ? dea_place_fail(&dea_tree_find(reader->root, study->path)->place, reader->error, study->bias,
+                                         "missing; accepted: a voltage, e.g. 4500 V, here or as drive.voltage")
+                        : DEA_OK;
 }
 
 dea_status dea_study_finish(dea_reader *reader)
 {
-    if (reader->scene->study == DEA_STUDY_TRANSIENT) {
-        return transient_finish(reader);
-    }
-    return reader->scene->study == DEA_STUDY_AC ? ac_finish(reader) : DEA_OK;
+    const dea_study *study = dea_study_of(reader->scene);
+    return study->finish ? study->finish(reader) : DEA_OK;
 }

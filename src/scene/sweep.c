@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "scene/reader.h"
+#include "study/study.h"
 #include "support/number.h"
 
 /* Most points of one axis, values of all axes together, and points of a study. */
@@ -205,9 +206,10 @@ static dea_status place_check(const axis_reader *self)
 {
     const dea_key *key = &self->ref.key;
     dea_reader *reader = self->reader;
-    if (reader->scene->study == DEA_STUDY_AC && dea_ref_offset(&self->ref) == offsetof(dea_scene, drive.voltage)) {
+    const char *bias = dea_study_of(reader->scene)->bias;
+    if (bias && dea_ref_offset(&self->ref) == offsetof(dea_scene, drive.voltage)) {
         return dea_place_fail(&self->node->key_at, reader->error, self->ref.path,
-                              "is not what an AC study varies; accepted: study.ac.bias, by its short name bias");
+                              "is not what this study varies; accepted: %s, by its short name bias", bias);
     }
     if (key->law || dea_key_has_place(key, reader->root)) {
         return DEA_OK;
@@ -248,7 +250,8 @@ static void axis_describe(const axis_reader *self)
     snprintf(axis->unit, sizeof axis->unit, "%s", self->ref.key.unit);
     dea_ref_column(&self->ref, self->ref.key.words, axis->column);
     axis->offset = dea_ref_offset(&self->ref);
-    axis->changes_film = strncmp(axis->key, "material.", 9) == 0 || axis->offset == offsetof(dea_scene, actuator.prestretch);
+    axis->changes_film = strncmp(axis->key, "material.", 9) == 0 || axis->offset == offsetof(dea_scene, actuator.prestretch) ||
+                         axis->offset == offsetof(dea_scene, actuator.layers);
 }
 
 static dea_status axis_read(const axis_reader *self)
@@ -310,7 +313,7 @@ static dea_status axes_read(dea_reader *reader, const dea_node *axes)
 /* The focal length is a column of its own: an axis of it takes more of its path too. */
 static bool column_taken(const dea_scene *scene, size_t index)
 {
-    if (scene->study != DEA_STUDY_AC && strcmp(scene->axes[index].column, "focal_length_m") == 0) {
+    if (!dea_study_of(scene)->phasors && strcmp(scene->axes[index].column, "focal_length_m") == 0) {
         return true;
     }
     for (size_t i = 0; i < scene->axis_count; i++) {

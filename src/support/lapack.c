@@ -5,7 +5,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-#define LAPACK_LIST(X) X(dgeev) X(dgels) X(dgesvd) X(dgetrf) X(dgetri)
+#define LAPACK_LIST(X) X(dgeev) X(dgels) X(dgesvd) X(dgetrf) X(dgetri) X(dposv) X(dsyev)
 
 typedef struct lapack {
 #define X(name) __typeof__(&LAPACKE_##name) name;
@@ -167,4 +167,16 @@ lapack_int dea_lapacke_dgetri(int layout, lapack_int n, double *a, lapack_int ld
 {
     lapack l;
     return find(&l) ? l.dgetri(layout, n, a, lda, ipiv) : DEA_LAPACK_MISSING;
+}
+
+lapack_int dea_lapacke_dposv(int layout, char uplo, lapack_int n, lapack_int nrhs, double *a, lapack_int lda, double *b, lapack_int ldb)
+{
+    lapack l;
+    return find(&l) ? l.dposv(layout, uplo, n, nrhs, a, lda, b, ldb) : DEA_LAPACK_MISSING;
+}
+
+lapack_int dea_lapacke_dsyev(int layout, char jobz, char uplo, lapack_int n, double *a, lapack_int lda, double *w)
+{
+    lapack l;
+    return find(&l) ? l.dsyev(layout, jobz, uplo, n, a, lda, w) : DEA_LAPACK_MISSING;
 }

@@ -22,5 +22,7 @@ lapack_int dea_lapacke_dgesvd(int layout, char jobu, char jobvt, lapack_int m, l
                               double *u, lapack_int ldu, double *vt, lapack_int ldvt, double *superb);
 lapack_int dea_lapacke_dgetrf(int layout, lapack_int m, lapack_int n, double *a, lapack_int lda, lapack_int *ipiv);
 lapack_int dea_lapacke_dgetri(int layout, lapack_int n, double *a, lapack_int lda, const lapack_int *ipiv);
+lapack_int dea_lapacke_dposv(int layout, char uplo, lapack_int n, lapack_int nrhs, double *a, lapack_int lda, double *b, lapack_int ldb);
+lapack_int dea_lapacke_dsyev(int layout, char jobz, char uplo, lapack_int n, double *a, lapack_int lda, double *w);
 
 #endif

@@ -587,7 +587,8 @@ static bool pass_edges(motion *m, const state *from, long double time, long doub
     const long double begin = m->segment->from;
     for (size_t i = 0; i < 2 * transient->average_count; i++) {
         const dea_window *window = &transient->averages[i / 2];
-        const double edge = i % 2 == 0 ? window->from : window->to;
+        const double end = m->signal.segments[m->signal.count - 1].to; /* next to `until`, which may round to the other side */
+        const double edge = fmin(i % 2 == 0 ? window->from : window->to, end);
         const long double here = fminl((long double)edge - begin, h + time);
         const bool ends = edge >= m->segment->to && time + h >= (long double)m->segment->to - begin;
         state s = here > time ? *to : *from;

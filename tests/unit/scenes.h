@@ -39,6 +39,7 @@ static inline dea_scene paper_scene(dea_kind kind, double prestretch, double cov
                      .divide_radius = (double)NAN,
                      .film_thickness = 1e-4,
                      .prestretch = prestretch,
+                     .layers = 1.0,
                      .electrode_mass = (double)NAN,
                      .focal_length = (double)NAN,
                      .refractive_index = (double)NAN},

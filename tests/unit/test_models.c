@@ -612,6 +612,45 @@ static void field_takes_no_jump_for_a_root(void **state)
     assert_relative(row.strain, -0.47087787021, 1e-10);
 }
 
+/* A lens of rings far in slack: the second-order answer lies next to the film's end, where the load is so large that a cubic
+ * through it and rest does not move. The strain grows with the voltage, past it and around it. */
+static void a_lens_of_rings_takes_no_standstill_for_a_root(void **state)
+{
+    (void)state;
+    dea_scene scene = paper_scene(DEA_LENS, 1.2746296253123925, 0.35482306232900773, 999.35213887746715);
+    scene.material.constants[0] = 22538.403520823504;
+    scene.material.constants[1] = -3818.7038979733816;
+    scene.material.constants[2] = 654.14895958021577;
+    scene.material.permittivity = 8.6512402408187832 - 0.47491610590986211 * 1.2746296253123925;
+    scene.actuator.film_thickness = 1.8486513392511577e-05;
+    const judged_balance balance = judged_ring_of(&scene);
+    assert_relative(solve_direct(&scene, "ring").strain, -judge_balance(&balance, 10000).strain, 1e-12);
+    double before = 0.0;
+    for (scene.drive.voltage = 700.0; scene.drive.voltage < 2000.0; scene.drive.voltage += 0.5) {
+        const double strain = solve_direct(&scene, "ring").strain;
+        assert_true(strain < before && strain > -0.6);
+        before = strain;
+    }
+}
+
+/* Linear films let the edge of a lens' disc pass the centre. Where it comes to the frame's radius on the other side, the annulus has
+ * lost its area, and its true field E = U lambda_pre^2/H (1 - B^2 (1 + s)^2)/(1 - B^2) its leading digits: in long double from the
+ * constants, s = -(1 - B) eps lambda_pre^4 (U/H)^2/Y of `lumped`. */
+static void a_vanishing_annulus_keeps_the_digits_of_its_field(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 20; k++) {
+        dea_scene scene = paper_scene(DEA_LENS, 1.3 + 0.03 * k, 0.5, 1.0);
+        scene.material.modulus = 1e6;
+        const long double h = scene.actuator.film_thickness, y = (long double)scene.actuator.prestretch * scene.actuator.prestretch;
+        const long double unit = 0.5L * (2.8 * DEA_EPSILON_0) * y * y / (h * h) / 1e6L; /* -s per U^2 */
+        scene.drive.voltage = (double)sqrtl((3.0L + 1e-3L) / unit);
+        const long double volts = scene.drive.voltage, edge = 0.5L * (1.0L - unit * volts * volts);
+        const long double field = fabsl(volts * y / h * (1.0L - edge) * (1.0L + edge) / 0.75L);
+        assert_relative(solve_direct(&scene, "lumped").field, (double)field, 5e-13);
+    }
+}
+
 /* An iteration that dawdles at the top of the load curve, 3 % below the load, must not be taken for an equilibrium. */
 static void load_above_the_fold_is_pull_in_however_close(void **state)
 {
@@ -862,6 +901,8 @@ int main(void)
         cmocka_unit_test(equilibrium_behind_a_fold_is_pull_in),
         cmocka_unit_test(load_above_the_fold_is_pull_in_however_close),
         cmocka_unit_test(field_takes_no_jump_for_a_root),
+        cmocka_unit_test(a_lens_of_rings_takes_no_standstill_for_a_root),
+        cmocka_unit_test(a_vanishing_annulus_keeps_the_digits_of_its_field),
         cmocka_unit_test(snap_through_without_a_fold_is_followed),
         cmocka_unit_test(hyperelastic_models_balance_their_forces_at_random_points),
         cmocka_unit_test(field_agrees_with_runge_kutta_over_the_radius),

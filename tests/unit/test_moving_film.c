@@ -286,6 +286,7 @@ static void a_film_that_bounces_keeps_its_accuracy(void **state)
                                     .divide_radius = (double)NAN,
                                     .film_thickness = 0.00020965386804276223,
                                     .prestretch = 1.0725777575308943,
+                                    .layers = 1.0,
                                     .electrode_mass = (double)NAN,
                                     .focal_length = (double)NAN,
                                     .refractive_index = (double)NAN};
@@ -518,6 +519,7 @@ static void a_small_resistance_damps_a_ring(void **state)
                                     .divide_radius = (double)NAN,
                                     .film_thickness = 3.0533e-4,
                                     .prestretch = 1.05,
+                                    .layers = 1.0,
                                     .electrode_mass = (double)NAN,
                                     .focal_length = (double)NAN,
                                     .refractive_index = (double)NAN};

@@ -95,7 +95,7 @@ static dea_scene scene_make(size_t axis_count, const size_t *counts, size_t mode
     strcpy(title, "test");
     dea_scene scene = {.title = title, .accuracy = 1e-6, .models = {&lumped, &coverage}, .model_count = models, .axes = axes};
     scene.axis_count = axis_count;
-    scene.actuator = (dea_actuator){DEA_DOT, 0.03, 0.5, NAN, 1e-4, 1.2, NAN, NAN, NAN};
+    scene.actuator = (dea_actuator){DEA_DOT, 0.03, 0.5, NAN, 1e-4, 1.2, NAN, NAN, NAN, 1.0};
     scene.drive = (dea_drive){.voltage = 4500.0, .series_resistance = NAN, .leakage_resistance = NAN};
     scene.material =
         (dea_material){.name = "test film", .source = "nowhere", .law = dea_law_find("yeoh"),

@@ -356,10 +356,30 @@ static void mean_of_a_film_that_follows_its_voltage_is_that_of_its_square(void *
     true_run_free(&run);
 }
 
+/* The last of ten intervals of a tenth of `until` may end a rounding before it: a window up to `until` ends with the run. */
+static void a_window_ends_with_a_run_that_rounds(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+        "material: {base: elastosil-2030, retardation: 0.1 ms}\ndrive: {waveform: {step: {on: 0.1 ms, voltage: 4 kV}}}\n"
+        "model: lumped\nstudy: {transient: {until: 0.00064916842341201377 s, every: 6.4916842341201375e-05 s, "
+        "average: [{from: 0 s, to: 0.00064916842341201377 s}]}}\n";
+    judged j;
+    tally counted = {0};
+    char line[LINE] = "";
+    assert_true(judge_open(&j, text, 0));
+    assert_true(dea_layout_place(&j.scene, 10) < j.scene.transient.until);
+    assert_false(judge_engine(&j, dea_engine_find("direct"), 1e-9, &counted, line, sizeof line));
+    assert_int_equal(counted.delivered, 1);
+    judge_close(&j);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mean_of_a_film_that_follows_its_voltage_is_that_of_its_square),
+        cmocka_unit_test(a_window_ends_with_a_run_that_rounds),
         cmocka_unit_test(the_truth_of_a_ring_is_its_closed_form),
         cmocka_unit_test(the_truth_of_a_slow_film_ends_at_rest),
         cmocka_unit_test(static_truths_are_the_reference_numbers),

@@ -3,6 +3,7 @@
 #include "engine/direct/direct.h"
 #include "engine/engines.h"
 #include "engine/line.h"
+#include "study/study.h"
 
 typedef struct visit_state {
     const dea_model *model;
@@ -14,7 +15,7 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
     if (!model->solve) {
         return "it has no equation of its own";
     }
-    const char *why = scene->study == DEA_STUDY_TRANSIENT ? dea_direct_refuses_transient(scene, model) : NULL;
+    const char *why = dea_study_of(scene)->timed ? dea_direct_refuses_transient(scene, model) : NULL;
     if (why) {
         return why;
     }

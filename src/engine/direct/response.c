@@ -1,10 +1,10 @@
-/* Frequency response: the moving network linearised about the equilibrium under the bias. */
+/* Frequency response: the moving network, or the membrane itself, linearised about the equilibrium under the bias. */
 #include <complex.h>
 #include <math.h>
 
 #include "deaspice/measures.h"
 #include "engine/direct/direct.h"
-#include "network/dynamics.h"
+#include "engine/direct/radial.h"
 
 /* Dynamic stiffness at an equilibrium under the film voltage U,
  *   -m w^2 + d(A S - phi U^2)/du + A S' [i w tau_KV + sum c_i i w tau_i/(1 + i w tau_i)]. */
@@ -26,15 +26,12 @@ static double degrees(double complex z)
     return angle > -180.0 ? angle : 180.0;
 }
 
-/* Per volt on the film: u = 2 phi U/D, q = C + C' U u; then the source sees U_s = U_f + R_s (i w q + U_f/R_p). */
-static dea_response response_at(const dea_dynamics *d, const dea_edge *e, double bias, double relaxed, double frequency)
+/* What the source sees of a film with these answers per volt: U_s = U_f + R_s (i w q + U_f/R_p). */
+static dea_response response_of(const dea_dynamics *d, const dea_per_volt *film, double frequency)
 {
-    const double omega = 2.0 * DEA_PI * frequency;
-    const double complex u = 2.0 * e->push * bias / dynamic_stiffness(d, e, relaxed, omega);
-    const double complex charge = e->capacitance + e->capacitance_slope * bias * u;
-    const double complex current = I * (omega * charge) + d->conductance;
+    const double complex current = I * (2.0 * DEA_PI * frequency * film->charge) + d->conductance;
     const double complex source = 1.0 + d->series * current;
-    const double complex gain = u / source;
+    const double complex gain = film->displacement / source;
     const double complex impedance = source / current;
     return (dea_response){.frequency = frequency,
                           .displacement = cabs(gain),
@@ -43,16 +40,42 @@ static dea_response response_at(const dea_dynamics *d, const dea_edge *e, double
                           .impedance_phase = degrees(impedance)};
 }
 
-/* The film under its bias. */
+/* The film under its bias: of one node, or a membrane. */
 typedef struct biased {
-    const dea_dynamics *dynamics;
+    dea_dynamics *dynamics;
+    double bias;  /* of the film [V] */
+    dea_state state;
+    bool held;    /* there is an equilibrium */
+    double accuracy;
     dea_edge edge;
-    double bias, relaxed; /* of the film [V], its stiffness [N/m] */
+    double relaxed;         /* stiffness of the node [N/m] */
+    dea_radial *radial; /* borrowed; NULL: one node */
 } biased;
+
+/* Per volt on the film: u = 2 phi U/D, q = C + C' U u. */
+static bool answer_of(const biased *b, double frequency, dea_per_volt *answer)
+{
+    if (b->radial) {
+        return dea_radial_answer(b->radial, frequency, b->accuracy, answer);
+    }
+    const dea_edge *e = &b->edge;
+    const double complex u = 2.0 * e->push * b->bias / dynamic_stiffness(b->dynamics, e, b->relaxed, 2.0 * DEA_PI * frequency);
+    *answer = (dea_per_volt){u, e->capacitance + e->capacitance_slope * b->bias * u};
+    return true;
+}
 
 static dea_response biased_response(const biased *b, double frequency)
 {
-    return response_at(b->dynamics, &b->edge, b->bias, b->relaxed, frequency);
+    const double none = (double)NAN;
+    dea_per_volt answer;
+    dea_response response = {frequency, none, none, none, none, b->state};
+    if (b->held && answer_of(b, frequency, &answer)) {
+        response = response_of(b->dynamics, &answer, frequency);
+        response.state = b->state;
+    } else if (b->held) {
+        response.state = DEA_STATE_FAILED;
+    }
+    return response;
 }
 
 static bool magnitudes(void *user, double from, double to, size_t count, double *out)
@@ -63,34 +86,73 @@ static bool magnitudes(void *user, double from, double to, size_t count, double 
     return true;
 }
 
-static void respond(dea_dynamics *d, const dea_scene *scene, dea_response *rows, size_t count, dea_band *band)
+/* Fills rows and band; the number of rows without an answer. */
+static size_t respond(biased *b, const dea_scene *scene, dea_response *rows, dea_band *band)
 {
-    const double none = (double)NAN;
-    biased b = {.dynamics = d, .bias = scene->ac.bias / (1.0 + d->series * d->conductance)};
-    dea_sample rest = {.state = DEA_STATE_PULL_IN};
-    dea_moment moment = {.source = scene->ac.bias, .voltage = b.bias};
-    const bool held = dea_dynamics_equilibrium(d, b.bias, &moment.u) && dea_dynamics_sample(d, &moment, &rest);
-    b.edge = dea_dynamics_edge(d, held ? moment.u : 0.0);
-    b.relaxed = held ? dea_dynamics_stiffness(d, moment.u, b.bias, true) : none;
+    const size_t count = dea_layout_of(scene).rows;
+    size_t failed = 0;
     for (size_t i = 0; i < count; i++) {
-        const double frequency = dea_layout_place(scene, i);
-        rows[i] = held ? biased_response(&b, frequency) : (dea_response){frequency, none, none, none, none, rest.state};
-        rows[i].state = rest.state;
+        rows[i] = biased_response(b, dea_layout_place(scene, i));
+        failed += rows[i].state == DEA_STATE_FAILED ? 1 : 0;
     }
     if (band) {
-        *band = dea_measure_band(rows, count, held ? magnitudes : NULL, &b);
+        *band = dea_measure_band(rows, count, b->held ? magnitudes : NULL, b);
     }
+    return failed;
+}
+
+/* The voltage that leakage leaves the film of the source's. */
+static double film_bias(const dea_dynamics *d, const dea_scene *scene)
+{
+    return scene->ac.bias / (1.0 + d->series * d->conductance);
+}
+
+static dea_status respond_node(const dea_scene *scene, const dea_model *model, dea_response *rows, dea_band *band, dea_error *error)
+{
+    dea_dynamics d;
+    const dea_status status = dea_dynamics_open(scene, model, &d, error);
+    if (status == DEA_OK) {
+        dea_sample rest = {.state = DEA_STATE_PULL_IN};
+        dea_moment moment = {.source = scene->ac.bias, .voltage = film_bias(&d, scene)};
+        biased b = {.dynamics = &d, .bias = moment.voltage};
+        b.held = dea_dynamics_equilibrium(&d, b.bias, &moment.u) && dea_dynamics_sample(&d, &moment, &rest);
+        b.state = rest.state;
+        b.edge = dea_dynamics_edge(&d, b.held ? moment.u : 0.0);
+        b.relaxed = b.held ? dea_dynamics_stiffness(&d, moment.u, b.bias, true) : (double)NAN;
+        respond(&b, scene, rows, band);
+    }
+    dea_dynamics_close(&d);
+    return status;
+}
+
+static dea_status respond_radius(const dea_scene *scene, const dea_model *model, dea_response *rows, dea_band *band,
+                                   dea_error *error)
+{
+    dea_dynamics d;
+    const dea_status status = dea_dynamics_settle(scene, model, &d, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    d.point.voltage = film_bias(&d, scene);
+    dea_radial radial;
+    dea_radial_open(&d, scene, &radial);
+    biased b = {.dynamics = &d,
+                .bias = d.point.voltage,
+                .state = radial.rest.state,
+                .held = isfinite(radial.rest.strain),
+                .accuracy = scene->accuracy,
+                .radial = &radial};
+    const size_t failed = respond(&b, scene, rows, band);
+    if (failed > 0) {
+        dea_fail(error, DEA_OK, "%zu frequencies failed: two meshes of the film do not agree within the accuracy", failed);
+    }
+    dea_radial_close(&radial);
+    return DEA_OK;
 }
 
 dea_status dea_direct_ac(void *session, const dea_scene *scene, const dea_model *model, dea_response *rows, dea_band *band,
                          dea_error *error)
 {
     (void)session;
-    dea_dynamics dynamics;
-    const dea_status status = dea_dynamics_open(scene, model, &dynamics, error);
-    if (status == DEA_OK) {
-        respond(&dynamics, scene, rows, dea_layout_of(scene).rows, band);
-    }
-    dea_dynamics_close(&dynamics);
-    return status;
+    return (model->membrane ? respond_radius : respond_node)(scene, model, rows, band, error);
 }

@@ -32,6 +32,9 @@ const char *dea_direct_refuses_transient(const dea_scene *scene, const dea_model
     const dea_waveform *wave = &scene->drive.waveform;
     dea_point point;
     dea_linear linear;
+    if (model->membrane) {
+        return "it has no equation of the moving membrane";
+    }
     if (!model->linear) {
         return "its springs are not linear, so that a transient has no closed form";
     }

@@ -119,7 +119,8 @@ static dea_status transient(void *session, const dea_scene *scene, const dea_mod
                             dea_summary *summary, dea_error *error)
 {
     const session_state *state = session;
-    return dea_transient_solve(&state->sundials, scene, model, samples, summary, error);
+    const bool membrane = model->membrane;
+    return (membrane ? dea_rings_transient_solve : dea_transient_solve)(&state->sundials, scene, model, samples, summary, error);
 }
 
 static void library(char *text, size_t size)

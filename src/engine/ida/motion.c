@@ -68,11 +68,7 @@ void dea_motion_open(dea_dynamics *d, const dea_signal *signal, dea_motion *m)
 
 double dea_motion_source(const dea_motion *m, double time)
 {
-    const dea_segment *segment = m->segment;
-    if (segment->sine || segment->start == segment->end) {
-        return dea_segment_voltage(m->signal, segment, segment->from + time);
-    }
-    return segment->start + (segment->end - segment->start) * fmin(time / (segment->to - segment->from), 1.0);
+    return dea_segment_voltage_since(m->signal, m->segment, time);
 }
 
 double dea_motion_slope(const dea_motion *m, double time)

@@ -26,6 +26,14 @@ static const double finest = 1e-13;
 /* Share of s11 at rest below which a film that cannot be followed any further has come to its end. */
 static const double nearly = 0.1;
 
+/* What limits the film at a place. */
+typedef struct limits {
+    double x;
+    double stress;                /* smaller in-plane nominal stress [Pa] */
+    double hoop, hoop_slope;      /* [Pa] */
+    double area, area_slope;      /* lambda_1 lambda_2 [1] */
+} limits;
+
 /* Integrand of the capacitance, q = (lambda_1 lambda_2)^2 exp(2 x), at one place. */
 typedef struct panel {
     double x, value, slope;
@@ -50,7 +58,8 @@ struct dea_shooting {
     double largest_area; /* largest lambda_1 lambda_2 of the electroded region [1] */
     double edge_force;   /* lambda_1 lambda_2^2 of the electroded side at r_a [1] */
     double radial;       /* lambda_1 behind r_a [1] */
-    panel end;           /* of the last step */
+    limits limits;       /* at the end of the last step */
+    panel end;           /* and there */
     double charge;       /* int (lambda_1 lambda_2)^2 exp(2 x) dx up to there [1] */
 };
 
@@ -102,17 +111,49 @@ static void set_load(dea_shooting *s, double share)
     s->annulus_k = dot ? 0.0 : share * s->pressure;
 }
 
-/* Notes stresses and area at one place of the annulus. */
-static void note(dea_shooting *s)
+/* What limits the film at a place of the annulus: smaller stress, hoop stress and area, the last two with their slopes. */
+static limits limits_at(const dea_shooting *s, double x)
 {
-    const sunrealtype *v = NV_DATA_S(s->integrator.y);
-    const double l1 = s->point->film.prestretch + s->strain * v[RADIAL];
-    const double l2 = s->point->film.prestretch + s->strain * v[HOOP];
+    const sunrealtype *v = NV_DATA_S(s->integrator.y), *slope = NV_DATA_S(s->integrator.yp);
+    const double l1 = s->point->film.prestretch + s->strain * v[RADIAL], l1_slope = s->strain * slope[RADIAL];
+    const double l2 = s->point->film.prestretch + s->strain * v[HOOP], l2_slope = s->strain * slope[HOOP];
+    const double k = s->annulus_k;
     const dea_stress stress = stress_at(&s->point->film, l1, l2);
-    s->least_stress =
-        fmin(s->least_stress, fmin(stress.p1 - s->annulus_k * l1 * l2 * l2, stress.p2 - s->annulus_k * l2 * l1 * l1));
+    const double hoop = stress.p2 - k * l2 * l1 * l1;
+    return (limits){.x = x,
+                    .stress = fmin(stress.p1 - k * l1 * l2 * l2, hoop),
+                    .hoop = hoop,
+                    .hoop_slope = (stress.w12 - 2.0 * k * l1 * l2) * l1_slope + (stress.w22 - k * l1 * l1) * l2_slope,
+                    .area = l1 * l2,
+                    .area_slope = l1_slope * l2 + l1 * l2_slope};
+}
+
+/* Largest value of the cubic through two values and slopes over a width; of one that only rises or falls the larger end. */
+static double largest_between(double width, double a, double slope_a, double b, double slope_b)
+{
+    double low = 0.0, high = 1.0;
+    if (!(slope_a > 0.0 && slope_b < 0.0)) {
+        return fmax(a, b);
+    }
+    const double p = width * slope_a, q = width * slope_b, d = b - a;
+    for (int i = 0; i < 50; i++) { /* of its slope p + 2 (3 d - 2 p - q) t + 3 (p + q - 2 d) t^2 */
+        const double t = 0.5 * (low + high);
+        *(p + t * (2.0 * (3.0 * d - 2.0 * p - q) + 3.0 * t * (p + q - 2.0 * d)) > 0.0 ? &low : &high) = t;
+    }
+    return fmax(fmax(a, b), a + low * (p + low * ((3.0 * d - 2.0 * p - q) + low * (p + q - 2.0 * d))));
+}
+
+/* Notes stresses and area at one place of the annulus, and between it and the last. (s1 is least where it crosses s2, which is
+ * smaller to one side of that.) */
+static void note(dea_shooting *s, double x)
+{
+    const limits from = s->limits, to = limits_at(s, x);
+    const double width = to.x - from.x;
+    s->limits = to;
+    s->least_stress = fmin(s->least_stress, to.stress);
+    s->least_stress = fmin(s->least_stress, -largest_between(width, -from.hoop, -from.hoop_slope, -to.hoop, -to.hoop_slope));
     if (s->annulus_k > 0.0) {
-        s->largest_area = fmax(s->largest_area, l1 * l2);
+        s->largest_area = fmax(s->largest_area, largest_between(width, from.area, from.area_slope, to.area, to.area_slope));
     }
 }
 
@@ -177,7 +218,8 @@ static bool start(dea_shooting *s, double edge)
     s->edge_force = lens ? l1 * l * l : l * l * l;
     s->charge = 0.0;
     s->end = panel_at(s, 0.0);
-    note(s);
+    s->limits = limits_at(s, 0.0);
+    note(s, 0.0);
     return true;
 }
 
@@ -194,7 +236,7 @@ static double miss_at_frame(dea_shooting *s, double edge)
     for (int i = 0; i < MOST_STEPS && code == IDA_SUCCESS; i++) {
         code = m->sun->IDASolve(m->ida, length, &x, m->y, m->yp, IDA_ONE_STEP);
         if (code >= 0) {
-            note(s);
+            note(s, x);
             add_charge(s, x);
         }
     }

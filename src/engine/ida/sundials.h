@@ -33,7 +33,7 @@
     X(SUNContext_Create)                                                                                                         \
     X(SUNContext_Free)                                                                                                           \
     X(SUNDIALSGetVersion) X(SUNDIALSGetVersionNumber) X(N_VClone) X(N_VConst) X(N_VDestroy) X(N_VNew_Serial) X(SUNDenseMatrix)   \
-        X(SUNMatDestroy) X(SUNLinSol_Dense) X(SUNLinSolFree) X(IDACalcIC) X(IDACreate) X(IDAFree) X(IDAGetConsistentIC)          \
+        X(SUNMatDestroy) X(SUNLinSol_Dense) X(SUNLinSolFree) X(SUNLinSolNewEmpty) X(SUNLinSolFreeEmpty) X(SUNMatNewEmpty) X(SUNMatFreeEmpty) X(IDACalcIC) X(IDACreate) X(IDAFree) X(IDAGetConsistentIC)          \
             X(IDAGetDky) X(IDAGetLastStep) X(IDAGetRootInfo) X(IDAInit) X(IDAReInit) X(IDARootInit) X(IDASStolerances)           \
                 X(IDASVtolerances) X(IDASetId) X(IDASetJacFn) X(IDASetLinearSolver) X(IDASetMaxConvFails)                        \
                     X(IDASetMaxErrTestFails) X(IDASetMaxNumSteps) X(IDASetMaxOrd) X(IDASetMaxStep) X(IDASetStopTime)             \
@@ -96,5 +96,8 @@ void dea_shooting_solve(dea_shooting *shooting, const dea_point *point, double a
 /* One transient: fills samples and summary, `failed` or `pull_in` from where the run cannot go on. */
 dea_status dea_transient_solve(const dea_sundials *sun, const dea_scene *scene, const dea_model *model, dea_sample *samples,
                                dea_summary *summary, dea_error *error);
+/* The same of the membrane. */
+dea_status dea_rings_transient_solve(const dea_sundials *sun, const dea_scene *scene, const dea_model *model, dea_sample *samples,
+                                     dea_summary *summary, dea_error *error);
 
 #endif

@@ -18,7 +18,7 @@ static const double first_share = 0.1; /* from one tolerance to the next */
 static const double least_tolerance = 1e-14;
 static const double tight = 1e-11; /* a tolerance that sees every ring that rounding leaves */
 /* Accuracies near the engine's best, where two runs share some of their error, so that their difference must lie further below. */
-static const double fine = 1e-8, margin = 0.3;
+static const double fine = 1e-8, margin = 0.3, first_bar = 0.15;
 /* A loose step may carry a film out of its frame that turns back just before it: an end of the motion counts from this tolerance on,
  * and others are tightened by so much towards it. */
 static const double certain = 1e-9, towards = 1e-2;
@@ -111,11 +111,13 @@ static double next_share(double error, double accuracy)
 }
 
 /* What the estimate of two runs must lie below: an undamped film that bounces off its narrow annulus errs by bursts there, which
- * hardly fall from one tolerance to the next, so that both runs share some of it too. */
-static double bar(const dea_flight *flight, double accuracy)
+ * hardly fall from one tolerance to the next, so that both runs share some of it too. The first two runs of a linear film are loose
+ * ones: BDF changes its order and step by jumps, and both may err alike by a few times what they differ by. */
+static double bar(const dea_flight *flight, double accuracy, bool first)
 {
     const dea_dynamics *d = flight->motion.dynamics;
-    return d->mass > 0.0 && !d->linear && accuracy > fine ? margin * accuracy : accuracy;
+    const double share = d->linear ? (first ? first_bar : 1.0) : d->mass > 0.0 ? margin : 1.0;
+    return accuracy > fine ? share * accuracy : accuracy;
 }
 
 /* Leaves the better run of the last two in traces[1]; false where the accuracy was not reached. A run that broke off is good up
@@ -124,7 +126,6 @@ static bool refine(dea_flight *flight, const dea_scales *scales, double accuracy
                    dea_rate_errors *rates)
 {
     double tolerance = first_tolerance(flight, scales, accuracy);
-    const double enough = bar(flight, accuracy);
     double share = first_share;
     bool good = false;
     flight->loosest = tolerance;
@@ -140,7 +141,7 @@ static bool refine(dea_flight *flight, const dea_scales *scales, double accuracy
         tolerance *= share;
         *summary = dea_summary_failed();
         dea_flight_run(flight, tolerance, &traces[1], summary);
-        const double shrinks = pow(share, order);
+        const double shrinks = pow(share, order), enough = bar(flight, accuracy, i == 0);
         const gap apart = difference(flight, scales, &traces[0], &traces[1]);
         const bool failed = traces[1].end == DEA_STATE_FAILED;
         const bool doubtful = traces[1].end == DEA_STATE_PULL_IN && tolerance > certain;

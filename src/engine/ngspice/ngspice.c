@@ -1,4 +1,4 @@
-/* Engine `ngspice`: the network in libngspice. A line of points is one circuit and one DC sweep over the index of the points;
+/* Engine `ngspice`: the network in libngspice; the exact membrane as a network of rings (still.c). A line of points is one circuit and one DC sweep over the index of the points;
  * each answer is then checked against the network (force balance, no fold between rest and it). What does not pass is solved
  * again alone, with the load growing from rest. */
 #include <math.h>
@@ -8,14 +8,16 @@
 #include "engine/line.h"
 #include "engine/ngspice/library.h"
 #include "engine/ngspice/moving.h"
+#include "engine/ngspice/still.h"
+#include "engine/ngspice/stretch.h"
 #include "netlist/netlist.h"
 #include "network/balance.h"
+#include "study/study.h"
 
 enum {
     RAMP_STEPS = 50,
     RAMP_REFINED = 16,
     RAMP_STEPS_MOST = RAMP_STEPS * RAMP_REFINED * RAMP_REFINED,
-    SHORTEST_SWEEP = 32,
     LONGEST_SWEEP = 100000
 };
 
@@ -36,13 +38,10 @@ typedef struct line_job {
 
 static const char *refuses(const dea_scene *scene, const dea_model *model)
 {
-    if (!model->network) {
+    if (!model->network && !model->membrane) {
         return "it has no network form that ngspice could solve";
     }
-    if (scene->study != DEA_STUDY_SWEEP && !model->dynamic) {
-        return "it is a model of statics alone";
-    }
-    if (scene->study == DEA_STUDY_TRANSIENT && scene->accuracy < 1e-6) {
+    if (dea_study_of(scene)->timed && scene->accuracy < 1e-6) {
         return "its trapezoidal rule is good to 1e-6 in a transient, the scene wants more";
     }
     return scene->accuracy < 1e-9 ? "its answers are good to 1e-9, the scene wants more" : NULL;
@@ -106,8 +105,9 @@ static dea_status climb(line_job *job, size_t i, dea_network *network, size_t st
 
 /* Solves one point alone, its load growing from rest; where a step of it takes Newton's iteration past the film's end or to
  * another equilibrium, in finer ones. */
-static dea_status solve_alone(line_job *job, size_t i, dea_error *error)
+static dea_status solve_alone(void *user, size_t i, dea_error *error)
 {
+    line_job *job = user;
     double share, fold;
     const double symbol = symbol_at(job, i);
     *row_at(job, i) = dea_row_failed();
@@ -149,18 +149,18 @@ static dea_status sweep_circuit(line_job *job, size_t from, size_t count, dea_ng
     return status;
 }
 
-/* True where the point has load and an equilibrium, so that a sweep can start there. */
-static bool can_start(line_job *job, size_t i)
+static bool can_start(void *user, size_t i)
 {
+    line_job *job = user;
     double share, fold;
     const double symbol = symbol_at(job, i);
     return dea_balance_valid(&job->balance, symbol) && dea_balance_forces(&job->balance, symbol, 0.0).load != 0.0 &&
            !dea_balance_folds(&job->balance, symbol, &share, &fold);
 }
 
-/* Sweeps count points from number @p from on and takes its answers up to the first that does not pass; *good says how many. */
-static dea_status sweep_stretch(line_job *job, size_t from, size_t count, size_t *good, dea_error *error)
+static dea_status sweep_stretch(void *user, size_t from, size_t count, size_t *good, dea_error *error)
 {
+    line_job *job = user;
     dea_ngspice_result result = {0};
     *good = 0;
     const dea_status status = sweep_circuit(job, from, count, &result, error);
@@ -171,35 +171,24 @@ static dea_status sweep_stretch(line_job *job, size_t from, size_t count, size_t
     return status;
 }
 
-/* The whole line. Where a sweep breaks off, or leaves the branch that is connected to rest, the point is solved alone and a new
- * sweep starts behind it: a short one, in case of more such points, then longer ones again. */
 static dea_status solve_points(line_job *job, dea_error *error)
 {
     const dea_axis *axis = job->line->axis;
-    const size_t longest = axis && !axis->uniform ? DEA_NETLIST_LIST : LONGEST_SWEEP;
-    size_t reach = longest;
-    size_t i = 0;
-    dea_status status = DEA_OK;
-    while (i < job->line->count && status == DEA_OK) {
-        if (can_start(job, i)) {
-            size_t good;
-            const size_t left = job->line->count - i;
-            const size_t count = left < reach ? left : reach;
-            status = sweep_stretch(job, i, count, &good, error);
-            i += good;
-            reach = good < count ? SHORTEST_SWEEP : 2 * reach < longest ? 2 * reach : longest;
-            if (status != DEA_OK || good == count) {
-                continue;
-            }
-        }
-        status = solve_alone(job, i++, error);
-    }
-    return status;
+    const dea_stretch stretch = {.user = job,
+                                 .count = job->line->count,
+                                 .longest = axis && !axis->uniform ? DEA_NETLIST_LIST : LONGEST_SWEEP,
+                                 .can_start = can_start,
+                                 .sweep = sweep_stretch,
+                                 .alone = solve_alone};
+    return dea_stretch_solve(&stretch, error);
 }
 
 static dea_status solve_line(void *user, const dea_scene *scene, const dea_line *line, dea_error *error)
 {
     line_job job = {.state = user, .scene = scene, .line = line};
+    if (job.state->model->membrane) {
+        return dea_ngspice_still(job.state->library, scene, job.state->model, line, job.state->rows, error);
+    }
     dea_status status = dea_network_build(scene, job.state->model, line->axis, &job.network, error);
     if (status == DEA_OK) {
         status = dea_balance_open(&job.network, &job.balance, error);
@@ -239,7 +228,7 @@ const dea_engine dea_engine_ngspice = {
     .run_patience = 120.0,
     .block = 5000,
     .omits = ~0u,
-    .costs = {[DEA_STUDY_SWEEP] = {0, 4e-6, 1e-5},
+    .costs = {[DEA_STUDY_SWEEP] = {0, 4e-6, 1e-5, 1e-4},
               [DEA_STUDY_TRANSIENT] = {[DEA_FORM_LINEAR] = 0.1, [DEA_FORM_HYPERELASTIC] = 0.2},
               [DEA_STUDY_AC] = {[DEA_FORM_LINEAR] = 1e-2, [DEA_FORM_HYPERELASTIC] = 1e-2}},
     .library = dea_ngspice_name,

@@ -122,17 +122,23 @@ static void set_velocity(const runner *r, const dea_edge *e, node *n)
     }
 }
 
+/* True where the film charges at once against the time in which it swings by a radian or moves by half of its size. */
+static bool charges_at_once(const runner *r, const node *n, double time)
+{
+    const double pace = fmax(r->route->omega, 2.0 * fabs(n->moment.v) / (r->route->dynamics->radius + n->moment.u));
+    return time < r->step && pace * time < 0.2 * at_once;
+}
+
 /* A film that charges at once: the drop over R_s, a difference of almost equal voltages, follows from i = d(C U)/dt with
  * U' = U_s' - R_s i' instead, where i' is C U_s'' + 2 C' u' U_s' + (C' u'' + C'' u'^2) U_s; C' = 2 phi. (R_s C)^2 i'' is left
- * out: that is nothing where the film charges within a small part of a step, and for a sample where that is of a radian of its
- * ring. */
+ * out: that is nothing where the film charges within a small part of a step, and for a sample where that is of its own pace. */
 static void follow_source(const runner *r, const dea_edge *e, node *n)
 {
     const dea_dynamics *d = r->route->dynamics;
     const dea_signal *signal = r->route->signal;
     const dea_segment *segment = &signal->segments[r->segment];
     const double time = d->series * e->capacitance;
-    const bool turns = d->mass > 0.0 && !r->slow && time < r->step && r->route->omega * time < 0.2 * at_once;
+    const bool turns = d->mass > 0.0 && !r->slow && charges_at_once(r, n, time);
     if (time >= at_once * r->step && !turns) {
         return;
     }

@@ -36,6 +36,7 @@ typedef struct levels {
     dea_track before;       /* extrapolated from the two before: points, integrals and peak only */
     double peak_error;      /* of the answer for the peak of the current [A] */
     size_t runs;
+    bool shown;      /* all rows have numbers: the film stays within its frame */
     double error;    /* of the answer: that of the column that is worst against what it promises */
     double displacement;   /* error of displacement and charge */
     dea_rate_errors rates; /* of velocity and current */
@@ -151,18 +152,20 @@ static void judge_peak(levels *l)
     l->before.peak = (dea_peak){answer, l->fine.peak.time};
 }
 
-/* Where it is within ten times the accuracy. */
+/* Where it is within ten times the accuracy, and all rows have numbers. */
 static void tell_peak(const dea_route *route, const levels *l, dea_summary *summary)
 {
-    const bool told = route->peaks && l->fine.end == DEA_STATE_OK &&
+    const bool told = route->peaks && l->shown && l->fine.end == DEA_STATE_OK &&
                       l->peak_error <= 10.0 * route->scene->accuracy * l->before.peak.current;
     summary->peak_current = told ? l->before.peak.current : (double)NAN;
     summary->peak_time = told ? l->before.peak.time : (double)NAN;
 }
 
 /* Two runs: twice their difference; the error of the finer one is 1/3 of it in theory. Three: 2.5 times the difference of what
- * they extrapolate to; the error of the later one is 1/15 of it in theory, and more where steps follow the age of an edge. The
- * factors bound the errors of random scenes. */
+ * they extrapolate to; the error of the later one is 1/15 of it in theory, and more where steps follow the age of an edge, or
+ * where the film runs away behind the last of few rows. The factors bound the errors of random scenes. */
+static const double of_second = 2.0, of_fourth = 2.5, running_away = 2.0;
+
 static void judge(const dea_route *route, levels *l)
 {
     const dea_track_point none = {0.0, 0.0, 0.0, 0.0};
@@ -185,16 +188,19 @@ static void judge(const dea_route *route, levels *l)
             l->before.points[i] = answer;
         }
     }
+    l->shown = shown;
     judge_peak(l);
     widen_means(route, l, shown ? (double)INFINITY : last, &second, &fourth);
-    l->displacement = 2.0 * largest(&second);
-    l->rates = (dea_rate_errors){2.0 * second.most.v, 2.0 * second.most.current};
-    double rate = 2.0 * largest_rate(&second, &l->scales);
+    const double away = shown && l->fine.end == DEA_STATE_OK ? 1.0 : running_away;
+    const double two = away * of_second, three = away * of_fourth;
+    l->displacement = two * largest(&second);
+    l->rates = (dea_rate_errors){two * second.most.v, two * second.most.current};
+    double rate = two * largest_rate(&second, &l->scales);
     if (l->runs > 2) {
-        l->displacement = fmin(l->displacement, 2.5 * largest(&fourth));
-        l->rates.velocity = fmin(l->rates.velocity, 2.5 * fourth.most.v);
-        l->rates.current = fmin(l->rates.current, 2.5 * fourth.most.current);
-        rate = fmin(rate, 2.5 * largest_rate(&fourth, &l->scales));
+        l->displacement = fmin(l->displacement, three * largest(&fourth));
+        l->rates.velocity = fmin(l->rates.velocity, three * fourth.most.v);
+        l->rates.current = fmin(l->rates.current, three * fourth.most.current);
+        rate = fmin(rate, three * largest_rate(&fourth, &l->scales));
     }
     l->error = fmax(l->displacement, rate / dea_scales_allowance(offsetof(dea_sample, velocity)));
     if (l->coarse.reached != l->fine.reached || l->coarse.end != l->fine.end) {

@@ -1,0 +1,231 @@
+#include "engine/ida/rings_flight.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Steps of one run after which it is given up. */
+enum { MOST_STEPS = 2000000 };
+
+/* Share of its size below which an unknown needs a smaller one. */
+static const double small = 0.03;
+
+/* Share of the stiffness at rest at which a film without mass folds. */
+static const double folded = 1e-4;
+
+dea_status dea_rings_flight_open(const dea_sundials *sun, const dea_scene *scene, const dea_model *model,
+                                 const dea_signal *signal, dea_rings_mesh mesh, dea_rings_flight *f, dea_error *error)
+{
+    *f = (dea_rings_flight){.sun = sun, .scene = scene, .signal = signal, .rows = dea_layout_of(scene).rows};
+    dea_status status = dea_membrane_open(scene, model, mesh, &f->membrane, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    if (!dea_rings_motion_open(&f->membrane, signal, &f->motion)) {
+        return dea_fail(error, DEA_ERROR_ENGINE, "the film is not stable at rest");
+    }
+    f->peaks = dea_peak_is_known(scene, &f->membrane.film, signal);
+    const sunindextype count = (sunindextype)f->motion.count;
+    f->y = sun->N_VNew_Serial(count, sun->context);
+    f->yp = f->y ? sun->N_VClone(f->y) : NULL;
+    f->between = f->y ? sun->N_VClone(f->y) : NULL;
+    f->slope = f->y ? sun->N_VClone(f->y) : NULL;
+    f->tolerances = f->y ? sun->N_VClone(f->y) : NULL;
+    if (!f->yp || !f->between || !f->slope || !f->tolerances) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while IDA starts");
+    }
+    return dea_rings_implicit_open(f, error);
+}
+
+void dea_rings_flight_close(dea_rings_flight *f)
+{
+    N_Vector vectors[] = {f->y, f->yp, f->between, f->slope, f->tolerances};
+    dea_rings_implicit_close(f);
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
+        if (vectors[i]) {
+            f->sun->N_VDestroy(vectors[i]);
+        }
+    }
+}
+
+double dea_rings_next_sample(const dea_rings_flight *f)
+{
+    const size_t next = f->trace->count;
+    return next < f->rows ? dea_layout_place(f->scene, next) : (double)INFINITY;
+}
+
+/* The moment of y: over a step longer than R_s C the slope of the charge is a better number than the small drop over R_s. */
+static dea_moment moment_at(dea_rings_flight *f, double time, const double *y, const double *rates, bool charging)
+{
+    const dea_rings_motion *m = &f->motion;
+    dea_moment moment = dea_rings_moment(m, time, &f->state);
+    (void)y;
+    moment.charging = m->charged && charging;
+    moment.charge_slope = moment.charging ? rates[m->q] : 0.0;
+    return moment;
+}
+
+static const double *velocity_of(const dea_rings_flight *f, const double *y, const double *rates)
+{
+    return f->motion.heavy ? y + f->motion.nodes : rates;
+}
+
+bool dea_rings_record(dea_rings_flight *f, double time, const double *y, const double *rates, bool charging)
+{
+    dea_rings_trace *trace = f->trace;
+    const dea_dynamics *film = &f->membrane.film;
+    static const double still[DEA_RINGS_NODES] = {0.0};
+    if (!dea_rings_look(&f->motion, time, y, NULL, &f->state)) {
+        return false;
+    }
+    dea_moment moment = moment_at(f, time, y, rates, charging);
+    const bool start = film->biased && moment.time == 0.0;
+    if (start) { /* the branches have relaxed, and the charge rests */
+        moment.charging = film->series > 0.0 || film->dropped > 0.0;
+        moment.charge_slope = 0.0;
+    }
+    const double *v = start && film->clamped ? still : velocity_of(f, y, rates);
+    if (!dea_membrane_sample(&f->membrane, &moment, y, v, &trace->samples[trace->count])) {
+        return false;
+    }
+    trace->count++;
+    return true;
+}
+
+double dea_rings_current(dea_rings_flight *f, double time, const double *y, const double *rates, bool charging)
+{
+    if (!dea_rings_look(&f->motion, time, y, NULL, &f->state)) {
+        return 0.0;
+    }
+    const dea_moment moment = moment_at(f, time, y, rates, charging);
+    return dea_membrane_current(&f->membrane, &f->state.look, &moment, velocity_of(f, y, rates));
+}
+
+void dea_rings_audit(dea_rings_flight *f, double time, const double *y, const double *rates, bool charging, double weight)
+{
+    if (dea_rings_look(&f->motion, time, y, NULL, &f->state)) {
+        const dea_moment moment = moment_at(f, time, y, rates, charging);
+        dea_membrane_audit_add(f->audit, &f->membrane, &f->state.look, &moment, velocity_of(f, y, rates), y + f->motion.z, weight);
+    }
+}
+
+dea_state dea_rings_step(dea_rings_flight *f, double time, const double *y)
+{
+    f->trace->largest = fmax(f->trace->largest, fabs(y[f->membrane.rings.edge]));
+    if (++f->steps > MOST_STEPS) {
+        dea_fail(&f->why, DEA_ERROR_ENGINE, "at a tolerance of %.1g, %ld steps of SUNDIALS take the run to %g s", f->tolerance,
+                 f->steps, f->motion.segment->from + time);
+        return DEA_STATE_FAILED;
+    }
+    return dea_rings_firmness(&f->motion, time, y) < folded ? DEA_STATE_PULL_IN : DEA_STATE_OK;
+}
+
+dea_state dea_rings_broke(dea_rings_flight *f, const char *solver, int code, double time)
+{
+    dea_fail(&f->why, DEA_ERROR_ENGINE, "at a tolerance of %.1g, %s stopped at %g s with its error %d", f->tolerance, solver,
+             f->motion.segment->from + time, code);
+    return DEA_STATE_FAILED;
+}
+
+bool dea_rings_flight_fit(dea_rings_flight *f)
+{
+    dea_rings_motion *m = &f->motion;
+    const double share = f->trace->largest / m->length;
+    if (!(share > 0.0) || share >= small) {
+        return false;
+    }
+    const double smaller = fmax(share, 10.0 * f->tolerance);
+    m->length *= smaller;
+    m->speed *= smaller;
+    m->stress *= smaller;
+    return true;
+}
+
+static void set_tolerances(dea_rings_flight *f)
+{
+    const dea_rings_motion *m = &f->motion;
+    double *absolute = NV_DATA_S(f->tolerances);
+    for (size_t i = 0; i < m->count; i++) {
+        absolute[i] = f->tolerance * (i < m->nodes ? m->length : i < m->z ? m->speed : i < m->q ? m->stress : m->charge);
+    }
+}
+
+/* Algebraic displacements at the begin of a segment. */
+static bool jump(dea_rings_flight *f)
+{
+    const dea_rings_motion *m = &f->motion;
+    double before[DEA_RINGS_NODES];
+    double *y = NV_DATA_S(f->y);
+    if (!dea_rings_algebraic(m) || m->charged) {
+        return true;
+    }
+    memcpy(before, y, m->nodes * sizeof *y);
+    if (!dea_membrane_follow(&f->membrane, m->segment->start, y + m->z, y)) {
+        return false;
+    }
+    if (f->audit && memcmp(before, y, m->nodes * sizeof *y) != 0) {
+        dea_membrane_audit_jump(f->audit, &f->membrane, before, y, y + m->z);
+    }
+    return true;
+}
+
+/* How long the segment is worth an explicit method [s]. */
+static double explicit_time(const dea_rings_flight *f)
+{
+    const dea_rings_motion *m = &f->motion;
+    const double width = m->segment->to - m->segment->from;
+    static const double worth = 100.0; /* of the slowest frequency: what it may have to resolve */
+    return m->heavy && dea_rings_stiffest(m) <= worth * m->rest.slowest ? width : 0.0;
+}
+
+static dea_state fly_segment(dea_rings_flight *f)
+{
+    const dea_segment *segment = f->motion.segment;
+    double *y = NV_DATA_S(f->y), *rates = NV_DATA_S(f->yp);
+    if (!jump(f) || !dea_rings_rates(&f->motion, 0.0, y, rates) ||
+        (f->trace->count == 0 && !dea_rings_record(f, 0.0, y, rates, false))) {
+        return DEA_STATE_PULL_IN;
+    }
+    const double turning = explicit_time(f);
+    if (turning > 0.0) {
+        const dea_state state = dea_rings_explicit(f, turning);
+        if (state != DEA_STATE_OK || turning >= segment->to - segment->from) {
+            return state;
+        }
+    }
+    return dea_rings_implicit(f, turning);
+}
+
+static dea_membrane_energy energy_of(dea_rings_flight *f, double time)
+{
+    const dea_rings_motion *m = &f->motion;
+    const double *y = NV_DATA_S(f->y);
+    const bool seen = dea_rings_look(m, time, y, NULL, &f->state);
+    return dea_membrane_energy_of(&f->membrane, seen ? f->state.voltage : (double)NAN, y, y + m->nodes, y + m->z);
+}
+
+void dea_rings_flight_run(dea_rings_flight *f, double tolerance, dea_rings_trace *trace, dea_summary *summary)
+{
+    dea_audit audit = {0};
+    dea_rings_motion *m = &f->motion;
+    *trace = (dea_rings_trace){.samples = trace->samples};
+    f->trace = trace;
+    f->audit = summary ? &audit : NULL;
+    f->tolerance = tolerance;
+    f->steps = 0;
+    m->segment = f->signal->segments;
+    set_tolerances(f);
+    if (!dea_rings_start(m, f->scene->transient.from_bias, NV_DATA_S(f->y))) {
+        trace->end = DEA_STATE_PULL_IN;
+        return;
+    }
+    const dea_membrane_energy first = energy_of(f, 0.0);
+    for (size_t i = 0; trace->end == DEA_STATE_OK && i < f->signal->count; i++) {
+        m->segment = &f->signal->segments[i];
+        trace->end = fly_segment(f);
+    }
+    if (summary && trace->end == DEA_STATE_OK) {
+        const dea_membrane_energy last = energy_of(f, m->segment->to - m->segment->from);
+        dea_membrane_audit_close(&audit, &f->membrane, &first, &last, summary);
+    }
+}

@@ -1,0 +1,79 @@
+/* The moving membrane of one run as a problem of SUNDIALS, in SI units and with only the unknowns that the scene needs:
+ *
+ *   u [nodes]   displacements; with mass states, with a damper alone u' follows from them, with neither algebraic
+ *   v [nodes]   velocities, with mass
+ *   z           stresses that the branches have relaxed from, as the membrane numbers them
+ *   q           charge of the film, with series resistance
+ *
+ *   u' = v,  v' = F/m,  z' = (S - z)/tau,  q' = (U_s - U)/R_s - U/R_p;   without mass 0 = F, a damper's v being u'. */
+#ifndef DEA_IDA_RINGS_MOTION_H
+#define DEA_IDA_RINGS_MOTION_H
+
+#include "drive/signal.h"
+#include "network/membrane.h"
+
+typedef struct dea_rings_motion {
+    const dea_membrane *membrane; /* borrowed, as all here */
+    const dea_signal *signal;
+    const dea_segment *segment; /* at which times are counted from its begin */
+    size_t nodes, count;        /* of u, of unknowns */
+    size_t z, q;                /* where they are; v follows u where the film is heavy */
+    bool heavy, damped, charged;
+    double length, speed, stress, charge; /* sizes of the unknowns [m, m/s, Pa, C] */
+    dea_membrane_rest rest;
+} dea_rings_motion;
+
+/* The film at a state. */
+typedef struct dea_rings_state {
+    dea_membrane_look look;
+    double x[DEA_RINGS_MOST][2]; /* viscous and branch stresses */
+    double push[DEA_RINGS_NODES];
+    double force[DEA_RINGS_NODES];
+    double voltage; /* of the film [V] */
+    double source;  /* [V] */
+} dea_rings_state;
+
+/* Lays out the unknowns; false where the film is not stable at rest. */
+bool dea_rings_motion_open(const dea_membrane *membrane, const dea_signal *signal, dea_rings_motion *motion);
+static inline bool dea_rings_algebraic(const dea_rings_motion *motion)
+{
+    return !motion->heavy && !motion->damped;
+}
+
+/* Looks at y; @p v: the velocities, NULL: 0. False where the film cannot be. */
+bool dea_rings_look(const dea_rings_motion *motion, double time, const double *y, const double *v, dea_rings_state *state);
+/* Rates of z and q in a vector of all unknowns. */
+void dea_rings_relaxing(const dea_rings_motion *motion, const dea_rings_state *state, const double *y, double *rates);
+/* y' at y: what stands there is replaced. False where the film cannot be or nothing holds it. */
+bool dea_rings_rates(const dea_rings_motion *motion, double time, const double *y, double *rates);
+
+/* The matrix of Newton's method with all unknowns but u eliminated. */
+typedef struct dea_rings_schur {
+    double pace;                        /* alpha: y' = alpha y + ... of the method [1/s] */
+    double slope[DEA_RINGS_MOST][2][2]; /* dS_a/dlambda_b [Pa] */
+    double stretch[DEA_RINGS_MOST][2];
+    double pull[DEA_RINGS_NODES]; /* dF/dq [N/C] */
+    double rate;                  /* (1/R_s + 1/R_p)/C [1/s] */
+    double capacitance;           /* [F] */
+} dea_rings_schur;
+
+/* Prepares it at a state and writes the symmetric matrix over u [N/m]. */
+void dea_rings_schur_fill(const dea_rings_motion *motion, const dea_rings_state *state, double pace, dea_rings_schur *schur,
+                          double *matrix);
+/* Right-hand side over u for one over all unknowns [N]. */
+void dea_rings_schur_reduce(const dea_rings_motion *motion, const dea_rings_schur *schur, const double *b, double *reduced);
+/* All unknowns from u, which stands in x already. */
+void dea_rings_schur_expand(const dea_rings_motion *motion, const dea_rings_schur *schur, const double *b, double *x);
+
+/* The state at the begin of a run; false without a stable equilibrium. */
+bool dea_rings_start(const dea_rings_motion *motion, bool from_bias, double *y);
+/* Net stiffness of a film without mass and damper against its voltage, over that at rest; 0 where it is not stable, or has lost
+ * its ellipticity with nothing that damps it. 1 for what holds. */
+double dea_rings_firmness(const dea_rings_motion *motion, double time, const double *y);
+/* Largest magnitude of the eigenvalues at rest: what an explicit method must resolve [1/s]. */
+double dea_rings_stiffest(const dea_rings_motion *motion);
+
+/* The moment of a state. */
+dea_moment dea_rings_moment(const dea_rings_motion *motion, double time, const dea_rings_state *state);
+
+#endif

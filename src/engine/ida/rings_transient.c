@@ -1,0 +1,263 @@
+/* Transients of a membrane: runs at tighter tolerances on finer meshes, until two of them show that the answer is good enough. */
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include "engine/ida/rings_flight.h"
+#include "result/scales.h"
+#include "support/lapack.h"
+
+enum { MOST_RUNS = 6 };
+
+static const double first_share = 0.1; /* from one tolerance to the next */
+static const double doubt = 1.5;       /* most that the error of the better of two runs is taken for, over their difference */
+static const double least_tolerance = 1e-13;
+static const double certain = 1e-7; /* an end of the motion counts from this tolerance on */
+
+/* A study of one scene. */
+typedef struct search {
+    const dea_sundials *sun;
+    const dea_scene *scene;
+    const dea_model *model;
+    const dea_signal *signal;
+    dea_scales scales;
+    dea_rings_trace traces[2]; /* owned samples: of the run before, and of the last */
+    dea_rings_flight *flight;  /* owned: of the last */
+    size_t rows;
+    double loosest;
+} search;
+
+/* What two runs differ by. */
+typedef struct gap {
+    double answer;         /* of the column that is worst against what it promises, times its allowance [1] */
+    double displacement;   /* of displacement and its means, over their peaks [1] */
+    dea_rate_errors rates; /* of velocity and current */
+} gap;
+
+/* The columns that are compared. */
+static const size_t columns[] = {offsetof(dea_sample, displacement), offsetof(dea_sample, velocity), offsetof(dea_sample, force),
+                                 offsetof(dea_sample, current),      offsetof(dea_sample, charge),   offsetof(dea_sample, film_voltage),
+                                 offsetof(dea_sample, focal_length)};
+
+static double at(const dea_sample *sample, size_t offset)
+{
+    return *(const double *)((const char *)sample + offset);
+}
+
+static double mean(const search *s, const dea_rings_trace *trace, size_t window)
+{
+    const dea_window *w = &s->scene->transient.averages[window];
+    return trace->integrals[window] / (w->to - w->from);
+}
+
+/* True where the film has numbers all over a window. */
+static bool covers(const search *s, const dea_rings_trace *trace, size_t window)
+{
+    const double last = trace->count > 0 ? trace->samples[trace->count - 1].time : -1.0;
+    return trace->end == DEA_STATE_OK || s->scene->transient.averages[window].to <= last;
+}
+
+/* Largest difference of a column over the samples that both have; NAN counts as none. */
+static double column_gap(const dea_rings_trace *a, const dea_rings_trace *b, size_t offset)
+{
+    const size_t count = a->count < b->count ? a->count : b->count;
+    double largest = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        largest = fmax(largest, fabs(at(&a->samples[i], offset) - at(&b->samples[i], offset)));
+    }
+    return largest;
+}
+
+static gap difference(const search *s)
+{
+    const dea_rings_trace *a = &s->traces[0], *b = &s->traces[1];
+    const dea_sample scale = dea_scales_of(&s->scales, b->samples, b->count);
+    gap g = {0};
+    for (size_t c = 0; c < sizeof columns / sizeof *columns; c++) {
+        const double apart = column_gap(a, b, columns[c]);
+        const double share = apart > 0.0 ? apart / at(&scale, columns[c]) : 0.0;
+        g.answer = fmax(g.answer, share / dea_scales_allowance(columns[c]));
+    }
+    g.displacement = column_gap(a, b, offsetof(dea_sample, displacement)) / fmax(scale.displacement, DBL_MIN);
+    for (size_t i = 0; i < s->scene->transient.average_count; i++) {
+        const bool both = covers(s, a, i) && covers(s, b, i);
+        g.displacement = fmax(g.displacement, both ? fabs(mean(s, a, i) - mean(s, b, i)) / scale.displacement : 0.0);
+    }
+    g.answer = fmax(g.answer, g.displacement);
+    g.rates.velocity = column_gap(a, b, offsetof(dea_sample, velocity));
+    g.rates.current = column_gap(a, b, offsetof(dea_sample, current));
+    return g;
+}
+
+/* Degrees of the elements for a first run: the decay of the coefficients of a film that an edge has set in motion. */
+static dea_rings_mesh first_mesh(const dea_scene *scene)
+{
+    const double digits = -log10(scene->accuracy);
+    const size_t degree = (size_t)fmax(4.0, ceil(digits));
+    return (dea_rings_mesh){degree, degree, false};
+}
+
+static bool refine_mesh(dea_rings_mesh *mesh)
+{
+    const bool room = mesh->disc + 2 <= DEA_RINGS_DEGREE && mesh->annulus + 2 <= DEA_RINGS_DEGREE;
+    mesh->disc += room ? 2 : 0;
+    mesh->annulus += room ? 2 : 0;
+    return room;
+}
+
+/* One run on a mesh of its own, which takes the place of the last. */
+static dea_status run_on(search *s, dea_rings_mesh mesh, double tolerance, dea_summary *summary, dea_error *error)
+{
+    const dea_rings_trace before = s->traces[1];
+    s->traces[1] = s->traces[0];
+    s->traces[0] = before;
+    dea_rings_flight_close(s->flight);
+    const dea_status status = dea_rings_flight_open(s->sun, s->scene, s->model, s->signal, mesh, s->flight, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    s->flight->loosest = s->loosest;
+    dea_rings_flight_run(s->flight, tolerance, &s->traces[1], summary);
+    if (dea_rings_flight_fit(s->flight)) {
+        dea_rings_flight_run(s->flight, tolerance, &s->traces[1], summary);
+    }
+    return DEA_OK;
+}
+
+/* Leaves the better run of the last two in traces[1]; *good false where the accuracy was not reached. */
+static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates, bool *good, dea_error *error)
+{
+    const double accuracy = s->scene->accuracy;
+    double tolerance = s->loosest = 0.1 * accuracy;
+    dea_rings_mesh mesh = first_mesh(s->scene);
+    *good = false;
+    dea_status status = run_on(s, mesh, tolerance, NULL, error);
+    for (int i = 0; i < MOST_RUNS && status == DEA_OK && tolerance > 1.5 * least_tolerance && refine_mesh(&mesh); i++) {
+        tolerance = fmax(first_share * tolerance, least_tolerance);
+        *summary = dea_summary_failed();
+        status = run_on(s, mesh, tolerance, summary, error);
+        if (status != DEA_OK) {
+            return status;
+        }
+        const gap apart = difference(s);
+        const bool doubtful = s->traces[1].end == DEA_STATE_PULL_IN && tolerance > certain;
+        summary->error = fmax(apart.displacement * doubt, fmax(10.0 * tolerance, 0.1 * accuracy));
+        *rates = (dea_rate_errors){apart.rates.velocity * doubt, apart.rates.current * doubt};
+        *good = apart.answer * doubt <= accuracy && s->traces[0].count == s->traces[1].count && !doubtful;
+        if (*good || s->traces[1].end == DEA_STATE_FAILED) {
+            return status;
+        }
+    }
+    return status;
+}
+
+/* Rows of a trace; where it ended, all that follow are refused. */
+static void fill(const search *s, const dea_rings_trace *trace, bool good, dea_sample *samples)
+{
+    size_t near = 0;
+    for (size_t i = 0; i < s->rows; i++) {
+        if (good && i < trace->count) {
+            samples[i] = trace->samples[i];
+            continue;
+        }
+        const double time = dea_layout_place(s->scene, i);
+        near = dea_signal_find(s->signal, near, time);
+        const double voltage = dea_segment_voltage(s->signal, &s->signal->segments[near], time);
+        samples[i] = dea_sample_refused(time, voltage, good ? trace->end : DEA_STATE_FAILED);
+    }
+}
+
+static void tell_averages(const search *s, const dea_rings_trace *trace, dea_summary *summary)
+{
+    for (size_t i = 0; i < s->scene->transient.average_count; i++) {
+        const double u = mean(s, trace, i);
+        summary->averages[i] = (dea_average){u / s->flight->membrane.film.radius, u};
+    }
+}
+
+/* The peak of the current, where two runs agree about it within ten times the accuracy. */
+static void tell_peak(const search *s, dea_summary *summary)
+{
+    const dea_peak *a = &s->traces[0].peak, *b = &s->traces[1].peak;
+    if (s->flight->peaks && s->traces[1].end == DEA_STATE_OK &&
+        fabs(a->current - b->current) <= 10.0 * s->scene->accuracy * b->current) {
+        summary->peak_current = b->current;
+        summary->peak_time = b->time;
+    }
+}
+
+static void explain(const search *s, const dea_summary *summary, dea_error *error)
+{
+    const dea_rings_flight *f = s->flight;
+    if (f->why.message[0] != '\0') {
+        dea_fail(error, DEA_ERROR_ENGINE, "%s", f->why.message);
+    } else {
+        dea_fail(error, DEA_ERROR_ENGINE,
+                 "%zu nodes and %ld steps of SUNDIALS at a tolerance of %.1g leave an error of %.1g, the scene wants %g; an edge "
+                 "of the voltage with a rise, or a damper, takes fewer nodes",
+                 f->membrane.rings.node_count, f->steps, f->tolerance, summary->error, s->scene->accuracy);
+    }
+}
+
+static dea_status fly(search *s, dea_sample *samples, dea_summary *summary, dea_error *error)
+{
+    dea_rate_errors rates = {0.0, 0.0};
+    bool good;
+    const dea_status status = refine(s, summary, &rates, &good, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    if (!good) {
+        explain(s, summary, error);
+    }
+    fill(s, &s->traces[1], good, samples);
+    tell_averages(s, &s->traces[1], summary);
+    dea_scales_tell(&s->scales, samples, s->rows, rates, summary);
+    tell_peak(s, summary);
+    return DEA_OK;
+}
+
+static dea_status search_open(search *s, dea_error *error)
+{
+    s->rows = dea_layout_of(s->scene).rows;
+    s->scales = dea_scales_open(s->scene, s->model);
+    s->flight = calloc(1, sizeof *s->flight);
+    for (int i = 0; i < 2; i++) {
+        s->traces[i].samples = malloc(s->rows * sizeof *s->traces[i].samples);
+    }
+    const bool room = s->flight && s->traces[0].samples && s->traces[1].samples && s->scales.status != DEA_ERROR_MEMORY;
+    return room ? DEA_OK : dea_fail(error, DEA_ERROR_MEMORY, "out of memory for %zu samples", s->rows);
+}
+
+static void search_close(search *s)
+{
+    if (s->flight) {
+        dea_rings_flight_close(s->flight);
+    }
+    free(s->flight);
+    free(s->traces[0].samples);
+    free(s->traces[1].samples);
+}
+
+dea_status dea_rings_transient_solve(const dea_sundials *sun, const dea_scene *scene, const dea_model *model, dea_sample *samples,
+                                     dea_summary *summary, dea_error *error)
+{
+    dea_signal signal;
+    *summary = dea_summary_failed();
+    dea_status status = dea_lapack_load(error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    status = dea_signal_open(scene, &signal, error);
+    search s = {.sun = sun, .scene = scene, .model = model, .signal = &signal};
+    if (status == DEA_OK) {
+        status = search_open(&s, error);
+        if (status == DEA_OK) {
+            status = fly(&s, samples, summary, error);
+        }
+        search_close(&s);
+    }
+    dea_signal_close(&signal);
+    return status;
+}

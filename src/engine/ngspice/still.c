@@ -1,0 +1,315 @@
+/* One mesh serves a line: that of its points that wants the most nodes, found by the film's own numbers. ngspice's answer is taken
+ * where Newton's step of a mesh two degrees finer at it is small, which bounds the error of the discretisation and that of the
+ * solution at once, and where the way from rest leads to it. */
+#include "engine/ngspice/still.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/ngspice/stretch.h"
+#include "netlist/rings_line.h"
+#include "netlist/expression_text.h"
+#include "network/still.h"
+#include "support/text.h"
+
+enum { LONGEST_SWEEP = 100000, LONGEST_LIST = 64, RAMP_STEPS = 32, RAMP_REFINED = 16, RAMP_MOST = RAMP_STEPS * RAMP_REFINED * RAMP_REFINED };
+
+/* Shares of the wanted accuracy: of the mesh where it is chosen, of the answer where it is judged. */
+static const double mesh_share = 0.03;
+static const double answer_share = 0.2;
+
+/* Two climbs and a solution of one equilibrium differ by less than this, of two by more [1]. */
+static const double same = 1e-4;
+
+typedef struct line_job {
+    dea_ngspice *library;
+    const dea_line *line;
+    dea_row *rows;
+    double accuracy;
+    dea_scene scene; /* at the point that was placed last */
+    dea_point point; /* that point */
+    bool prepared;   /* it has a film */
+    bool valid;      /* its numbers are in their ranges */
+    dea_rings_mesh mesh;
+    dea_still coarse, fine; /* of that point */
+    double cut[4];          /* what the rings were cut for */
+    double transfer[DEA_RINGS_NODES * DEA_RINGS_NODES];
+} line_job;
+
+static dea_row *row_at(const line_job *job, size_t i)
+{
+    return &job->rows[job->line->row + i * job->line->stride];
+}
+
+/* Moves the job to a point of its line. */
+static void place(line_job *job, size_t i)
+{
+    if (job->line->axis) {
+        dea_axis_set(job->line->axis, &job->scene, job->line->axis->values[job->line->from + i]);
+    }
+    if (!job->line->axis || job->line->axis->changes_film || !job->prepared) {
+        dea_film_prepare(&job->scene, &job->point.film);
+        job->prepared = true;
+    }
+    dea_point_place(&job->scene, &job->point);
+    job->valid = dea_point_valid(&job->point);
+}
+
+/* The rings of the point, cut anew where its geometry is another. */
+static void cut(line_job *job)
+{
+    const dea_point *p = &job->point;
+    const double now[4] = {p->frame_radius, p->coverage, p->film_thickness, p->film.prestretch};
+    const double nominal = p->voltage / p->film_thickness;
+    if (memcmp(now, job->cut, sizeof now) != 0) {
+        dea_still_open(p, job->mesh, &job->coarse);
+        dea_still_open(p, (dea_rings_mesh){job->mesh.disc, job->mesh.annulus + 2, job->mesh.logarithmic}, &job->fine);
+        memcpy(job->cut, now, sizeof now);
+    }
+    job->coarse.pressure = job->fine.pressure = p->film.permittivity * nominal * nominal;
+}
+
+static void set_mesh(line_job *job, dea_rings_mesh mesh)
+{
+    job->mesh = mesh;
+    memset(job->cut, 0, sizeof job->cut);
+    dea_rings_transfer(mesh, (dea_rings_mesh){mesh.disc, mesh.annulus + 2, mesh.logarithmic}, job->transfer);
+}
+
+/* True where the way from rest leads to @p u. */
+static bool is_connected(const line_job *job, const double *u)
+{
+    double own[DEA_RINGS_NODES];
+    if (dea_still_near(&job->coarse, u)) {
+        return true;
+    }
+    const size_t edge = job->coarse.rings.edge;
+    return dea_still_climb(&job->coarse, own) == DEA_STATE_OK && fabs(own[edge] - u[edge]) <= same * fabs(own[edge]);
+}
+
+/* Fills the row of the placed point where displacements over r are its answer. */
+static bool accept(line_job *job, size_t i, const double *const *columns, size_t index)
+{
+    double u[DEA_RINGS_NODES], v[DEA_RINGS_NODES], step[DEA_RINGS_NODES];
+    cut(job);
+    const dea_rings *coarse = &job->coarse.rings, *fine = &job->fine.rings;
+    for (size_t n = 0; n < coarse->node_count; n++) {
+        u[n] = columns ? columns[n][index] * job->point.frame_radius : 0.0;
+    }
+    dea_rings_move(job->transfer, coarse->node_count, u, fine->node_count, v);
+    if (!dea_still_step(&job->fine, 1.0, v, step) || !(fabs(step[fine->edge]) <= answer_share * job->accuracy * fabs(v[fine->edge])) ||
+        !is_connected(job, u)) {
+        return false;
+    }
+    dea_still_fill(&job->coarse, u, row_at(job, i));
+    return true;
+}
+
+/* Least strain under load of the two ends of a sweep, for tolerances; some number where none has one. */
+static double least_strain(line_job *job, size_t from, size_t count)
+{
+    double least = 1.0, u[DEA_RINGS_NODES];
+    for (size_t end = 0; end < 2; end++) {
+        place(job, end == 0 ? from : from + count - 1);
+        if (!job->valid) {
+            continue;
+        }
+        cut(job);
+        if (job->coarse.pressure > 0.0 && dea_still_climb(&job->coarse, u) == DEA_STATE_OK) {
+            least = fmin(least, dea_still_strain(&job->coarse, u));
+        }
+    }
+    return least;
+}
+
+/* The circuit of some points with its analysis; the caller frees *text. */
+static dea_status write_deck(const dea_rings_line *line, const line_job *job, size_t from, size_t to, double strain, char **text,
+                             dea_error *error)
+{
+    size_t length = 0;
+    *text = NULL;
+    FILE *out = open_memstream(text, &length);
+    dea_status status = out ? DEA_OK : DEA_ERROR_MEMORY;
+    if (out) {
+        fputs("* exact membrane as a network of rings\n", out);
+        status = dea_rings_line_write(line, dea_dialect_at(0), out, error);
+        fputs("vindex k 0 0\n.options itl1=100 itl2=100 gminsteps=0 srcsteps=0 reltol=", out);
+        dea_netlist_number(out, fmin(1e-7, job->accuracy));
+        fputs(" vntol=", out);
+        dea_netlist_number(out, 1e-11 * strain);
+        fputs(" abstol=", out);
+        dea_netlist_number(out, 1e-11 * strain);
+        fputs("\n.save", out);
+        for (size_t n = 1; n < line->mesh.disc + line->mesh.annulus; n++) {
+            fprintf(out, " v(xline%zu.u%zu)", line->number, n);
+        }
+        fprintf(out, "\n.dc vindex %zu %zu 1\n.end\n", from, to);
+    }
+    if (!dea_text_close(out) || status != DEA_OK) {
+        free(*text);
+        *text = NULL;
+        return status == DEA_OK ? dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written") : status;
+    }
+    return DEA_OK;
+}
+
+/* Runs a circuit and reads the displacements of its nodes over r; the caller frees the table, also after a failure. */
+static dea_status run(line_job *job, const dea_rings_line *line, size_t from, size_t to, double strain, dea_ngspice_table *table,
+                      dea_error *error)
+{
+    char *text;
+    char names[DEA_RINGS_NODES][32];
+    const char *list[DEA_RINGS_NODES];
+    const size_t nodes = line->mesh.disc + line->mesh.annulus - 1;
+    for (size_t n = 0; n < nodes; n++) {
+        snprintf(names[n], sizeof names[n], "xline%zu.u%zu", line->number, n + 1);
+        list[n] = names[n];
+    }
+    dea_status status = write_deck(line, job, from, to, strain, &text, error);
+    if (status == DEA_OK) {
+        status = dea_ngspice_run_all(job->library, text, list, nodes, table, error);
+        free(text);
+    }
+    return status;
+}
+
+static bool can_start(void *user, size_t i)
+{
+    line_job *job = user;
+    double u[DEA_RINGS_NODES];
+    place(job, i);
+    if (!job->valid || job->point.voltage == 0.0) {
+        return false;
+    }
+    cut(job);
+    return dea_still_climb(&job->coarse, u) == DEA_STATE_OK;
+}
+
+static dea_status sweep(void *user, size_t from, size_t count, size_t *good, dea_error *error)
+{
+    line_job *job = user;
+    const dea_line *l = job->line;
+    const size_t first = l->from + from;
+    const bool uniform = !l->axis || l->axis->uniform;
+    const double strain = least_strain(job, from, count);
+    place(job, from);
+    const dea_scene start = job->scene; /* borrowed by the text alone */
+    const dea_rings_line line = {.scene = &start,
+                                 .axis = l->axis,
+                                 .from = uniform ? 0 : first,
+                                 .to = uniform && l->axis ? l->axis->count : first + count,
+                                 .mesh = job->mesh,
+                                 .number = 1};
+    dea_ngspice_table table = {0};
+    const dea_status status = run(job, &line, first, first + count - 1, strain, &table, error);
+    *good = 0;
+    while (status == DEA_OK && *good < table.count && *good < count) {
+        place(job, from + *good);
+        if (!job->valid || !accept(job, from + *good, (const double *const *)table.columns, *good)) {
+            break;
+        }
+        ++*good;
+    }
+    dea_ngspice_table_free(&table);
+    return status;
+}
+
+/* A voltage that grows from 0 in so many steps to that of the placed point. */
+static dea_status climb(line_job *job, size_t i, size_t steps, bool *accepted, dea_error *error)
+{
+    double *values = malloc((steps + 1) * sizeof *values);
+    if (!values) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for the steps of a load");
+    }
+    for (size_t k = 0; k <= steps; k++) {
+        values[k] = job->scene.drive.voltage * ((double)k / (double)steps);
+    }
+    const dea_axis axis = {.key = "voltage",
+                           .unit = "V",
+                           .offset = offsetof(dea_scene, drive.voltage),
+                           .values = values,
+                           .count = steps + 1,
+                           .uniform = true};
+    const dea_scene here = job->scene;
+    const dea_rings_line line = {.scene = &here, .axis = &axis, .to = steps + 1, .mesh = job->mesh, .number = 1};
+    dea_ngspice_table table = {0};
+    double u[DEA_RINGS_NODES];
+    const bool known = dea_still_climb(&job->coarse, u) == DEA_STATE_OK;
+    const double strain = known ? dea_still_strain(&job->coarse, u) / (double)(steps * steps) : 1e-6;
+    const dea_status status = run(job, &line, 0, steps, strain, &table, error);
+    *accepted = status == DEA_OK && table.count == steps + 1 && accept(job, i, (const double *const *)table.columns, steps);
+    dea_ngspice_table_free(&table);
+    free(values);
+    return status;
+}
+
+static dea_status alone(void *user, size_t i, dea_error *error)
+{
+    line_job *job = user;
+    double u[DEA_RINGS_NODES];
+    *row_at(job, i) = dea_row_failed();
+    place(job, i);
+    if (!job->valid || (job->point.voltage == 0.0 && accept(job, i, NULL, 0))) {
+        return DEA_OK;
+    }
+    cut(job);
+    if (dea_still_climb(&job->coarse, u) != DEA_STATE_OK) {
+        row_at(job, i)->state = DEA_STATE_PULL_IN;
+        return DEA_OK;
+    }
+    const dea_rings_mesh usual = job->mesh, own = dea_still_mesh(&job->point, mesh_share * job->accuracy, NULL);
+    bool accepted = false;
+    dea_status status = DEA_OK;
+    if (own.annulus > 0) {
+        set_mesh(job, own);
+        cut(job);
+        for (size_t steps = RAMP_STEPS; status == DEA_OK && !accepted && steps <= RAMP_MOST; steps *= RAMP_REFINED) {
+            status = climb(job, i, steps, &accepted, error);
+        }
+        set_mesh(job, usual);
+    }
+    return status;
+}
+
+/* The finest mesh that one of some points of the line wants; coarse where none of them has an equilibrium. */
+static void choose_mesh(line_job *job)
+{
+    enum { PROBES = 5 };
+    dea_rings_mesh most = {1, 3, true};
+    for (size_t probe = 0; probe < PROBES; probe++) {
+        place(job, probe * (job->line->count - 1) / (PROBES - 1));
+        if (job->valid && job->point.voltage != 0.0) {
+            const dea_rings_mesh mesh = dea_still_mesh(&job->point, mesh_share * job->accuracy, NULL);
+            most = mesh.annulus > most.annulus ? mesh : most;
+        }
+    }
+    set_mesh(job, most);
+}
+
+dea_status dea_ngspice_still(dea_ngspice *library, const dea_scene *scene, const dea_model *model, const dea_line *line,
+                             dea_row *rows, dea_error *error)
+{
+    line_job *job = calloc(1, sizeof *job);
+    if (!job) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for a line of points");
+    }
+    job->library = library;
+    job->line = line;
+    job->rows = rows;
+    job->accuracy = scene->accuracy;
+    job->scene = *scene;
+    job->scene.models[0] = model;
+    choose_mesh(job);
+    const dea_stretch stretch = {.user = job,
+                                 .count = line->count,
+                                 .longest = line->axis && !line->axis->uniform ? LONGEST_LIST : LONGEST_SWEEP,
+                                 .can_start = can_start,
+                                 .sweep = sweep,
+                                 .alone = alone};
+    const dea_status status = dea_stretch_solve(&stretch, error);
+    free(job);
+    return status;
+}

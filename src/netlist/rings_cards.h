@@ -1,0 +1,53 @@
+/* The film of rings (physics: section 7) as cards: the one text that exports, parts and the engine `ngspice` share.
+ *
+ * Node n moves by the displacement v(u<n>). A ring q has the relative stretches e_1 = v(a<q>) and e_2 = v(b<q>), linear in the
+ * displacements by slopes that depend on the degrees of the mesh alone and by the ring's `radial` and `hoop`; its two stresses
+ * v(s<q>) and v(t<q>) [MPa], changes from rest, act back on the nodes by the same slopes and its levers `along` and `across`. All
+ * nodes are 0 at rest.
+ *
+ *   e_1 = radial sum slopes_n u_n,   e_2 = hoop u_q,   forces: slopes_n along s_1 + across s_2
+ *   s_a = lambda_pre P_a - its value at rest - lambda_pre^4 M (1 + e_1)^2 (1 + e_2)^2/(1 + e_a),   M = eps (U/H)^2 where electroded
+ */
+#ifndef DEA_RINGS_CARDS_H
+#define DEA_RINGS_CARDS_H
+
+#include "netlist/part_text.h"
+#include "network/network.h"
+#include "network/rings.h"
+
+/* Nodes of the pool of the symbols: what the expressions of a ring depend on. */
+enum { DEA_RINGS_E1, DEA_RINGS_E2, DEA_RINGS_VARIABLES };
+
+/* Rings whose stretches differ in kind: both free; at the frame, e_2 = 0; a disc of degree 1, e_1 = e_2. */
+typedef enum dea_rings_strain { DEA_RINGS_FREE, DEA_RINGS_FRAME, DEA_RINGS_UNIFORM, DEA_RINGS_STRAINS } dea_rings_strain;
+
+/* One ring of the mesh. */
+typedef struct dea_rings_ring {
+    bool disc, electroded;
+    dea_rings_strain strain;
+    size_t place, first, node;     /* its place in the element; number of the element's first node, and of its own; 0: the centre */
+    dea_expr radial, hoop;         /* strains over displacements */
+    dea_expr along, across;        /* forces over stresses */
+} dea_rings_ring;
+
+typedef struct dea_rings_cards {
+    dea_symbols symbols;
+    dea_rings_mesh mesh;
+    dea_rings_slopes slopes[2]; /* of disc and annulus */
+    size_t node_count, edge;    /* moving nodes, 1 ... node_count from the centre out, and which is that at r_a */
+    size_t ring_count;
+    dea_rings_ring rings[DEA_RINGS_MOST];
+    dea_expr stress[DEA_RINGS_STRAINS][2][2]; /* s_1 and s_2 [MPa] of a kind of ring, bare and electroded */
+} dea_rings_cards;
+
+/* Builds the expressions of a mesh in the pool of the symbols. Displacements are in units of r, forces in units of
+ * 2 pi H F^2/r times 1 MPa, F = r/lambda_pre, so that only coverage, pre-stretch, law and M enter. Memory that ran out is told by
+ * the pool. */
+void dea_rings_cards_make(const dea_symbols *symbols, dea_rings_mesh mesh, dea_rings_cards *cards);
+
+/* Declares all that will be written; then, in this order: cards of the parameters by dea_part_text_parameters(), and the rest. */
+void dea_rings_cards_declare(const dea_rings_cards *cards, dea_part_text *text);
+/* Strains, stresses and balance of forces in displacement form. */
+void dea_rings_cards_write(const dea_rings_cards *cards, dea_part_text *text);
+
+#endif

@@ -1,0 +1,179 @@
+#include "netlist/rings_line.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "expression/formula.h"
+#include "expression/tape.h"
+#include "netlist/export.h"
+
+enum { AXIS, SYMBOLS = 8 + DEA_LAW_CONSTANTS };
+
+/* A number of the scene that stays a symbol in the text: a parameter of that name. */
+typedef struct quantity {
+    char name[DEA_PART_NAME];
+    const char *unit;
+    double value;
+} quantity;
+
+typedef struct writer {
+    const dea_rings_line *line;
+    const dea_dialect *dialect;
+    FILE *out;
+    dea_pool pool; /* owned */
+    quantity quantities[SYMBOLS];
+    size_t count; /* of them; number 0 is the axis */
+    dea_symbols symbols;
+    dea_rings_cards cards;
+    dea_part_text text; /* owned */
+} writer;
+
+/* A number becomes a symbol; what moves with the axis stays as it is. */
+static void name(writer *w, dea_expr *ref, const char *name, const char *unit)
+{
+    const double value = dea_expr_constant(&w->pool, *ref);
+    if (!isnan(value)) {
+        quantity *q = &w->quantities[w->count];
+        *q = (quantity){.unit = unit, .value = value};
+        snprintf(q->name, sizeof q->name, "%s", name);
+        *ref = dea_expr_symbol(&w->pool, (int)w->count++);
+    }
+}
+
+static void name_all(writer *w)
+{
+    dea_symbols *s = &w->symbols;
+    *s = dea_symbols_of(w->line->scene, w->line->axis, &w->pool);
+    w->quantities[AXIS] = (quantity){.name = "v(axis)"};
+    w->count = 1;
+    name(w, &s->frame_radius, "frame_radius", "m");
+    name(w, &s->coverage, "coverage", "1");
+    name(w, &s->film_thickness, "film_thickness", "m");
+    name(w, &s->prestretch, "prestretch", "1");
+    name(w, &s->permittivity, "permittivity", "F/m");
+    name(w, &s->voltage, "voltage", "V");
+    const size_t constants = s->law->constant_count * (s->law->entries > 1 ? w->line->scene->material.entry_count : 1);
+    for (size_t i = 0; i < constants; i++) {
+        char own[DEA_QUANTITY_NAME];
+        dea_constant_name(s->law, i, own);
+        name(w, &s->constants[i], own, s->law->constants[i % s->law->constant_count].unit);
+    }
+}
+
+static void write_quantities(const writer *w)
+{
+    for (size_t i = 1; i < w->count; i++) {
+        const quantity *q = &w->quantities[i];
+        fprintf(w->out, "* [%s]\n", q->unit);
+        dea_part_value(w->out, q->name, q->value);
+    }
+}
+
+/* The displacement of the edge in metres. */
+static void write_edge(const writer *w)
+{
+    fputs("* displacement of the edge [m]\n", w->out);
+    if (!w->text.moves[w->symbols.frame_radius]) {
+        char radius[DEA_PART_NAME];
+        fprintf(w->out, "Eedge edge 0 u%zu 0 {%s}\n", w->cards.edge,
+                dea_part_text_parameter(&w->text, w->symbols.frame_radius, radius));
+        return;
+    }
+    dea_dialect_source_begin(w->dialect, w->out, DEA_VOLTAGE, "edge", "edge", "0");
+    dea_part_text_write(&w->text, w->symbols.frame_radius);
+    fprintf(w->out, "*v(u%zu)", w->cards.edge);
+    dea_dialect_source_end(w->dialect, w->out);
+}
+
+static void write_guess(const writer *w, const char *node, double value)
+{
+    fprintf(w->out, " v(xline%zu%s%s)=", w->line->number, w->dialect->inside, node);
+    dea_part_number(w->out, value);
+}
+
+/* Where Newton starts: the film at rest, and what moves with the axis alone at the first point. */
+static dea_status write_start(writer *w, dea_error *error)
+{
+    const dea_axis *axis = w->line->axis;
+    const double none[] = {0.0, 0.0};
+    double symbols[SYMBOLS];
+    dea_tape tape;
+    size_t count = 0;
+    int *refs = calloc((size_t)w->pool.count + 1, sizeof *refs);
+    if (!refs) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
+    }
+    for (int i = 0; i < w->pool.count; i++) {
+        if (w->text.written[i] && w->text.moves[i]) {
+            refs[count++] = i;
+        }
+    }
+    for (size_t i = 0; i < w->count; i++) {
+        symbols[i] = i == AXIS ? axis->values[w->line->from] : w->quantities[i].value;
+    }
+    const dea_status status =
+        dea_tape_compile_many(&w->pool, refs, (int)count, (int)w->count, DEA_RINGS_VARIABLES, &tape, error);
+    if (status == DEA_OK) {
+        dea_tape_values(&tape, symbols, none);
+        fputs(".nodeset", w->out);
+        write_guess(w, "point", (double)w->line->from);
+        write_guess(w, "axis", symbols[AXIS]);
+        for (size_t i = 0; i < count; i++) {
+            char node[DEA_PART_NAME];
+            snprintf(node, sizeof node, "x%d", refs[i]);
+            write_guess(w, node, dea_tape_value(&tape, (int)i));
+        }
+        fputc('\n', w->out);
+        dea_tape_free(&tape);
+    }
+    free(refs);
+    return status;
+}
+
+static dea_status write_all(writer *w, dea_error *error)
+{
+    const dea_rings_line *line = w->line;
+    const char *symbols[SYMBOLS];
+    for (size_t i = 0; i < w->count; i++) {
+        symbols[i] = w->quantities[i].name;
+    }
+    w->text.symbols = symbols;
+    if (line->axis) {
+        dea_part_text_move_symbol(&w->text, AXIS);
+    }
+    dea_rings_cards_declare(&w->cards, &w->text);
+    dea_part_text_use(&w->text, w->symbols.frame_radius);
+    fprintf(w->out, ".subckt line%zu k edge\n", line->number);
+    write_quantities(w);
+    dea_part_text_parameters(&w->text);
+    if (line->axis) {
+        dea_export_axis(w->dialect, line->axis, line->from, line->to, w->out);
+    }
+    dea_part_text_swept(&w->text);
+    dea_rings_cards_write(&w->cards, &w->text);
+    write_edge(w);
+    fprintf(w->out, ".ends\nxline%zu k edge%zu line%zu\n", line->number, line->number, line->number);
+    return line->axis ? write_start(w, error) : DEA_OK;
+}
+
+dea_status dea_rings_line_write(const dea_rings_line *line, const dea_dialect *dialect, FILE *out, dea_error *error)
+{
+    writer w = {.line = line, .dialect = dialect, .out = out};
+    dea_status status = DEA_OK;
+    (void)dea_expr_number(&w.pool, 0.0);
+    if (!w.pool.exhausted) {
+        name_all(&w);
+        dea_rings_cards_make(&w.symbols, line->mesh, &w.cards);
+    }
+    if (!w.pool.exhausted && dea_part_text_open(&w.text, &w.pool, dialect, out)) {
+        status = write_all(&w, error);
+    } else {
+        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
+    }
+    if (status == DEA_OK && w.text.exhausted) {
+        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
+    }
+    dea_part_text_close(&w.text);
+    dea_pool_free(&w.pool);
+    return status;
+}

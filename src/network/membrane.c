@@ -1,0 +1,700 @@
+#include "network/membrane.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "model/models.h"
+#include "support/gauss.h"
+#include "support/lapack.h"
+
+static void set_masses(const dea_scene *scene, dea_membrane *m)
+{
+    const dea_point *point = &m->film.point;
+    const double density = isnan(scene->material.density) ? 0.0 : scene->material.density;
+    const double electrode = isnan(scene->actuator.electrode_mass) ? 0.0 : scene->actuator.electrode_mass;
+    m->heavy = m->film.mass > 0.0;
+    for (size_t n = 0; n < m->rings.node_count && m->heavy; n++) {
+        m->masses[n] = density * point->film_thickness * m->rings.areas[n] +
+                       electrode * point->film.square * m->rings.coated[n]; /* it lies on the pre-stretched film */
+    }
+}
+
+dea_status dea_membrane_open(const dea_scene *scene, const dea_model *model, dea_rings_mesh mesh, dea_membrane *m, dea_error *error)
+{
+    *m = (dea_membrane){0};
+    const dea_status status = dea_dynamics_settle(scene, model, &m->film, error);
+    if (status == DEA_OK) {
+        dea_rings_cut(&m->film.point, mesh, &m->rings);
+        set_masses(scene, m);
+    }
+    return status;
+}
+
+dea_rings_mesh dea_membrane_usual_mesh(const dea_scene *scene)
+{
+    const dea_actuator *actuator = &scene->actuator;
+    const double coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
+    return (dea_rings_mesh){8, 16, coverage < 0.1};
+}
+
+static double square_of(const dea_membrane *m, double voltage)
+{
+    const double field = voltage / m->film.point.film_thickness;
+    return m->film.point.film.permittivity * field * field; /* k [Pa] */
+}
+
+/* lambda_pre (1 + e_a): stretches of a ring, and their changes from rest. */
+static void strain_ring(const dea_membrane *m, const dea_ring *ring, const double *u, double e[2])
+{
+    double radial = 0.0, hoop = 0.0;
+    (void)m;
+    for (size_t i = 0; i < ring->count; i++) {
+        radial += ring->radial[i] * u[ring->first + i];
+        hoop += ring->hoop[i] * u[ring->first + i];
+    }
+    e[0] = radial;
+    e[1] = hoop;
+}
+
+/* S_a = lambda_a P_a + lambda_pre e_a P_0, of absolute stresses P_0 + P_a; dS_a/dlambda_b = lambda_a W_ab + (P_0 + P_a) where
+ * a = b. Branches that are held add their share of S_a to the film's own. */
+static bool look_at_ring(const dea_membrane *m, const dea_ring *ring, const double *u, dea_ring_look *at)
+{
+    const dea_film *film = &m->film.point.film;
+    const double held = m->film.held, l0 = film->prestretch;
+    double e[2];
+    strain_ring(m, ring, u, e);
+    if (!(e[0] > -1.0 && e[1] > -1.0)) {
+        return false;
+    }
+    const dea_biaxial stress = dea_film_biaxial(film, e[0], e[1]);
+    const double p[2] = {stress.p1, stress.p2};
+    const double w[2][2] = {{stress.w11, stress.w12}, {stress.w12, stress.w22}};
+    for (int a = 0; a < 2; a++) {
+        const double l = at->stretch[a] = l0 * (1.0 + e[a]);
+        const double own = l * p[a] + l0 * e[a] * film->tension;
+        at->nominal[a] = p[a] + held * own / l;
+        at->cauchy[a] = (1.0 + held) * own;
+        for (int b = 0; b < 2; b++) {
+            const double slope = l * w[a][b] + (a == b ? film->tension + p[a] : 0.0);
+            at->slope[a][b] = (1.0 + held) * slope;
+            at->tangent[a][b] = w[a][b] + held * (slope - (a == b ? own / l : 0.0)) / l;
+        }
+    }
+    return isfinite(p[0]) && isfinite(p[1]);
+}
+
+bool dea_membrane_look_at(const dea_membrane *m, const double *u, dea_membrane_look *look)
+{
+    double sum = 0.0;
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        const dea_ring *ring = &m->rings.rings[r];
+        dea_ring_look *at = &look->rings[r];
+        if (!look_at_ring(m, ring, u, at)) {
+            return false;
+        }
+        const double area = at->stretch[0] * at->stretch[1];
+        sum += ring->electroded ? ring->volume * area * area : 0.0;
+    }
+    const double thickness = m->film.point.film_thickness;
+    look->capacitance = m->film.point.film.permittivity / (thickness * thickness) * sum;
+    return true;
+}
+
+/* Subtracts what nominal stresses f_a of one ring do to its nodes. */
+static void pull_ring(const dea_ring *ring, double l0, const double f[2], double *force)
+{
+    const double radial = ring->volume * l0 * f[0], hoop = ring->volume * l0 * f[1];
+    for (size_t i = 0; i < ring->count; i++) {
+        force[ring->first + i] -= radial * ring->radial[i] + hoop * ring->hoop[i];
+    }
+}
+
+void dea_membrane_pull(const dea_membrane *m, double (*f)[2], double *force)
+{
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        pull_ring(&m->rings.rings[r], m->film.point.film.prestretch, f[r], force);
+    }
+}
+
+void dea_membrane_push(const dea_membrane *m, const dea_membrane_look *look, double *push)
+{
+    const double unit = square_of(m, 1.0);
+    memset(push, 0, m->rings.node_count * sizeof *push);
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        const double *l = look->rings[r].stretch;
+        const double f[2] = {-unit * l[0] * l[1] * l[1], -unit * l[0] * l[0] * l[1]};
+        if (m->rings.rings[r].electroded) {
+            pull_ring(&m->rings.rings[r], m->film.point.film.prestretch, f, push);
+        }
+    }
+}
+
+void dea_membrane_rates(const dea_membrane *m, const double *v, double (*rates)[2])
+{
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        strain_ring(m, &m->rings.rings[r], v, rates[r]);
+        rates[r][0] *= m->film.point.film.prestretch;
+        rates[r][1] *= m->film.point.film.prestretch;
+    }
+}
+
+/* sum_i c_i (S_a - z_ai) of stress a of a ring. */
+static double branch_stress(const dea_membrane *m, const dea_membrane_look *look, size_t r, int a, const double *z)
+{
+    const dea_dynamics *d = &m->film;
+    const double *own = z + (2 * r + (size_t)a) * d->branch_count;
+    double sum = 0.0;
+    for (size_t i = 0; i < d->branch_count; i++) {
+        sum += d->branches[i].share * (look->rings[r].cauchy[a] - own[i]);
+    }
+    return sum;
+}
+
+void dea_membrane_viscous(const dea_membrane *m, const dea_membrane_look *look, const double *v, const double *z, double (*x)[2])
+{
+    const double tau = m->film.retardation;
+    const bool damped = v && tau > 0.0;
+    if (damped) {
+        dea_membrane_rates(m, v, x);
+    }
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        const dea_ring_look *at = &look->rings[r];
+        const double rates[2] = {damped ? x[r][0] : 0.0, damped ? x[r][1] : 0.0};
+        for (int a = 0; a < 2; a++) {
+            x[r][a] = tau * (at->slope[a][0] * rates[0] + at->slope[a][1] * rates[1]) + (z ? branch_stress(m, look, r, a, z) : 0.0);
+        }
+    }
+}
+
+void dea_membrane_force(const dea_membrane *m, const dea_membrane_look *look, double voltage, double (*x)[2], double *force)
+{
+    const double k = square_of(m, voltage);
+    memset(force, 0, m->rings.node_count * sizeof *force);
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        const dea_ring *ring = &m->rings.rings[r];
+        const dea_ring_look *at = &look->rings[r];
+        const double area = at->stretch[0] * at->stretch[1], pressure = ring->electroded ? k * area : 0.0;
+        double s[2];
+        for (int a = 0; a < 2; a++) {
+            s[a] = at->nominal[a] - pressure * at->stretch[1 - a] + (x ? x[r][a] / at->stretch[a] : 0.0);
+        }
+        pull_ring(ring, m->film.point.film.prestretch, s, force);
+    }
+}
+
+/* ds_a/dlambda_b of a ring: of the film, of its electrical part k lambda_a lambda_b^2, of x_a/lambda_a at constant x_a, and of a
+ * damper. */
+static void ring_tangent(const dea_ring_look *at, double k, const double *x, double share, double t[2][2])
+{
+    for (int a = 0; a < 2; a++) {
+        const double l = at->stretch[a];
+        for (int b = 0; b < 2; b++) {
+            const double electric = a == b ? k * at->stretch[1 - a] * at->stretch[1 - a] : 2.0 * k * at->stretch[0] * at->stretch[1];
+            const double lever = a == b && x ? x[a] / (l * l) : 0.0;
+            t[a][b] = at->tangent[a][b] - electric - lever + share * at->slope[a][b] / l;
+        }
+    }
+}
+
+bool dea_membrane_elliptic(const dea_membrane *m, const dea_membrane_look *look, double voltage, double (*x)[2], double share)
+{
+    const double k = square_of(m, voltage);
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        double t[2][2];
+        ring_tangent(&look->rings[r], m->rings.rings[r].electroded ? k : 0.0, x ? x[r] : NULL, share, t);
+        if (!(t[0][0] > 0.0)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Adds lever^T t lever of one ring. */
+static void assemble_ring(const dea_membrane *m, const dea_ring *ring, double t[2][2], double *matrix)
+{
+    const double l0 = m->film.point.film.prestretch, unit = ring->volume * l0 * l0;
+    const size_t n = m->rings.node_count;
+    for (size_t j = 0; j < ring->count; j++) {
+        const double radial = unit * (t[0][0] * ring->radial[j] + t[0][1] * ring->hoop[j]);
+        const double hoop = unit * (t[1][0] * ring->radial[j] + t[1][1] * ring->hoop[j]);
+        double *column = matrix + (ring->first + j) * n + ring->first;
+        for (size_t i = 0; i < ring->count; i++) {
+            column[i] += ring->radial[i] * radial + ring->hoop[i] * hoop;
+        }
+    }
+}
+
+void dea_membrane_stiffness(const dea_membrane *m, const dea_membrane_look *look, double voltage, double (*x)[2], double share,
+                            double *stiffness)
+{
+    const double k = square_of(m, voltage);
+    memset(stiffness, 0, m->rings.node_count * m->rings.node_count * sizeof *stiffness);
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        double t[2][2];
+        ring_tangent(&look->rings[r], m->rings.rings[r].electroded ? k : 0.0, x ? x[r] : NULL, share, t);
+        assemble_ring(m, &m->rings.rings[r], t, stiffness);
+    }
+}
+
+void dea_membrane_damping(const dea_membrane *m, const dea_membrane_look *look, double share, double *damping)
+{
+    memset(damping, 0, m->rings.node_count * m->rings.node_count * sizeof *damping);
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        const dea_ring_look *at = &look->rings[r];
+        double t[2][2];
+        for (int a = 0; a < 2; a++) {
+            t[a][0] = share * at->slope[a][0] / at->stretch[a];
+            t[a][1] = share * at->slope[a][1] / at->stretch[a];
+        }
+        assemble_ring(m, &m->rings.rings[r], t, damping);
+    }
+}
+
+void dea_membrane_relax(const dea_membrane *m, const dea_membrane_look *look, double *z)
+{
+    const size_t count = m->film.branch_count;
+    for (size_t k = 0; k < 2 * m->rings.ring_count; k++) {
+        for (size_t i = 0; i < count; i++) {
+            z[k * count + i] = look->rings[k / 2].cauchy[k % 2];
+        }
+    }
+}
+
+/* ---- equilibria */
+
+enum { MOST_ROUNDS = 30 };
+static const double longest_step = 0.1;  /* of a strain in one round */
+static const double shortest_load = 1e-9; /* step of the load, over its change: there the equilibrium ends */
+
+/* Largest strain that goes with displacements. */
+static double largest_strain(const dea_membrane *m, const double *u)
+{
+    double largest = 0.0;
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        double e[2];
+        strain_ring(m, &m->rings.rings[r], u, e);
+        largest = fmax(largest, fmax(fabs(e[0]), fabs(e[1])));
+    }
+    return largest;
+}
+
+/* One round of Newton on F + remainder = 0 from u on; the size of its step as a strain, NAN where the film is not stable there. */
+static double newton_round(const dea_membrane *m, double voltage, const double *z, const double *remainder, double *u)
+{
+    const size_t n = m->rings.node_count;
+    double x[DEA_RINGS_MOST][2], step[DEA_RINGS_NODES], stiffness[DEA_RINGS_NODES * DEA_RINGS_NODES];
+    dea_membrane_look look;
+    if (!dea_membrane_look_at(m, u, &look)) {
+        return (double)NAN;
+    }
+    dea_membrane_viscous(m, &look, NULL, z, x);
+    const double share = z ? m->film.total_share : 0.0;
+    if (!dea_membrane_elliptic(m, &look, voltage, x, share)) {
+        return (double)NAN;
+    }
+    dea_membrane_force(m, &look, voltage, x, step);
+    dea_membrane_stiffness(m, &look, voltage, x, share, stiffness);
+    for (size_t i = 0; i < n; i++) {
+        step[i] += remainder[i];
+    }
+    if (dea_lapacke_dposv(LAPACK_COL_MAJOR, 'L', (lapack_int)n, 1, stiffness, (lapack_int)n, step, (lapack_int)n) != 0) {
+        return (double)NAN;
+    }
+    const double size = largest_strain(m, step);
+    for (size_t i = 0; i < n && size <= longest_step; i++) {
+        u[i] += step[i];
+    }
+    return size <= longest_step ? size : (double)NAN;
+}
+
+/* Newton over stable states only. */
+static bool newton(const dea_membrane *m, double voltage, const double *z, const double *remainder, double *u)
+{
+    double last = INFINITY;
+    for (int i = 0; i < MOST_ROUNDS; i++) {
+        const double size = newton_round(m, voltage, z, remainder, u);
+        if (isnan(size)) {
+            return false;
+        }
+        if (size <= 4e-16 * largest_strain(m, u) || (size < 1e-10 && size >= 0.5 * last)) {
+            return true;
+        }
+        last = size;
+    }
+    return last <= 1e-12;
+}
+
+/* F at u [N]; false where the film cannot be there. */
+static bool force_at(const dea_membrane *m, double voltage, const double *z, const double *u, double *force)
+{
+    double x[DEA_RINGS_MOST][2];
+    dea_membrane_look look;
+    if (!dea_membrane_look_at(m, u, &look)) {
+        return false;
+    }
+    dea_membrane_viscous(m, &look, NULL, z, x);
+    dea_membrane_force(m, &look, voltage, x, force);
+    return true;
+}
+
+/* The load grows from what holds u now, in steps over stable states: the square of the voltage, and what F is short of at first. */
+static bool follow(const dea_membrane *m, double before, double voltage, const double *z, double *u)
+{
+    const size_t n = m->rings.node_count;
+    double start[DEA_RINGS_NODES], remainder[DEA_RINGS_NODES], guess[DEA_RINGS_NODES];
+    if (!force_at(m, sqrt(before), z, u, start)) {
+        return false;
+    }
+    for (double at = 0.0, step = 1.0; at < 1.0;) {
+        const double next = fmin(1.0, at + step), square = before + next * (voltage * voltage - before);
+        for (size_t i = 0; i < n; i++) {
+            remainder[i] = -(1.0 - next) * start[i];
+            guess[i] = u[i];
+        }
+        if (newton(m, next < 1.0 ? sqrt(square) : voltage, z, remainder, guess)) {
+            memcpy(u, guess, n * sizeof *u);
+            at = next;
+            step *= 2.0;
+        } else if ((step *= 0.25) < shortest_load) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Square of the voltage that holds u best, with the branches where they are [V^2]: of F = F_0 + phi U^2 the least sum of squares. */
+static double holding_square(const dea_membrane *m, const double *z, const double *u)
+{
+    double still[DEA_RINGS_NODES], push[DEA_RINGS_NODES], up = 0.0, down = 0.0;
+    dea_membrane_look look;
+    if (!force_at(m, 0.0, z, u, still) || !dea_membrane_look_at(m, u, &look)) {
+        return 0.0;
+    }
+    dea_membrane_push(m, &look, push);
+    for (size_t i = 0; i < m->rings.node_count; i++) {
+        up -= still[i] * push[i];
+        down += push[i] * push[i];
+    }
+    return up > 0.0 ? up / down : 0.0;
+}
+
+bool dea_membrane_follow(const dea_membrane *m, double voltage, const double *z, double *u)
+{
+    return follow(m, holding_square(m, z, u), voltage, z, u);
+}
+
+bool dea_membrane_still(const dea_membrane *m, double voltage, double *u)
+{
+    memset(u, 0, m->rings.node_count * sizeof *u);
+    return follow(m, 0.0, voltage, NULL, u);
+}
+
+bool dea_membrane_modes(const dea_membrane *m, double *stiffness, double *frequencies, double *shapes)
+{
+    const size_t n = m->rings.node_count;
+    if (!m->heavy) {
+        return false;
+    }
+    for (size_t j = 0; j < n; j++) {
+        for (size_t i = 0; i < n; i++) {
+            shapes[j * n + i] = 0.5 * (stiffness[j * n + i] + stiffness[i * n + j]) / sqrt(m->masses[i] * m->masses[j]);
+        }
+    }
+    if (dea_lapacke_dsyev(LAPACK_COL_MAJOR, 'V', 'L', (lapack_int)n, shapes, (lapack_int)n, frequencies) != 0) {
+        return false;
+    }
+    for (size_t k = 0; k < n; k++) {
+        frequencies[k] = sqrt(fmax(0.0, frequencies[k]));
+        for (size_t i = 0; i < n; i++) {
+            shapes[k * n + i] /= sqrt(m->masses[i]);
+        }
+    }
+    return true;
+}
+
+/* ---- rows */
+
+/* F_DEA at the edge, outward: 2 pi R_a H times the electrical stress k lambda_1 lambda_2^2 of its electroded side [N]. */
+static double edge_force(const dea_membrane *m, const dea_membrane_look *look, double voltage)
+{
+    const size_t inner = m->rings.mesh.disc - 1; /* the disc has no ring at its centre */
+    const bool dot = m->film.point.kind == DEA_DOT;
+    const size_t r = dot ? inner : inner + 1;
+    const double *l = look->rings[r].stretch;
+    return (dot ? 1.0 : -1.0) * 2.0 * DEA_PI * m->rings.rings[r].radius * m->film.point.film_thickness * square_of(m, voltage) *
+           l[0] * l[1] * l[1];
+}
+
+void dea_membrane_row(const dea_membrane *m, const dea_membrane_look *look, double voltage, const double *u, dea_row *row)
+{
+    const double k = square_of(m, voltage), tension = m->film.point.film.tension;
+    double loss[2][DEA_RINGS_MOST], area[DEA_RINGS_MOST], most = -INFINITY; /* of stresses */
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        const dea_ring_look *at = &look->rings[r];
+        area[r] = at->stretch[0] * at->stretch[1];
+        for (int a = 0; a < 2; a++) {
+            loss[a][r] = (m->rings.rings[r].electroded ? k * area[r] * at->stretch[1 - a] : 0.0) - at->nominal[a];
+        }
+    }
+    for (int i = 0; i < 4; i++) {
+        most = fmax(most, dea_rings_largest(&m->rings, i < 2, loss[i % 2]));
+    }
+    dea_point point = m->film.point;
+    point.voltage = voltage;
+    dea_row_fill(row, &point,
+                 (dea_found){.strain = u[m->rings.edge] / m->film.radius,
+                             .force = edge_force(m, look, voltage),
+                             .stretch = dea_rings_largest(&m->rings, m->film.point.kind == DEA_DOT, area),
+                             .capacitance = look->capacitance,
+                             .taut = tension > most});
+}
+
+/* dC/dt [F/s]. */
+static double capacitance_rate(const dea_membrane *m, const dea_membrane_look *look, const double *v)
+{
+    double push[DEA_RINGS_NODES], sum = 0.0;
+    dea_membrane_push(m, look, push);
+    for (size_t i = 0; i < m->rings.node_count; i++) {
+        sum += 2.0 * push[i] * v[i];
+    }
+    return sum;
+}
+
+double dea_membrane_current(const dea_membrane *m, const dea_membrane_look *look, const dea_moment *moment, const double *v)
+{
+    const dea_dynamics *d = &m->film;
+    const double leak = moment->voltage * d->conductance;
+    if (moment->charging) {
+        return moment->charge_slope + leak;
+    }
+    if (d->series > 0.0) {
+        return (moment->source - moment->voltage) / d->series;
+    }
+    return look->capacitance * moment->slope + capacitance_rate(m, look, v) * moment->voltage + leak;
+}
+
+/* The first sample of a run from rest, over a resistance that the network leaves out: the film has no charge yet. */
+static dea_moment uncharged(const dea_membrane *m, const dea_moment *moment)
+{
+    return (dea_moment){.time = moment->time, .source = moment->source, .charging = true,
+                        .charge_slope = moment->source / m->film.dropped};
+}
+
+bool dea_membrane_sample(const dea_membrane *m, const dea_moment *moment, const double *u, const double *v, dea_sample *sample)
+{
+    static const double still[DEA_RINGS_NODES] = {0.0};
+    const bool first = m->film.dropped > 0.0 && moment->time == 0.0 && !m->film.biased;
+    const dea_moment at = first ? uncharged(m, moment) : *moment;
+    const double *speed = first ? still : v;
+    dea_membrane_look look;
+    dea_row row = dea_row_failed();
+    *sample = dea_sample_refused(at.time, at.source, DEA_STATE_PULL_IN);
+    if (dea_membrane_look_at(m, first ? still : u, &look)) {
+        dea_membrane_row(m, &look, at.voltage, first ? still : u, &row);
+    }
+    if (row.state == DEA_STATE_FAILED || !isfinite(speed[m->rings.edge])) {
+        return false;
+    }
+    *sample = dea_sample_refused(at.time, at.source, row.state);
+    sample->displacement = row.displacement;
+    sample->strain = row.strain;
+    sample->velocity = speed[m->rings.edge];
+    sample->force = row.force;
+    sample->focal_length = row.focal_length;
+    sample->film_voltage = at.voltage;
+    if (m->film.port) {
+        sample->current = dea_membrane_current(m, &look, &at, speed);
+        sample->charge = row.charge;
+    }
+    return true;
+}
+
+static double dot(size_t n, const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
+
+/* Slowest and fastest mode of a stiffness, which is lost. */
+static bool find_modes(const dea_membrane *m, double *stiffness, dea_membrane_rest *rest)
+{
+    double frequencies[DEA_RINGS_NODES], shapes[DEA_RINGS_NODES * DEA_RINGS_NODES];
+    if (!dea_membrane_modes(m, stiffness, frequencies, shapes)) {
+        return false;
+    }
+    rest->slowest = frequencies[0];
+    rest->fastest = frequencies[m->rings.node_count - 1];
+    return true;
+}
+
+bool dea_membrane_at_rest(const dea_membrane *m, dea_membrane_rest *rest)
+{
+    static const double still[DEA_RINGS_NODES] = {0.0};
+    const size_t n = m->rings.node_count, edge = m->rings.edge;
+    double stiffness[DEA_RINGS_NODES * DEA_RINGS_NODES], held[DEA_RINGS_NODES * DEA_RINGS_NODES];
+    double push[DEA_RINGS_NODES], shape[DEA_RINGS_NODES], stiff[DEA_RINGS_NODES];
+    dea_membrane_look look;
+    *rest = (dea_membrane_rest){0};
+    if (!dea_membrane_look_at(m, still, &look)) {
+        return false;
+    }
+    dea_membrane_push(m, &look, push);
+    memcpy(shape, push, sizeof shape);
+    memcpy(stiff, push, sizeof stiff);
+    dea_membrane_stiffness(m, &look, 0.0, NULL, 0.0, stiffness);
+    dea_membrane_stiffness(m, &look, 0.0, NULL, m->film.total_share, held);
+    const lapack_int size = (lapack_int)n;
+    if ((m->heavy && !find_modes(m, held, rest)) ||
+        dea_lapacke_dposv(LAPACK_COL_MAJOR, 'L', size, 1, stiffness, size, shape, size) != 0 ||
+        dea_lapacke_dposv(LAPACK_COL_MAJOR, 'L', size, 1, held, size, stiff, size) != 0) {
+        return false;
+    }
+    rest->compliance = fabs(shape[edge]);
+    rest->softness = dot(n, push, stiff);
+    rest->force = fabs(edge_force(m, &look, 1.0));
+    rest->capacitance = look.capacitance;
+    rest->capacitance_slope = 2.0 * dot(n, push, shape) / rest->compliance;
+    return true;
+}
+
+/* ---- energies */
+
+/* Power against nominal stresses f_a of the rings at stretches per time [W]. */
+static double ring_power(const dea_membrane *m, double (*f)[2], double (*rates)[2])
+{
+    double sum = 0.0;
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        sum += m->rings.rings[r].volume * (f[r][0] * rates[r][0] + f[r][1] * rates[r][1]);
+    }
+    return sum;
+}
+
+static double kinetic_energy(const dea_membrane *m, const double *v)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < m->rings.node_count && m->heavy; i++) {
+        sum += 0.5 * m->masses[i] * v[i] * v[i];
+    }
+    return sum;
+}
+
+/* f_a = x_a/lambda_a. */
+static void nominal_of(const dea_membrane *m, const dea_membrane_look *look, double (*x)[2])
+{
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        x[r][0] /= look->rings[r].stretch[0];
+        x[r][1] /= look->rings[r].stretch[1];
+    }
+}
+
+void dea_membrane_audit_add(dea_audit *audit, const dea_membrane *m, const dea_membrane_look *look, const dea_moment *moment,
+                            const double *v, const double *z, double weight)
+{
+    const dea_dynamics *d = &m->film;
+    const double square = moment->voltage * moment->voltage, leak = square * d->conductance;
+    const bool series = d->series > 0.0;
+    const double flow = series ? dea_membrane_current(m, look, moment, v) : 0.0;
+    double rates[DEA_RINGS_MOST][2], x[DEA_RINGS_MOST][2];
+    dea_membrane_rates(m, v, rates);
+    if (d->branch_count > 0) {
+        dea_membrane_viscous(m, look, NULL, z, x);
+        nominal_of(m, look, x);
+        audit->branch += weight * ring_power(m, x, rates);
+    }
+    double ohmic = leak + flow * flow * d->series;
+    if (d->retardation > 0.0) {
+        dea_membrane_viscous(m, look, v, NULL, x);
+        nominal_of(m, look, x);
+        ohmic += ring_power(m, x, rates);
+    }
+    audit->work += weight * (series ? moment->source * flow : 0.5 * capacitance_rate(m, look, v) * square + leak);
+    audit->dissipated += weight * ohmic;
+    audit->largest = fmax(fmax(audit->largest, kinetic_energy(m, v)), fmax(fabs(audit->work), fabs(audit->dissipated)));
+}
+
+/* Work against the film, z NULL, or against its branches at z alone, along the straight way from u to @p to [J]. */
+static double way_integral(const dea_membrane *m, const double *u, const double *to, const double *z)
+{
+    const size_t n = m->rings.node_count;
+    double sum = 0.0, way[DEA_RINGS_NODES], at[DEA_RINGS_NODES], rates[DEA_RINGS_MOST][2], f[DEA_RINGS_MOST][2];
+    dea_membrane_look look;
+    for (size_t i = 0; i < n; i++) {
+        way[i] = to[i] - u[i];
+    }
+    dea_membrane_rates(m, way, rates);
+    for (int g = 0; g < DEA_GAUSS_POINTS; g++) {
+        for (size_t i = 0; i < n; i++) {
+            at[i] = u[i] + dea_gauss_place(g) * way[i];
+        }
+        if (!dea_membrane_look_at(m, at, &look)) {
+            return (double)NAN;
+        }
+        dea_membrane_viscous(m, &look, NULL, z, f);
+        nominal_of(m, &look, f);
+        for (size_t r = 0; r < m->rings.ring_count && !z; r++) {
+            memcpy(f[r], look.rings[r].nominal, sizeof f[r]);
+        }
+        sum += dea_gauss_weight(g) * ring_power(m, f, rates);
+    }
+    return sum;
+}
+
+void dea_membrane_audit_jump(dea_audit *audit, const dea_membrane *m, const double *u, const double *to, const double *z)
+{
+    const double branch = m->film.branch_count > 0 ? way_integral(m, u, to, z) : 0.0;
+    audit->branch += branch;
+    audit->work += branch + way_integral(m, u, to, NULL);
+    audit->largest = fmax(audit->largest, fabs(audit->work));
+}
+
+/* Springs of the branches: (1/2) f k^-1 f of the nominal stresses f_a = c_i (S_a - z_ai)/lambda_a that they hold, with the tangent
+ * k_ab = c_i S_ab/lambda_a. */
+static double spring_energy(const dea_membrane *m, const dea_membrane_look *look, const double *z)
+{
+    const size_t count = m->film.branch_count;
+    double sum = 0.0;
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        const dea_ring_look *at = &look->rings[r];
+        const double det = at->slope[0][0] * at->slope[1][1] - at->slope[0][1] * at->slope[1][0];
+        for (size_t i = 0; i < count; i++) {
+            const double q1 = at->cauchy[0] - z[2 * r * count + i], q2 = at->cauchy[1] - z[(2 * r + 1) * count + i];
+            const double e1 = (at->slope[1][1] * q1 - at->slope[0][1] * q2) / det; /* elongations of the spring */
+            const double e2 = (at->slope[0][0] * q2 - at->slope[1][0] * q1) / det;
+            sum += 0.5 * m->rings.rings[r].volume * m->film.branches[i].share * (q1 * e1 / at->stretch[0] + q2 * e2 / at->stretch[1]);
+        }
+    }
+    return sum;
+}
+
+dea_membrane_energy dea_membrane_energy_of(const dea_membrane *m, double voltage, const double *u, const double *v, const double *z)
+{
+    static const double rest[DEA_RINGS_NODES] = {0.0};
+    const double none = (double)NAN;
+    dea_membrane_look look;
+    if (!dea_membrane_look_at(m, u, &look)) {
+        return (dea_membrane_energy){none, none, none, none};
+    }
+    return (dea_membrane_energy){.electric = 0.5 * look.capacitance * voltage * voltage,
+                                 .elastic = way_integral(m, rest, u, NULL),
+                                 .springs = m->film.branch_count > 0 ? spring_energy(m, &look, z) : 0.0,
+                                 .kinetic = kinetic_energy(m, v)};
+}
+
+void dea_membrane_audit_close(const dea_audit *audit, const dea_membrane *m, const dea_membrane_energy *first,
+                              const dea_membrane_energy *last, dea_summary *summary)
+{
+    const double springs = last->springs - first->springs;
+    summary->electric = last->electric - first->electric;
+    summary->elastic = last->elastic - first->elastic + springs;
+    summary->kinetic = last->kinetic - first->kinetic;
+    summary->work = audit->work + (m->film.series > 0.0 ? 0.0 : summary->electric);
+    summary->dissipated = audit->dissipated + audit->branch - springs;
+    const double spent = summary->electric + summary->elastic + summary->kinetic + summary->dissipated;
+    double largest = fmax(audit->largest, fabs(audit->branch));
+    largest = fmax(largest, fmax(fabs(summary->elastic), fmax(first->electric, last->electric)));
+    summary->residual = largest > 0.0 ? fabs(summary->work - spent) / largest : 0.0;
+}

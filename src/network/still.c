@@ -1,0 +1,342 @@
+#include "network/still.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "model/models.h"
+
+/* Share of the load that the first step from rest takes, and the least one: a fold then lies within it. */
+static const double first_share = 0.25;
+static const double least_share = 1e-9;
+
+/* A step of the load is halved where Newton's corrections add up to more than so much of it: they may lead to another
+ * equilibrium. */
+static const double straight = 0.2;
+
+enum { NEWTON_MOST = 12 };
+
+void dea_still_open(const dea_point *point, dea_rings_mesh mesh, dea_still *still)
+{
+    const double nominal = dea_point_nominal_field(point);
+    still->point = point;
+    still->pressure = point->film.permittivity * nominal * nominal;
+    dea_rings_cut(point, mesh, &still->rings);
+}
+
+/* Relative stretches of a ring. */
+typedef struct strains {
+    double e1, e2;
+} strains;
+
+static strains strains_of(const dea_ring *ring, const double *u)
+{
+    strains e = {0.0, 0.0};
+    for (size_t i = 0; i < ring->count; i++) {
+        e.e1 += ring->radial[i] * u[ring->first + i];
+        e.e2 += ring->hoop[i] * u[ring->first + i];
+    }
+    return e;
+}
+
+/* Changes of s_a = P_a - k (lambda1 lambda2)^2/lambda_a from P_a at rest, and their slopes over the stretches. */
+static dea_biaxial stress_of(const dea_still *still, const dea_ring *ring, strains e, double share)
+{
+    const dea_film *film = &still->point->film;
+    const double k = ring->electroded ? share * still->pressure : 0.0;
+    const double l1 = film->prestretch * (1.0 + e.e1), l2 = film->prestretch * (1.0 + e.e2);
+    dea_biaxial s = dea_film_biaxial(film, e.e1, e.e2);
+    s.p1 -= k * l1 * l2 * l2;
+    s.p2 -= k * l1 * l1 * l2;
+    s.w11 -= k * l2 * l2;
+    s.w12 -= 2.0 * k * l1 * l2;
+    s.w22 -= k * l1 * l1;
+    return s;
+}
+
+/* Forces of a ring against its nodes, negative, and its stiffness, lower triangle. */
+static void add_ring(const dea_still *still, const dea_ring *ring, const dea_biaxial *s, size_t n, double *force, double *k)
+{
+    const double l0 = still->point->film.prestretch, v = ring->volume * l0;
+    for (size_t i = 0; i < ring->count; i++) {
+        const double d = ring->radial[i], h = ring->hoop[i];
+        const double t1 = v * l0 * (d * s->w11 + h * s->w12), t2 = v * l0 * (d * s->w12 + h * s->w22);
+        double *row = &k[(ring->first + i) * n + ring->first];
+        force[ring->first + i] -= v * (d * s->p1 + h * s->p2);
+        for (size_t j = 0; j <= i; j++) {
+            row[j] += t1 * ring->radial[j] + t2 * ring->hoop[j];
+        }
+    }
+}
+
+/* L D L^T in place of the lower triangle; false at a pivot that is not positive. */
+static bool factor(size_t n, double *k)
+{
+    for (size_t j = 0; j < n; j++) {
+        for (size_t m = 0; m < j; m++) {
+            k[j * n + j] -= k[j * n + m] * k[j * n + m] * k[m * n + m];
+        }
+        if (!(k[j * n + j] > 0.0)) {
+            return false;
+        }
+        for (size_t i = j + 1; i < n; i++) {
+            for (size_t m = 0; m < j; m++) {
+                k[i * n + j] -= k[i * n + m] * k[j * n + m] * k[m * n + m];
+            }
+            k[i * n + j] /= k[j * n + j];
+        }
+    }
+    return true;
+}
+
+static void solve(size_t n, const double *k, double *x)
+{
+    for (size_t i = 0; i < n; i++) {
+        for (size_t m = 0; m < i; m++) {
+            x[i] -= k[i * n + m] * x[m];
+        }
+    }
+    for (size_t i = n; i-- > 0;) {
+        x[i] /= k[i * n + i];
+        for (size_t m = i + 1; m < n; m++) {
+            x[i] -= k[m * n + i] * x[m];
+        }
+    }
+}
+
+bool dea_still_step(const dea_still *still, double share, const double *u, double *step)
+{
+    const size_t n = still->rings.node_count;
+    double k[DEA_RINGS_NODES * DEA_RINGS_NODES];
+    memset(k, 0, n * n * sizeof *k);
+    memset(step, 0, n * sizeof *step);
+    for (size_t q = 0; q < still->rings.ring_count; q++) {
+        const dea_ring *ring = &still->rings.rings[q];
+        const strains e = strains_of(ring, u);
+        if (!(e.e1 > -1.0 && e.e2 > -1.0)) {
+            return false;
+        }
+        const dea_biaxial s = stress_of(still, ring, e, share);
+        add_ring(still, ring, &s, n, step, k);
+    }
+    if (!factor(n, k)) {
+        return false;
+    }
+    solve(n, k, step);
+    return true;
+}
+
+static double size_of(size_t n, const double *u)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        most = fmax(most, fabs(u[i]));
+    }
+    return most;
+}
+
+/* Newton from @p u under a share of the load; false where it does not settle within @p reach or on something stable. */
+static bool settle(const dea_still *still, double share, double reach, double *u)
+{
+    const size_t n = still->rings.node_count;
+    double step[DEA_RINGS_NODES], moved = 0.0, last = (double)INFINITY;
+    for (int i = 0; i < NEWTON_MOST; i++) {
+        if (!dea_still_step(still, share, u, step)) {
+            return false;
+        }
+        const double size = size_of(n, step);
+        moved += size;
+        if (!(moved <= reach)) {
+            return false;
+        }
+        for (size_t m = 0; m < n; m++) {
+            u[m] += step[m];
+        }
+        if (size <= 1e-15 * size_of(n, u) || (size >= 0.5 * last && size <= 1e-11 * size_of(n, u))) {
+            return true;
+        }
+        last = size;
+    }
+    return false;
+}
+
+/* Slope of the equilibrium over the share of the load: at an equilibrium Newton's step under a share more is that. */
+static bool tangent(const dea_still *still, double share, const double *u, double *slope)
+{
+    const double more = 1e-4;
+    if (!dea_still_step(still, share + more, u, slope)) {
+        return false;
+    }
+    for (size_t i = 0; i < still->rings.node_count; i++) {
+        slope[i] /= more;
+    }
+    return true;
+}
+
+dea_state dea_still_climb(const dea_still *still, double *u)
+{
+    const size_t n = still->rings.node_count;
+    double slope[DEA_RINGS_NODES], next[DEA_RINGS_NODES];
+    double share = 0.0, step = first_share;
+    memset(u, 0, n * sizeof *u);
+    if (still->pressure == 0.0) {
+        return dea_still_step(still, 0.0, u, slope) ? DEA_STATE_OK : DEA_STATE_PULL_IN;
+    }
+    while (share < 1.0 && step > least_share) {
+        const double to = share + step < 1.0 ? share + step : 1.0;
+        bool reached = tangent(still, share, u, slope);
+        for (size_t i = 0; i < n && reached; i++) {
+            next[i] = u[i] + (to - share) * slope[i];
+        }
+        reached = reached && settle(still, to, straight * (to - share) * size_of(n, slope), next);
+        if (reached) {
+            memcpy(u, next, n * sizeof *u);
+            share = to;
+        }
+        step *= reached ? 2.0 : 0.5;
+    }
+    return share < 1.0 ? DEA_STATE_PULL_IN : DEA_STATE_OK;
+}
+
+double dea_still_strain(const dea_still *still, const double *u)
+{
+    double most = 0.0;
+    for (size_t q = 0; q < still->rings.ring_count; q++) {
+        const strains e = strains_of(&still->rings.rings[q], u);
+        most = fmax(most, fmax(fabs(e.e1), fabs(e.e2)));
+    }
+    return most;
+}
+
+/* Energies of the displacement u in the stiffness at u and in that at rest without load. */
+bool dea_still_near(const dea_still *still, const double *u)
+{
+    const dea_film *film = &still->point->film;
+    double now = 0.0, rest = 0.0, most = 0.0;
+    for (size_t q = 0; q < still->rings.ring_count; q++) {
+        const dea_ring *ring = &still->rings.rings[q];
+        const strains e = strains_of(ring, u);
+        const dea_biaxial s = stress_of(still, ring, e, 1.0);
+        now += ring->volume * (s.w11 * e.e1 * e.e1 + 2.0 * s.w12 * e.e1 * e.e2 + s.w22 * e.e2 * e.e2);
+        rest += ring->volume * (film->w11 * (e.e1 * e.e1 + e.e2 * e.e2) + 2.0 * film->w12 * e.e1 * e.e2);
+        most = fmax(most, fmax(fabs(e.e1), fabs(e.e2)));
+    }
+    return most < 0.15 && now > 0.5 * rest && now < 2.0 * rest;
+}
+
+
+/* Radial strain of a ring from its radial stress: a derivative of polynomials at the end of an element is the least exact of
+ * their numbers, a stress that follows from the balance of forces is as exact as the displacement. */
+static double radial_strain(const dea_still *still, const dea_ring *ring, strains guess, double stress)
+{
+    for (int i = 0; i < NEWTON_MOST; i++) {
+        const dea_biaxial s = stress_of(still, ring, guess, 1.0);
+        const double step = (stress - s.p1) / (s.w11 * still->point->film.prestretch);
+        guess.e1 += step;
+        if (!(fabs(step) > 1e-15)) {
+            break;
+        }
+    }
+    return guess.e1;
+}
+
+/* Strains of all rings. Across r_a the radial stress goes on, and d(R s_1)/dR = s_2 takes it to the frame; s_1 and s_2 may be
+ * changes from rest, which holds itself. */
+static void strains_all(const dea_still *still, const double *u, strains *e)
+{
+    const dea_rings *rings = &still->rings;
+    const double thickness = still->point->film_thickness;
+    double moment = 0.0, stress = 0.0; /* R s_1, s_1 */
+    for (size_t q = 0; q < rings->ring_count; q++) {
+        const dea_ring *ring = &rings->rings[q];
+        e[q] = strains_of(ring, u);
+        const dea_biaxial s = stress_of(still, ring, e[q], 1.0);
+        if (ring->disc) {
+            stress = s.p1;
+            moment = ring->radius * stress;
+            continue;
+        }
+        const bool edge = rings->rings[q - 1].disc, frame = q + 1 == rings->ring_count;
+        moment += ring->volume / (2.0 * DEA_PI * ring->radius * thickness) * s.p2;
+        if (edge || frame) {
+            e[q].e1 = radial_strain(still, ring, e[q], edge ? stress : moment / ring->radius);
+        }
+    }
+}
+
+/* The two rings at r_a: the electroded one. */
+static size_t electrode_edge(const dea_rings *rings)
+{
+    size_t q = 0;
+    while (q + 2 < rings->ring_count && rings->rings[q + 1].disc) {
+        q++;
+    }
+    return rings->rings[q].electroded ? q : q + 1;
+}
+
+/* C = (eps/H^2) sum of volume (lambda_1 lambda_2)^2, electroded; of the displacements as they are: an integral is the best of
+ * their numbers. */
+static double capacitance(const dea_still *still, const double *u)
+{
+    const dea_point *point = still->point;
+    double sum = 0.0;
+    for (size_t q = 0; q < still->rings.ring_count; q++) {
+        const dea_ring *ring = &still->rings.rings[q];
+        const strains e = strains_of(ring, u);
+        const double area = point->film.square * (1.0 + e.e1) * (1.0 + e.e2);
+        sum += ring->electroded ? ring->volume * area * area : 0.0;
+    }
+    return point->film.permittivity * sum / (point->film_thickness * point->film_thickness);
+}
+
+void dea_still_fill(const dea_still *still, const double *u, dea_row *row)
+{
+    const dea_point *point = still->point;
+    const dea_film *film = &point->film;
+    const double strain = u[still->rings.edge] / dea_point_divide(point);
+    double radial[DEA_RINGS_MOST], hoop[DEA_RINGS_MOST], area[DEA_RINGS_MOST]; /* stresses below that at rest */
+    strains e[DEA_RINGS_MOST];
+    strains_all(still, u, e);
+    for (size_t q = 0; q < still->rings.ring_count; q++) {
+        const dea_biaxial s = stress_of(still, &still->rings.rings[q], e[q], 1.0);
+        radial[q] = -s.p1;
+        hoop[q] = -s.p2;
+        area[q] = film->square * (1.0 + e[q].e1) * (1.0 + e[q].e2);
+    }
+    const dea_rings *rings = &still->rings;
+    const double slack = fmax(radial[0], fmax(dea_rings_largest(rings, false, radial), dea_rings_largest(rings, false, hoop)));
+    const strains *edge = &e[electrode_edge(&still->rings)];
+    const double pull = film->square * (1.0 + edge->e1) * (1.0 + edge->e2) * (1.0 + edge->e2); /* lambda_1 lambda_2^2/lambda_pre */
+    const double force = 2.0 * DEA_PI * point->film_thickness * still->pressure * pull * dea_point_divide(point);
+    dea_row_fill(row, point,
+                 (dea_found){.strain = strain,
+                             .force = dea_point_sign(point) * force,
+                             .stretch = point->kind == DEA_DOT ? area[0] : dea_rings_largest(rings, false, area),
+                             .capacitance = capacitance(still, u),
+                             .taut = film->tension > slack}); /* the disc is uniform */
+}
+
+/* Newton's step of a finer mesh at the solution of a coarser one, of the edge, relative. */
+static double edge_error(const dea_still *coarse, const double *u, const dea_still *fine)
+{
+    double matrix[DEA_RINGS_NODES * DEA_RINGS_NODES], v[DEA_RINGS_NODES], step[DEA_RINGS_NODES];
+    dea_rings_transfer(coarse->rings.mesh, fine->rings.mesh, matrix);
+    dea_rings_move(matrix, coarse->rings.node_count, u, fine->rings.node_count, v);
+    return dea_still_step(fine, 1.0, v, step) ? fabs(step[fine->rings.edge] / v[fine->rings.edge]) : (double)INFINITY;
+}
+
+dea_rings_mesh dea_still_mesh(const dea_point *point, double accuracy, double *u)
+{
+    const dea_rings_mesh none = {0, 0, true};
+    double own[DEA_RINGS_NODES];
+    double *solution = u ? u : own;
+    for (size_t degree = 2; degree + 2 <= DEA_RINGS_DEGREE; degree++) {
+        dea_still still, fine;
+        dea_still_open(point, (dea_rings_mesh){1, degree, true}, &still);
+        dea_still_open(point, (dea_rings_mesh){1, degree + 2, true}, &fine);
+        if (dea_still_climb(&still, solution) == DEA_STATE_OK &&
+            (still.pressure == 0.0 || edge_error(&still, solution, &fine) <= accuracy)) {
+            return still.rings.mesh;
+        }
+    }
+    return none;
+}

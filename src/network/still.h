@@ -1,0 +1,40 @@
+/* The film of rings at rest under its voltage: forces, stiffness, the way from rest, and the row of a solution. Displacements are
+ * those of the moving nodes [m]. */
+#ifndef DEA_STILL_H
+#define DEA_STILL_H
+
+#include "network/rings.h"
+
+typedef struct dea_still {
+    const dea_point *point; /* borrowed */
+    dea_rings rings;
+    double pressure; /* M = eps (U/H)^2 [Pa] */
+} dea_still;
+
+/* Cuts the film of a point whose numbers are in their ranges; it borrows the point. */
+void dea_still_open(const dea_point *point, dea_rings_mesh mesh, dea_still *still);
+
+/* Newton's step at @p u under that share of the load, node_count values [m]. False where the stiffness matrix is not positive
+ * definite (a pivot <= 0: the film is not stable) or a ring has no stress; then @p step is undefined. */
+bool dea_still_step(const dea_still *still, double share, const double *u, double *step);
+
+/* Follows the equilibrium from rest as the load grows; on DEA_STATE_OK @p u holds it under the full load, good to rounding.
+ * DEA_STATE_PULL_IN: it folds, or the film ends, before that. */
+dea_state dea_still_climb(const dea_still *still, double *u);
+
+/* True where a stable equilibrium @p u is so near to rest that no fold can lie between: small strains, and a stiffness against
+ * them that the load has not halved. */
+bool dea_still_near(const dea_still *still, const double *u);
+
+/* Largest strain of a ring in its plane [1]. */
+double dea_still_strain(const dea_still *still, const double *u);
+
+/* Fills the row of an equilibrium; its state says slack or breakdown. */
+void dea_still_fill(const dea_still *still, const double *u, dea_row *row);
+
+/* Coarsest mesh on which the edge's displacement is good to @p accuracy, relative, by the Newton step of a mesh two degrees finer:
+ * of a film that has an equilibrium, the nodes of its annulus evenly in ln R. @p u may be NULL; else it holds the equilibrium.
+ * Degree 0: there is none, or none so good. */
+dea_rings_mesh dea_still_mesh(const dea_point *point, double accuracy, double *u);
+
+#endif

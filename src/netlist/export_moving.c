@@ -319,25 +319,12 @@ static writer writer_of(dea_export *export)
     return (writer){.export = export, .out = export->out, .dialect = export->dialect, .analogy = export->analogy};
 }
 
-static dea_status open_network(writer *w, dea_error *error)
-{
-    const dea_scene *scene = w->export->scene;
-    dea_status status = dea_dynamics_open(scene, scene->models[0], &w->dynamics, error);
-    if (status == DEA_OK) {
-        dea_dynamics_lighten(&w->dynamics, scene->accuracy);
-        status = dea_mobility_open(scene, &w->dynamics, &w->mobility, error);
-    }
-    if (status == DEA_OK && dea_dynamics_is_free(&w->dynamics) && !w->analogy->loop) {
-        dea_mobility_displace(&w->mobility);
-    }
-    return status;
-}
-
 dea_status dea_export_transient(dea_export *export, dea_error *error)
 {
     writer w = writer_of(export);
     const dea_cards_form form = {export->dialect, export->analogy, false};
-    dea_status status = open_network(&w, error);
+    dea_status status =
+        dea_mobility_prepare(export->scene, export->scene->models[0], export->analogy, &w.dynamics, &w.mobility, error);
     if (status == DEA_OK) {
         status = dea_signal_open(export->scene, &w.signal, error);
     }

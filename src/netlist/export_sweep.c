@@ -6,7 +6,7 @@
 
 #include "engine/line.h"
 #include "netlist/export.h"
-#include "netlist/part_text.h"
+#include "netlist/netlist.h"
 #include "network/balance.h"
 #include "support/text.h"
 
@@ -38,8 +38,7 @@ typedef struct line_text {
     const dea_axis *axis;   /* NULL: one point */
     dea_network network;    /* owned */
     dea_balance balance;    /* owned */
-    dea_part_text text;     /* owned */
-    dea_expr elastic, load;
+    dea_still_cards cards;  /* owned */
     size_t from, to; /* points with an equilibrium, `to` excluded */
 } line_text;
 
@@ -111,22 +110,6 @@ void dea_export_axis(const dea_dialect *dialect, const dea_axis *axis, size_t fr
     dea_dialect_source_end(dialect, out);
 }
 
-static void write_forces(const line_text *l)
-{
-    FILE *out = l->w->out;
-    for (int i = 0; i < l->network.element_count; i++) {
-        fprintf(out, "* %s: %s\n", l->network.elements[i].name, l->network.elements[i].meaning);
-    }
-    fputs("* elastic force of all springs [N], from the edge to the frame\n", out);
-    dea_dialect_source_begin(l->w->dialect, out, DEA_CURRENT, "spring", "edge", "0");
-    dea_part_text_write(&l->text, l->elastic);
-    dea_dialect_source_end(l->w->dialect, out);
-    fputs("* electrostatic force f_dea [N], Eq. 21, onto the edge\n", out);
-    dea_dialect_source_begin(l->w->dialect, out, DEA_CURRENT, "force", "0", "edge");
-    dea_part_text_write(&l->text, l->load);
-    dea_dialect_source_end(l->w->dialect, out);
-}
-
 /* Static displacement at a point of the line, from the model's own equation: where Newton starts. */
 static double displacement_at(const line_text *l, size_t i)
 {
@@ -150,27 +133,19 @@ static void write_guess(const line_text *l, const char *node, double value)
 }
 
 /* Newton's start of the first point. */
-static dea_status write_start(const line_text *l, dea_error *error)
+static void write_start(line_text *l)
 {
-    FILE *out = l->w->out;
+    char inside[32];
     const double u = displacement_at(l, l->from);
-    double *values = malloc(((size_t)l->network.pool.count + 1) * sizeof *values);
-    if (!values) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
-    }
-    dea_pool_values(&l->network.pool, symbol_at(l, l->from), u, values);
-    fprintf(out, ".nodeset v(edge%zu)=", l->w->lines);
-    dea_part_number(out, u);
+    fprintf(l->w->out, ".nodeset v(edge%zu)=", l->w->lines);
+    dea_part_number(l->w->out, u);
     if (l->axis) {
         write_guess(l, "point", (double)l->from);
         write_guess(l, "axis", symbol_at(l, l->from));
     }
-    char inside[32];
     snprintf(inside, sizeof inside, "xline%zu%s", l->w->lines, l->w->dialect->inside);
-    dea_part_text_start(&l->text, inside, values);
-    fputc('\n', out);
-    free(values);
-    return DEA_OK;
+    dea_still_cards_write_start(&l->cards, inside, symbol_at(l, l->from), u);
+    fputc('\n', l->w->out);
 }
 
 /* Where the line lies on the other axes, and what it leaves out. */
@@ -197,26 +172,19 @@ static void write_place(const line_text *l)
 static dea_status write_line(line_text *l, dea_error *error)
 {
     FILE *out = l->w->out;
-    static const char *const symbols[] = {"v(axis)"};
-    if (!dea_part_text_open(&l->text, &l->network.pool, l->w->dialect, out)) {
+    if (!dea_still_cards_open(&l->network, symbol_at(l, l->from), l->w->dialect, out, &l->cards)) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
     }
-    l->text.node = "v(edge)";
-    l->text.symbols = symbols;
-    dea_part_text_move_symbol(&l->text, 0);
-    dea_part_text_share(&l->text);
-    dea_part_text_use(&l->text, l->elastic);
-    dea_part_text_use(&l->text, l->load);
     write_place(l);
     fprintf(out, ".subckt line%zu k edge\n", l->w->lines);
-    dea_part_text_parameters(&l->text);
+    dea_still_cards_write_numbers(&l->cards);
     if (l->axis) {
         dea_export_axis(l->w->dialect, l->axis, l->from, l->to, out);
     }
-    dea_part_text_nodes(&l->text);
-    write_forces(l);
+    dea_still_cards_write_network(&l->cards, 0);
     fprintf(out, ".ends\nXLINE%zu k edge%zu line%zu\n", l->w->lines, l->w->lines, l->w->lines);
-    return write_start(l, error);
+    write_start(l);
+    return DEA_OK;
 }
 
 static void divide_steps(line_text *l)
@@ -249,8 +217,6 @@ static dea_status visit_line(void *user, const dea_scene *scene, const dea_line 
     w->lines++;
     dea_status status = dea_network_build(scene, scene->models[0], line->axis, &l.network, error);
     if (status == DEA_OK) {
-        l.elastic = dea_network_elastic(&l.network);
-        l.load = dea_network_load(&l.network);
         status = dea_balance_open(&l.network, &l.balance, error);
     }
     if (status == DEA_OK) {
@@ -264,7 +230,7 @@ static dea_status visit_line(void *user, const dea_scene *scene, const dea_line 
             fprintf(w->out, "* line %zu has no point with an equilibrium\n", w->lines);
         }
     }
-    dea_part_text_close(&l.text);
+    dea_still_cards_close(&l.cards);
     dea_balance_close(&l.balance);
     dea_network_free(&l.network);
     return status;

@@ -95,6 +95,21 @@ void dea_mobility_displace(dea_mobility *mobility)
     mobility->stiffness = (double)NAN;
 }
 
+dea_status dea_mobility_prepare(const dea_scene *scene, const dea_model *model, const dea_analogy *analogy, dea_dynamics *dynamics,
+                                dea_mobility *mobility, dea_error *error)
+{
+    *mobility = (dea_mobility){.dynamics = dynamics};
+    dea_status status = dea_dynamics_open(scene, model, dynamics, error);
+    if (status == DEA_OK) {
+        dea_dynamics_lighten(dynamics, scene->accuracy);
+        status = dea_mobility_open(scene, dynamics, mobility, error);
+    }
+    if (status == DEA_OK && dea_dynamics_is_free(dynamics) && !analogy->loop) {
+        dea_mobility_displace(mobility);
+    }
+    return status;
+}
+
 dea_stress_node dea_mobility_stress_node(const dea_dynamics *dynamics, size_t index)
 {
     dea_stress_node node = {"stress"};

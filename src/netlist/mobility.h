@@ -45,6 +45,11 @@ typedef struct dea_mobility_state {
 dea_status dea_mobility_open(const dea_scene *scene, const dea_dynamics *dynamics, dea_mobility *mobility, dea_error *error);
 void dea_mobility_close(dea_mobility *mobility);
 
+/* The network of a transient as engine and exports write it, with the dynamics behind it; the caller ends both, also after a
+ * failure. */
+dea_status dea_mobility_prepare(const dea_scene *scene, const dea_model *model, const dea_analogy *analogy, dea_dynamics *dynamics,
+                                dea_mobility *mobility, dea_error *error);
+
 /* Transients of a film without mass and damper in the displacement form from here on: nothing holds its velocity, a difference of
  * displacements over a step that drowns in rounding where steps are short. */
 void dea_mobility_displace(dea_mobility *mobility);

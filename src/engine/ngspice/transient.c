@@ -631,20 +631,13 @@ static dea_status run_inside(dea_ngspice *library, const dea_scene *scene, const
                              dea_sample *samples, dea_summary *summary, dea_error *error)
 {
     dea_dynamics dynamics;
-    dea_mobility mobility = {0};
+    dea_mobility mobility;
     dea_signal signal = {0};
-    dea_status status = dea_dynamics_open(scene, model, &dynamics, error);
-    if (status == DEA_OK) {
-        dea_dynamics_lighten(&dynamics, scene->accuracy);
-        status = dea_mobility_open(scene, &dynamics, &mobility, error);
-    }
+    dea_status status = dea_mobility_prepare(scene, model, dea_analogy_at(0), &dynamics, &mobility, error);
     if (status == DEA_OK) {
         status = dea_signal_open(scene, &signal, error);
     }
     if (status == DEA_OK) {
-        if (dea_dynamics_is_free(&dynamics)) {
-            dea_mobility_displace(&mobility);
-        }
         dea_dynamics slow = dynamics; /* borrows what the other owns */
         slow.mass = 0.0;
         slow.retardation = dynamics.mass > 0.0 ? 0.0 : dynamics.retardation;

@@ -40,7 +40,7 @@ const dea_analogy *dea_analogy_find(const char *name)
 static void gather(dea_mobility *mobility)
 {
     dea_pool *pool = &mobility->network.pool;
-    dea_expr *const single[] = {&mobility->tension, &mobility->push, &mobility->resistance, &mobility->network.capacitance};
+    dea_expr *const single[] = {&mobility->tension, &mobility->push, &mobility->resistance};
     for (size_t i = 0; i < sizeof single / sizeof *single; i++) {
         *single[i] = dea_expr_gathered(pool, *single[i]);
     }
@@ -62,6 +62,7 @@ dea_status dea_mobility_open(const dea_scene *scene, const dea_dynamics *dynamic
         return status;
     }
     dea_pool *pool = &network->pool;
+    dea_network_gather(network);
     dea_dynamics_stresses(dynamics, network, mobility->stresses);
     mobility->tension = dea_network_tension(network);
     mobility->tense = dea_expr_constant(pool, mobility->tension) != 0.0;
@@ -434,6 +435,7 @@ static void write_port_numbers(const dea_cards *c, const dea_cards_numbers *n)
 static void declare(dea_cards *c)
 {
     const dea_mobility *m = c->mobility;
+    dea_part_text_call(&c->text, &m->network);
     dea_part_text_root(&c->text, "push");
     dea_part_text_use(&c->text, m->push);
     if (c->dynamics->series > 0.0) {

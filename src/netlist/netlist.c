@@ -6,11 +6,11 @@
 #include "netlist/mobility.h"
 #include "support/text.h"
 
-/* One parameter a product. */
 bool dea_still_cards_open(dea_network *network, double symbol, const dea_dialect *dialect, FILE *out, dea_still_cards *cards)
 {
     dea_pool *pool = &network->pool;
     *cards = (dea_still_cards){.network = network};
+    dea_network_gather(network);
     cards->elastic = dea_expr_gathered(pool, dea_network_elastic(network));
     cards->load = dea_expr_gathered(pool, dea_network_load(network));
     cards->values = calloc((size_t)pool->count + 1, sizeof *cards->values);
@@ -24,6 +24,7 @@ bool dea_still_cards_open(dea_network *network, double symbol, const dea_dialect
     cards->text.values = cards->values;
     dea_part_text_move_symbol(&cards->text, 0);
     dea_part_text_share(&cards->text);
+    dea_part_text_call(&cards->text, network);
     dea_part_text_root(&cards->text, "force");
     dea_part_text_use(&cards->text, cards->load);
     dea_part_text_root(&cards->text, "spring");

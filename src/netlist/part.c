@@ -348,12 +348,19 @@ static void declare(part *p)
 {
     dea_part_text *text = &p->text;
     const dea_network *network = &p->network;
-    const dea_expr all[] = {p->push, p->capacitance, p->c_rest, p->k_rest, p->field,
-                            p->mass, p->divide,      p->width,  p->linear ? p->push_slope : p->tension};
+    const struct {
+        const char *root;
+        dea_expr ref;
+    } all[] = {{"push", p->push},      {"capacity", p->capacitance}, {"capacity", p->c_rest},
+               {"stiffness", p->k_rest}, {"field", p->field},        {"mass", p->mass},
+               {"size", p->divide},    {"size", p->width},           {"rest", p->linear ? p->push_slope : p->tension}};
+    dea_part_text_call(text, network);
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-        dea_part_text_use(text, all[i]);
+        dea_part_text_root(text, all[i].root);
+        dea_part_text_use(text, all[i].ref);
     }
     for (size_t a = 0; a < p->stress_count && !p->linear; a++) {
+        dea_part_text_root(text, "lever");
         dea_part_text_use(text, p->stresses[a].lever);
         dea_part_text_use(text, p->stresses[a].stress);
     }
@@ -363,10 +370,12 @@ static void declare(part *p)
         }
     }
     for (int i = 0; i < network->tension_count; i++) {
+        dea_part_text_root(text, "taut");
         dea_part_text_use(text, p->taut[i]);
         dea_part_text_use(text, p->loosen[i]);
     }
     for (size_t a = 0; a < p->stress_count && !p->linear; a++) {
+        dea_part_text_root(text, "damping");
         dea_part_text_use_as_factor(text, p->slopes[a]);
     }
 }

@@ -155,6 +155,31 @@ void dea_part_text_name(dea_part_text *text, dea_expr ref, const char *name, con
     text->names = names;
 }
 
+static void claim(dea_part_text *text, dea_expr ref)
+{
+    const dea_term *term = &text->pool->terms[ref];
+    if (text->owners[ref] == 0) {
+        text->owners[ref] = text->root;
+        if (term->operation >= DEA_ADD) {
+            claim(text, term->a);
+            claim(text, term->b);
+        }
+    }
+}
+
+void dea_part_text_call(dea_part_text *text, const dea_network *network)
+{
+    for (int i = 0; i < network->named_count; i++) {
+        dea_part_text_name(text, network->named[i].ref, network->named[i].name, network->named[i].meaning);
+    }
+    for (int i = 0; i < network->element_count; i++) {
+        const char *name = network->elements[i].name;
+        const bool word = strncmp(name, "n_", 2) == 0 && strlen(name) > 3; /* n_a stays as it is */
+        dea_part_text_root(text, word ? name + 2 : name);
+        claim(text, network->elements[i].value);
+    }
+}
+
 static void use(dea_part_text *text, dea_expr ref, bool in_source)
 {
     const dea_term *term = &text->pool->terms[ref];

@@ -5,8 +5,8 @@
 #define DEA_PART_TEXT_H
 
 #include "deaspice/material.h"
-#include "expression/expression.h"
 #include "netlist/dialect.h"
+#include "network/network.h"
 
 enum { DEA_PART_NAME = 40 };
 
@@ -58,6 +58,8 @@ void dea_part_text_close(dea_part_text *text);
 void dea_part_text_share(dea_part_text *text);
 /* Terms that the expressions declared from here on are made of are called after this one, unless they have a name. */
 void dea_part_text_root(dea_part_text *text, const char *name);
+/* Gives the names that a network has, and calls what its elements are made of after them: n_disc -> disc_1, disc_2, ... */
+void dea_part_text_call(dea_part_text *text, const dea_network *network);
 /* Names a term; the first of two names of a term stays. */
 void dea_part_text_name(dea_part_text *text, dea_expr ref, const char *name, const char *meaning);
 /* Lets symbol number @p index move as the displacement does: its name is that of a voltage. Terms of it alone may be nodes. */

@@ -13,9 +13,11 @@ void dea_network_free(dea_network *network)
     if (network) {
         dea_pool_free(&network->pool);
         free(network->elements);
+        free(network->named);
         free(network->tension);
         free(network->range);
         network->elements = NULL;
+        network->named = NULL;
         network->tension = network->range = NULL;
     }
 }
@@ -40,6 +42,31 @@ void dea_network_add(dea_network *network, dea_role role, const char *name, cons
 void dea_network_add_stress(dea_network *network, const char *name, const char *meaning, dea_expr stress, dea_expr lever)
 {
     add_element(network, (dea_element){DEA_ROLE_HYPERELASTIC, name, meaning, stress, lever});
+}
+
+void dea_network_call(dea_network *network, dea_expr ref, const char *name, const char *meaning)
+{
+    dea_named_term *named = realloc(network->named, ((size_t)network->named_count + 1) * sizeof *named);
+    if (!named) {
+        network->pool.exhausted = true;
+        return;
+    }
+    named[network->named_count++] = (dea_named_term){ref, name, meaning};
+    network->named = named;
+}
+
+void dea_network_gather(dea_network *network)
+{
+    dea_pool *pool = &network->pool;
+    for (int i = 0; i < network->element_count; i++) {
+        dea_element *element = &network->elements[i];
+        element->value = dea_expr_gathered(pool, element->value);
+        element->lever = element->role == DEA_ROLE_HYPERELASTIC ? dea_expr_gathered(pool, element->lever) : element->lever;
+    }
+    for (int i = 0; i < network->named_count; i++) {
+        network->named[i].ref = dea_expr_gathered(pool, network->named[i].ref);
+    }
+    network->capacitance = dea_expr_gathered(pool, network->capacitance);
 }
 
 /* One more expression at the end of a list. */

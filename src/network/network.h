@@ -48,8 +48,16 @@ typedef struct dea_network_stress {
     dea_expr stress, lever;
 } dea_network_stress;
 
+/* A term that texts of the network call by its name. */
+typedef struct dea_named_term {
+    dea_expr ref;
+    const char *name, *meaning; /* borrowed */
+} dea_named_term;
+
 typedef struct dea_network {
     dea_pool pool;
+    dea_named_term *named; /* owned */
+    int named_count;
     dea_element *elements; /* owned */
     int element_count;
     dea_expr capacitance; /* of the film [F] */
@@ -94,6 +102,11 @@ void dea_network_free(dea_network *network);
 void dea_network_add(dea_network *network, dea_role role, const char *name, const char *meaning, dea_expr value);
 /* A hyperelastic spring: a change of stress from rest and its lever. */
 void dea_network_add_stress(dea_network *network, const char *name, const char *meaning, dea_expr stress, dea_expr lever);
+
+/* A name for a term, and what it is with its unit; borrowed for the life of the network. */
+void dea_network_call(dea_network *network, dea_expr ref, const char *name, const char *meaning);
+/* Draws the parameters of every product of elements, capacitance and named terms together (dea_expr_gathered()). */
+void dea_network_gather(dea_network *network);
 
 /* Something that is positive while the film is taut. */
 void dea_network_taut(dea_network *network, dea_expr tension);

@@ -22,6 +22,7 @@ typedef struct writer {
     dea_cards cards;       /* owned */
     dea_mobility_state start;
     double step;  /* longest time step [s] */
+    bool rings;   /* the step is that of a ring */
     double quick; /* shortest time of the film: a radian of its ring, or its fastest relaxation [s] */
 } writer;
 
@@ -226,7 +227,9 @@ static double step_wanted(writer *w)
         if (pace.omega > 0.0) {
             const double life = fmin(until, pace.decay > 0.0 ? 1.0 / (2.718281828 * pace.decay) : INFINITY);
             step = fmin(step, share / pace.omega / sqrt(1.0 + pace.omega * life));
+            w->rings = true;
         }
+        w->rings = w->rings && step <= share * pace.fastest;
         step = fmin(step, share * pace.fastest);
         w->quick = fmin(w->quick, pace.omega > 0.0 ? fmin(pace.fastest, 1.0 / pace.omega) : pace.fastest);
     }
@@ -243,8 +246,9 @@ static void choose_step(writer *w)
     w->step = fmax(wanted, least);
     if (wanted < least) {
         snprintf(w->export->note, sizeof w->export->note,
-                 "tmax is %.3g s, %g steps; the accuracy %.3g of the scene needs %.3g s: expect an error of some %.2g", w->step,
-                 most_steps, w->export->scene->accuracy, wanted,
+                 "a netlist has one tmax, where the engine ngspice cuts the run into pieces, each of its own step: tmax is %.3g s, %g "
+                 "steps; the accuracy %.3g of the scene needs %.3g s while %s: expect an error of some %.2g, or shorten the run",
+                 w->step, most_steps, w->export->scene->accuracy, wanted, w->rings ? "the film rings" : "the film relaxes",
                  fmin(1.0, w->export->scene->accuracy * (w->step / wanted) * (w->step / wanted)));
     }
 }

@@ -172,6 +172,7 @@ promises:
 	@$(BUILD)/promises --scenes $(SCENES) $(if $(SEED),--seed $(SEED)); status=$$?; \
 	$(BUILD)/promises --stalls --scenes $(STALLS) $(if $(SEED),--seed $(SEED)) && exit $$status
 
+TRUTHS := $(patsubst %,$(BUILD)/tests/promises/%.o,law film still membrane moving response)
 PROMISES := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tests/promises/*.c)))
 $(BUILD)/promises: $(PROMISES) $(BUILD)/libdeaspice.a
 	@echo "LD $@"
@@ -182,9 +183,9 @@ hard:
 	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/hard
 	@$(BUILD)/hard tests/hard
 
-$(BUILD)/hard: $(wildcard tests/hard/*.[ch]) $(BUILD)/libdeaspice.a
+$(BUILD)/hard: $(wildcard tests/hard/*.[ch]) $(TRUTHS) $(BUILD)/libdeaspice.a
 	@echo "CC $@"
-	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) $(filter %.c,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) $(LIBS)
+	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) $(filter %.c %.o,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) $(LIBS)
 
 # The ready-made parts for circuit simulators; a unit test finds what is checked in and differs.
 netlists: $(BUILD)/make_netlists
@@ -259,6 +260,7 @@ $(BUILD)/tests/test_faults: $(filter-out %/main.o,$(PROGRAM_OBJECTS)) $(BUILD)/t
 $(BUILD)/tests/test_faults: private LDFLAGS += $(FAULTS:%=-Wl,--wrap=%)
 $(BUILD)/tests/test_stability: $(STABILITY_PARTS)
 $(BUILD)/tests/test_promises $(BUILD)/tests/test_columns: $(filter-out %/main.o,$(PROMISES))
+$(BUILD)/tests/test_hard_static $(BUILD)/tests/test_hard_moving: $(TRUTHS)
 $(BUILD)/tests/test_stalls: $(BUILD)/tests/promises/stalls.o
 
 unit: $(UNIT_PROGRAMS)

@@ -235,8 +235,8 @@ const dea_model *dea_needs_truth(dea_study_kind study)
     for (size_t i = 0; i < dea_model_count(); i++) {
         const dea_model *model = dea_model_at(i);
         const bool finer = !truth || dea_model_form(model) >= dea_model_form(truth);
-        const bool moves = dea_study_at(study)->moves, costly = moves && model->membrane; /* a run of it at every probe */
-        truth = finer && !costly && (model->dynamic || !moves) ? model : truth;
+        const bool costly = dea_study_at(study)->timed && model->membrane; /* a run of it at every probe */
+        truth = finer && !costly && (model->dynamic || !dea_study_at(study)->moves) ? model : truth;
     }
     return truth;
 }

@@ -212,12 +212,12 @@ double dea_rings_largest(const dea_rings *rings, bool disc, const double *values
     return s.count < 3 ? largest : fmax(largest, largest_between(&s, fmax(first, place - width), fmin(last, place + width)));
 }
 
-/* Lagrange polynomial number @p n of the rule at x. */
-static double lagrange(const lobatto *rule, size_t n, double x)
+/* Lagrange polynomial number @p n of a degree at x. */
+static double lagrange(const double *places, size_t degree, size_t n, double x)
 {
     double value = 1.0;
-    for (size_t i = 0; i <= rule->degree; i++) {
-        value *= i == n ? 1.0 : (x - rule->places[i]) / (rule->places[n] - rule->places[i]);
+    for (size_t i = 0; i <= degree; i++) {
+        value *= i == n ? 1.0 : (x - places[i]) / (places[n] - places[i]);
     }
     return value;
 }
@@ -233,7 +233,7 @@ static void transfer_element(size_t degree, size_t from, size_t from_count, size
         for (size_t n = 0; n <= degree; n++) {
             const size_t row = to + q, column = from + n;
             if (row > 0 && row <= to_count && column > 0 && column <= from_count) {
-                matrix[(row - 1) * from_count + column - 1] = lagrange(&rule, n, other.places[q]);
+                matrix[(row - 1) * from_count + column - 1] = lagrange(rule.places, degree, n, other.places[q]);
             }
         }
     }

@@ -13,7 +13,7 @@
 #include "deaspice/model.h"
 
 /* Largest degree of an element, and what follows: most moving nodes and rings. */
-enum { DEA_RINGS_DEGREE = 24, DEA_RINGS_NODES = 2 * DEA_RINGS_DEGREE - 1, DEA_RINGS_MOST = 2 * DEA_RINGS_DEGREE + 1 };
+enum { DEA_RINGS_DEGREE = 40, DEA_RINGS_NODES = 2 * DEA_RINGS_DEGREE - 1, DEA_RINGS_MOST = 2 * DEA_RINGS_DEGREE + 1 };
 
 /* How fine: degrees of the elements of disc and annulus, 1 ... DEA_RINGS_DEGREE, and whether the nodes of the annulus lie evenly in
  * ln R, which statics and small discs want, or in R. */

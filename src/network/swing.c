@@ -3,8 +3,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "network/membrane.h"
-
 enum { POLES = DEA_PRONY_MAX + 1 };
 
 typedef struct relaxation {
@@ -115,21 +113,11 @@ dea_swing dea_swing_of(dea_dynamics *dynamics, double u, double voltage)
 /* At rest the damper of the membrane is its stiffness times 1 + P/(lambda_pre W11), whatever its electrodes weigh: of
  * int (e_1^2 + e_2^2) and int e_1 e_2, which both are made of, the second is 0 between a centre and a frame that do not move. So its
  * modes stay those of the undamped film, and each has the one pair of roots. */
-static dea_swing swing_of_membrane(const dea_membrane *m)
+static dea_swing swing_of_membrane(const dea_scene *scene, const dea_dynamics *d)
 {
-    static const double rest[DEA_RINGS_NODES] = {0.0};
-    const dea_dynamics *d = &m->film;
     const dea_film *material = &d->point.film;
-    double stiffness[DEA_RINGS_NODES * DEA_RINGS_NODES], shapes[DEA_RINGS_NODES * DEA_RINGS_NODES], frequencies[DEA_RINGS_NODES];
-    dea_membrane_look look;
-    if (!m->heavy || !dea_membrane_look_at(m, rest, &look)) {
-        return (dea_swing){(double)NAN, (double)NAN};
-    }
-    dea_membrane_stiffness(m, &look, 0.0, NULL, 0.0, stiffness);
-    if (!dea_membrane_modes(m, stiffness, frequencies, shapes)) {
-        return (dea_swing){(double)NAN, (double)NAN};
-    }
-    film f = {.mass = 1.0, .stiffness = frequencies[0] * frequencies[0]};
+    const double omega = d->mass > 0.0 ? 2.0 * DEA_PI * dea_point_resonance(scene, &d->point) : (double)NAN;
+    film f = {.mass = 1.0, .stiffness = omega * omega};
     const double viscous = f.stiffness * (1.0 + material->tension / (material->prestretch * material->w11));
     f.resistance = d->retardation * viscous;
     for (size_t i = 0; i < d->branch_count; i++) {
@@ -145,9 +133,7 @@ dea_swing dea_swing_free(const dea_scene *scene, const dea_model *model)
     dea_swing swing = {(double)NAN, (double)NAN};
     full.reduction = (dea_reduction){0};
     if (model->membrane) {
-        dea_membrane membrane;
-        const dea_status status = dea_membrane_open(&full, model, dea_membrane_usual_mesh(scene), &membrane, NULL);
-        return status == DEA_OK ? swing_of_membrane(&membrane) : swing;
+        return dea_dynamics_settle(&full, model, &dynamics, NULL) == DEA_OK ? swing_of_membrane(&full, &dynamics) : swing;
     }
     if (dea_dynamics_open(&full, model, &dynamics, NULL) == DEA_OK) {
         swing = dea_swing_of(&dynamics, 0.0, 0.0);

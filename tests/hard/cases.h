@@ -2,10 +2,15 @@
 #ifndef DEA_HARD_CASES_H
 #define DEA_HARD_CASES_H
 
+#include <complex.h>
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
-#include "motion.h"
+#include "../promises/truths.h"
+#include "engine/line.h"
 
 /* What an engine must do with a scene. */
 typedef enum hard_demand {
@@ -24,13 +29,10 @@ typedef struct hard_cell {
 enum { HARD_ENGINES = 3, HARD_LOG = 16384 };
 static const char *const hard_engine_names[HARD_ENGINES] = {"direct", "ngspice", "ida"};
 
-/* What is right. */
-typedef enum hard_judge { HARD_STATICS, HARD_RADAU, HARD_CREEP, HARD_RING, HARD_AC } hard_judge;
-
 typedef struct hard_case {
     const char *name;  /* of the scene in tests/hard */
     const char *title; /* as the table prints it */
-    hard_judge judge;
+    bool swings; /* for ever: an undamped linear film, whose truth is its closed form */
     hard_cell cells[HARD_ENGINES];
     const char *thinned; /* setting with which a test runs it, NULL: as it is */
 } hard_case;
@@ -47,13 +49,17 @@ typedef struct hard_verdict {
     char log[HARD_LOG]; /* all that the engine said */
 } hard_verdict;
 
-#define CASE(name, title, judge, ...)                                                                                            \
+#define CASE(name, title, ...)                                                                                                   \
     {                                                                                                                            \
-        name, title, judge, {__VA_ARGS__}, NULL                                                                                  \
+        name, title, false, {__VA_ARGS__}, NULL                                                                                  \
     }
-#define THINNED(name, title, judge, setting, ...)                                                                                \
+#define SWINGS(name, title, ...)                                                                                                 \
     {                                                                                                                            \
-        name, title, judge, {__VA_ARGS__}, setting                                                                               \
+        name, title, true, {__VA_ARGS__}, NULL                                                                                   \
+    }
+#define THINNED(name, title, setting, ...)                                                                                       \
+    {                                                                                                                            \
+        name, title, false, {__VA_ARGS__}, setting                                                                               \
     }
 #define RIGHT                                                                                                                    \
     {                                                                                                                            \
@@ -82,112 +88,64 @@ enum { HARD_CASES = sizeof hard_cases / sizeof *hard_cases };
 
 /* ---- references, one point of one model */
 
-typedef union hard_known {
-    hard_answer statics;
-    hard_sample *samples;     /* owned */
-    hard_response *responses; /* owned */
+/* Rows of what is right, as the scene's layout has them. */
+typedef struct hard_known {
+    void *rows;   /* owned */
+    double error; /* of their own, relative */
 } hard_known;
 
-static inline hard_sample *hard_samples(size_t rows)
-{
-    hard_sample *samples = calloc(rows, sizeof *samples);
-    if (!samples) {
-        abort();
-    }
-    return samples;
-}
-
 /* u = u_static (1 - cos omega t) behind a jump at t = 0. */
-static inline hard_sample *hard_ring(const hard_motion *m, size_t rows)
+static inline void hard_swing(const dea_scene *here, const dea_model *model, size_t rows, dea_sample *samples)
 {
-    hard_sample *samples = hard_samples(rows);
-    const long double voltage = hard_source(m, 0.0L, true);
-    const hard_edge rest = hard_edge_at(&m->film, 0.0L), slope = hard_edge_slope(&m->film, 0.0L);
-    const long double stiffness = slope.stress - slope.push * voltage * voltage;
+    const true_film film = film_of(here, model);
+    const long double voltage = here->drive.waveform.step.voltage, square = voltage * voltage;
+    const true_edge rest = film_edge(&film, 0.0L);
+    const long double stiffness = edge_viscous(&rest) - rest.push.slope * square, pace = sqrtl(stiffness / film.mass);
     for (size_t i = 0; i < rows; i++) {
-        const long double t = dea_layout_place(m->scene, i);
-        const long double u = rest.push * voltage * voltage / stiffness * (1.0L - cosl(sqrtl(stiffness / m->mass) * t));
-        samples[i] = (hard_sample){u, hard_edge_at(&m->film, u).capacitance * voltage, (long double)NAN};
+        const double time = dea_layout_place(here, i);
+        const long double u = rest.push.value * square / stiffness * (1.0L - cosl(pace * time));
+        const dea_row row = film_row(&film, u, voltage);
+        samples[i] = (dea_sample){.time = time, .displacement = (double)u, .charge = row.charge, .state = row.state};
     }
-    return samples;
 }
 
-/* Largest differences of two answers over the peaks. */
-static inline double hard_distance(const hard_sample *a, const hard_sample *b, size_t rows)
+static inline void hard_move(const dea_scene *here, const dea_model *model, hard_known *known)
 {
-    long double u = 0.0L, peak = 0.0L;
-    for (size_t i = 0; i < rows; i++) {
-        u = fmaxl(u, fabsl(a[i].u - b[i].u));
-        peak = fmaxl(peak, fabsl(b[i].u));
-    }
-    return peak > 0.0L ? (double)(u / peak) : 0.0;
+    true_run run = moving_truth(here, model, 1.0);
+    memcpy(known->rows, run.samples, run.count * sizeof *run.samples);
+    known->error = run.why ? (double)INFINITY : run.error;
+    true_run_free(&run);
 }
 
-/* Product integration on three meshes, extrapolated twice: its error is even in the width of the steps. */
-static inline hard_sample *hard_creep(const hard_motion *m, size_t rows, double *own_error)
+/* An electrode as wide as the frame is no actuator. */
+static inline void hard_rest(const dea_scene *here, const dea_model *model, hard_known *known)
 {
-    hard_sample *runs[3];
-    for (int i = 0; i < 3; i++) {
-        runs[i] = hard_samples(rows);
-        hard_creep_run(m, 1 << i, rows, runs[i]);
+    true_row truth = {.row = dea_row_failed()};
+    if (film_of(here, model).coverage < 1.0L) {
+        truth = still_truth(here, model, 1.0);
     }
-    for (size_t i = 0; i < rows; i++) {
-        runs[0][i].u = (4.0L * runs[1][i].u - runs[0][i].u) / 3.0L;
-        runs[1][i].u = (4.0L * runs[2][i].u - runs[1][i].u) / 3.0L;
-        runs[2][i].u = (16.0L * runs[1][i].u - runs[0][i].u) / 15.0L;
-        const long double voltage = hard_source(m, dea_layout_place(m->scene, i), i == 0);
-        runs[2][i].charge = hard_edge_at(&m->film, runs[2][i].u).capacitance * voltage;
-    }
-    *own_error = hard_distance(runs[1], runs[2], rows);
-    free(runs[0]);
-    free(runs[1]);
-    return runs[2];
+    *(dea_row *)known->rows = truth.row;
+    known->error = truth.error;
 }
 
-static inline hard_sample *hard_step_through(const hard_motion *m, size_t rows, double *own_error)
+/* The truth of one point; the caller frees its rows. */
+static inline hard_known hard_know(const hard_case *c, const dea_scene *here, const dea_model *model)
 {
-    hard_sample *coarse = hard_samples(rows), *fine = hard_samples(rows);
-    hard_radau(m, 1, rows, coarse);
-    hard_radau(m, 2, rows, fine);
-    *own_error = hard_distance(coarse, fine, rows) / 30.0;
-    free(coarse);
-    return fine;
-}
-
-static inline hard_response *hard_responses(const hard_motion *m, size_t rows)
-{
-    hard_response *responses = calloc(rows, sizeof *responses);
-    hard_film still = m->film;
-    if (!responses) {
+    const dea_layout layout = dea_layout_of(here);
+    hard_known known = {.rows = calloc(layout.rows, layout.row_size)};
+    if (!known.rows) {
         abort();
     }
-    still.voltage = (long double)m->scene->ac.bias / (1.0L + m->series * m->conductance);
-    const long double u = hard_statics(&still).strain * m->film.edge;
-    for (size_t i = 0; i < rows; i++) {
-        responses[i] = hard_respond(m, m->scene->ac.bias, u, dea_layout_place(m->scene, i));
+    if (c->swings) {
+        hard_swing(here, model, layout.rows, known.rows);
+    } else if (here->study == DEA_STUDY_TRANSIENT) {
+        hard_move(here, model, &known);
+    } else if (here->study == DEA_STUDY_AC) {
+        known.error = response_truth(here, model, known.rows);
+    } else {
+        hard_rest(here, model, &known);
     }
-    return responses;
-}
-
-/* The truth of one point, and an estimate of its own error. */
-static inline hard_known hard_know(const hard_case *c, const dea_scene *here, const dea_model *model, double *own_error)
-{
-    const size_t rows = dea_layout_of(here).rows;
-    const hard_motion m = hard_motion_of(here, model);
-    *own_error = 0.0;
-    switch (c->judge) {
-    case HARD_RADAU:
-        return (hard_known){.samples = hard_step_through(&m, rows, own_error)};
-    case HARD_CREEP:
-        return (hard_known){.samples = hard_creep(&m, rows, own_error)};
-    case HARD_RING:
-        return (hard_known){.samples = hard_ring(&m, rows)};
-    case HARD_AC:
-        return (hard_known){.responses = hard_responses(&m, rows)};
-    case HARD_STATICS:
-        break;
-    }
-    return (hard_known){.statics = hard_statics(&m.film)};
+    return known;
 }
 
 /* ---- comparison */
@@ -199,90 +157,97 @@ static inline void hard_complain(hard_verdict *v, const char *what, size_t point
     }
 }
 
-static inline void hard_compare_static(hard_verdict *v, size_t point, const dea_row *row, const hard_answer *known)
+static inline void hard_compare_static(hard_verdict *v, size_t point, const dea_row *row, const dea_row *known)
 {
     if (row->state == DEA_STATE_FAILED && known->state != DEA_STATE_FAILED) {
         v->failed++;
     } else if (row->state != known->state) {
-        hard_complain(v, dea_state_name(row->state), point, 0, row->strain, (double)known->strain);
+        hard_complain(v, dea_state_name(row->state), point, 0, row->strain, known->strain);
     } else if (row->state == DEA_STATE_OK || row->state == DEA_STATE_SLACK) {
-        const long double miss = fabsl(row->strain - known->strain);
-        const double error = miss == 0.0L ? 0.0 : (double)(miss / fabsl(known->strain));
+        const double miss = fabs(row->strain - known->strain);
+        const double error = miss <= 0.0 ? 0.0 : miss / fabs(known->strain);
         v->error = fmax(v->error, error);
         if (!(error <= v->accuracy)) {
-            hard_complain(v, "strain", point, 0, row->strain, (double)known->strain);
+            hard_complain(v, "strain", point, 0, row->strain, known->strain);
         }
     }
 }
 
-/* Largest |a - b|/peak; a NAN counts as infinitely wrong. */
-static inline double hard_over_peak(long double miss, long double peak)
+/* Largest miss over the largest value of a column; a miss that is no number counts as infinitely wrong. */
+typedef struct hard_column {
+    double miss, peak;
+} hard_column;
+
+static inline void hard_widen(hard_column *column, double got, double known)
 {
-    return miss == 0.0L ? 0.0 : !(miss >= 0.0L) || peak == 0.0L ? (double)INFINITY : (double)(miss / peak);
+    const double miss = fabs(got - known);
+    column->peak = fmax(column->peak, fabs(known));
+    column->miss = miss >= 0.0 ? fmax(column->miss, miss) : (double)INFINITY;
 }
 
-static inline void hard_compare_samples(hard_verdict *v, size_t point, const dea_sample *got, const hard_sample *known,
-                                        size_t rows)
+static inline double hard_over_peak(const hard_column *column)
 {
-    hard_sample miss = {0}, peak = {0};
+    return column->miss <= 0.0 ? 0.0 : column->peak <= 0.0 ? (double)INFINITY : column->miss / column->peak;
+}
+
+/* The current is judged behind a resistance: that of a jump is none. */
+static inline void hard_compare_samples(hard_verdict *v, size_t point, const dea_sample *got, const dea_sample *known,
+                                        size_t rows, bool resists)
+{
+    hard_column u = {0}, charge = {0}, current = {0};
     for (size_t i = 0; i < rows; i++) {
         if (got[i].state == DEA_STATE_FAILED) {
             v->failed++;
             return;
         }
-        const bool port = !isnan(got[i].charge), flows = port && !isnan((double)known[i].current);
-        peak.u = fmaxl(peak.u, fabsl(known[i].u));
-        peak.charge = fmaxl(peak.charge, fabsl(known[i].charge));
-        peak.current = flows ? fmaxl(peak.current, fabsl(known[i].current)) : peak.current;
-        const long double u = fabsl(got[i].displacement - known[i].u);
-        miss.u = u >= 0.0L ? fmaxl(miss.u, u) : (long double)INFINITY;
-        miss.charge = port ? fmaxl(miss.charge, fabsl(got[i].charge - known[i].charge)) : miss.charge;
-        miss.current = flows ? fmaxl(miss.current, fabsl(got[i].current - known[i].current)) : miss.current;
+        if ((got[i].state == DEA_STATE_PULL_IN) != (known[i].state == DEA_STATE_PULL_IN)) {
+            hard_complain(v, dea_state_name(got[i].state), point, i, got[i].displacement, known[i].displacement);
+        }
+        if (got[i].state == DEA_STATE_PULL_IN) {
+            continue;
+        }
+        const bool port = !isnan(got[i].charge);
+        hard_widen(&u, got[i].displacement, known[i].displacement);
+        hard_widen(&charge, port ? got[i].charge : 0.0, port ? known[i].charge : 0.0);
+        hard_widen(&current, port && resists ? got[i].current : 0.0, port && resists ? known[i].current : 0.0);
     }
-    const double error = fmax(hard_over_peak(miss.u, peak.u), hard_over_peak(miss.charge, peak.charge));
+    const double error = fmax(hard_over_peak(&u), hard_over_peak(&charge));
     v->error = fmax(v->error, error);
-    const long double mean =
-        peak.charge / got[rows - 1].time; /* a current that no sample sees brings the charge within the run */
-    v->current = fmax(v->current, hard_over_peak(miss.current, fmaxl(peak.current, mean)));
+    current.peak = fmax(current.peak, charge.peak / got[rows - 1].time); /* one that no sample sees brings the charge within the run */
+    v->current = fmax(v->current, hard_over_peak(&current));
     if (!(error <= v->accuracy)) {
         hard_complain(v, "displacement or charge", point, rows, error, 0.0);
     }
 }
 
-static inline double hard_polar_error(double magnitude, double degrees, long double complex known)
+static inline double hard_polar_error(double size, double degrees, double known_size, double known_degrees)
 {
-    const long double complex got = magnitude * cexpl(I * (degrees * hard_pi / 180.0L));
-    const long double size = cabsl(known), miss = cabsl(got - known);
-    return miss == 0.0L ? 0.0 : !(miss >= 0.0L) ? (double)INFINITY : (double)(miss / size);
+    const double angle = (degrees - known_degrees) * (3.14159265358979323846 / 180.0);
+    const double miss = cabs(size * cexp(I * angle) - known_size);
+    return miss <= 0.0 ? 0.0 : !(miss >= 0.0) ? (double)INFINITY : miss / known_size;
 }
 
-static inline void hard_compare_responses(hard_verdict *v, size_t point, const dea_response *got, const hard_response *known,
+static inline void hard_compare_responses(hard_verdict *v, size_t point, const dea_response *got, const dea_response *known,
                                           size_t rows)
 {
     double error = 0.0;
     for (size_t i = 0; i < rows; i++) {
-        if (got[i].state == DEA_STATE_FAILED) {
+        const dea_response *a = &got[i], *b = &known[i];
+        if (a->state == DEA_STATE_FAILED) {
             v->failed++;
             return;
         }
-        const double u = hard_polar_error(got[i].displacement, got[i].displacement_phase, known[i].displacement);
-        error = fmax(error, fmax(u, hard_polar_error(got[i].impedance, got[i].impedance_phase, known[i].impedance)));
+        if ((a->state == DEA_STATE_PULL_IN) != (b->state == DEA_STATE_PULL_IN)) {
+            hard_complain(v, dea_state_name(a->state), point, i, a->displacement, b->displacement);
+        }
+        if (a->state != DEA_STATE_PULL_IN) {
+            error = fmax(error, hard_polar_error(a->displacement, a->displacement_phase, b->displacement, b->displacement_phase));
+            error = fmax(error, hard_polar_error(a->impedance, a->impedance_phase, b->impedance, b->impedance_phase));
+        }
     }
     v->error = fmax(v->error, error);
     if (!(error <= v->accuracy)) {
         hard_complain(v, "response", point, rows, error, 0.0);
-    }
-}
-
-static inline void hard_compare_point(const hard_case *c, hard_verdict *v, size_t point, const void *got, const hard_known *known,
-                                      size_t rows)
-{
-    if (c->judge == HARD_STATICS) {
-        hard_compare_static(v, point, got, &known->statics);
-    } else if (c->judge == HARD_AC) {
-        hard_compare_responses(v, point, got, known->responses, rows);
-    } else {
-        hard_compare_samples(v, point, got, known->samples, rows);
     }
 }
 
@@ -293,8 +258,8 @@ typedef struct hard_subject {
     const hard_case *of;
     dea_scene scene;
     size_t points; /* of one model */
-    hard_known *known;
-    double own_error; /* of the truth */
+    hard_known *known; /* owned, points of one model after the other */
+    double own_error;  /* of the truth */
 } hard_subject;
 
 typedef struct hard_run {
@@ -316,14 +281,27 @@ static inline void hard_take_log(void *user, const char *line)
     hard_note(run->verdict, line);
 }
 
+static inline void hard_compare(const hard_run *run, size_t point, const void *got, const void *known)
+{
+    const dea_scene *scene = &run->subject->scene;
+    if (scene->study == DEA_STUDY_SWEEP) {
+        hard_compare_static(run->verdict, point, got, known);
+    } else if (scene->study == DEA_STUDY_AC) {
+        hard_compare_responses(run->verdict, point, got, known, run->layout.rows);
+    } else {
+        dea_scene here = *scene;
+        dea_axes_place(&here, point);
+        hard_compare_samples(run->verdict, point, got, known, run->layout.rows, here.drive.series_resistance > 0.0);
+    }
+}
+
 static inline dea_status hard_take(void *user, size_t first, const void *points, size_t count, dea_error *error)
 {
     const hard_run *run = user;
     (void)error;
     for (size_t i = 0; i < count; i++) {
         const hard_known *known = &run->subject->known[run->model * run->subject->points + first + i];
-        hard_compare_point(run->subject->of, run->verdict, first + i, (const char *)points + i * run->layout.point_size, known,
-                           run->layout.rows);
+        hard_compare(run, first + i, (const char *)points + i * run->layout.point_size, known->rows);
         run->verdict->points++;
     }
     return DEA_OK;
@@ -334,17 +312,6 @@ static inline double hard_now(void)
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-/* Places the axes of a study at a point, the last one fastest. */
-static inline void hard_place_axes(dea_scene *scene, size_t point)
-{
-    for (size_t i = scene->axis_count; i-- > 0;) {
-        const dea_axis *axis = &scene->axes[i];
-        const double value = axis->values[point % axis->count];
-        memcpy((char *)scene + axis->offset, &value, sizeof value);
-        point /= axis->count;
-    }
 }
 
 /* Reads a scene, thinned or whole, and finds its truth; false with a message. The caller ends it with hard_end(). */
@@ -364,18 +331,17 @@ static inline bool hard_begin(const hard_case *c, const char *folder, bool whole
     }
     for (size_t i = 0; i < s->points * s->scene.model_count; i++) {
         dea_scene here = s->scene;
-        double own = 0.0;
-        hard_place_axes(&here, i % s->points);
-        s->known[i] = hard_know(c, &here, s->scene.models[i / s->points], &own);
-        s->own_error = fmax(s->own_error, own);
+        dea_axes_place(&here, i % s->points);
+        s->known[i] = hard_know(c, &here, s->scene.models[i / s->points]);
+        s->own_error = fmax(s->own_error, s->known[i].error);
     }
     return true;
 }
 
 static inline void hard_end(hard_subject *s)
 {
-    for (size_t i = 0; s->known && s->of->judge != HARD_STATICS && i < s->points * s->scene.model_count; i++) {
-        free(s->known[i].samples); /* or responses: one place */
+    for (size_t i = 0; s->known && i < s->points * s->scene.model_count; i++) {
+        free(s->known[i].rows);
     }
     free(s->known);
     dea_scene_free(&s->scene);

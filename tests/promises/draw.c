@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "../unit/random_transients.h"
 #include "scene/reader.h"
@@ -43,9 +44,27 @@ static void put_actuator(paper *p, const dea_actuator *a)
     }
 }
 
+/* One law as a mapping of its constants, or a list of such mappings. */
+static void put_law(paper *p, const dea_material *m)
+{
+    const dea_law *law = m->law;
+    put(p, "  %s: %s", law->name, law->entries > 1 ? "[" : "");
+    for (size_t entry = 0; entry < m->entry_count; entry++) {
+        put(p, "%s", entry > 0 ? ", " : "");
+        for (size_t i = 0; i < law->constant_count; i++) {
+            const dea_constant *constant = &law->constants[i];
+            const char *unit = constant->modulus ? " Pa" : "";
+            put(p, "%s%s: %.17g%s", i > 0 ? ", " : "{", constant->name, m->constants[entry * law->constant_count + i], unit);
+        }
+        put(p, "}");
+    }
+    put(p, "%s\n", law->entries > 1 ? "]" : "");
+}
+
 static void put_material(paper *p, const dea_material *m)
 {
-    put(p, "material:\n  yeoh: {C1: %.17g Pa, C2: %.17g Pa, C3: %.17g Pa}\n", m->constants[0], m->constants[1], m->constants[2]);
+    put(p, "material:\n");
+    put_law(p, m);
     put(p, "  permittivity: {constant: %.17g, per_stretch: %.17g}\n", m->permittivity, m->permittivity_per_stretch);
     put_given(p, "density", m->density, "kg/m^3");
     put_given(p, "retardation", m->retardation, "s");
@@ -96,14 +115,85 @@ static void put_drive(paper *p, const dea_scene *scene)
 
 /* ---- materials and geometry */
 
-static void draw_material(uint64_t *seed, dea_material *m)
+/* Constants of a law by the shear modulus and I1 - 3 of a film whose chains are straight. */
+typedef void draw_constants(uint64_t *seed, double shear, double straight, dea_material *m);
+
+static void draw_neo_hookean(uint64_t *seed, double shear, double straight, dea_material *m)
 {
+    (void)seed;
+    (void)straight;
+    m->constants[0] = shear;
+}
+
+static void draw_mooney_rivlin(uint64_t *seed, double shear, double straight, dea_material *m)
+{
+    const double second = random_between(seed, 0.0, 0.5);
+    (void)straight;
+    m->constants[0] = 0.5 * shear * (1.0 - second);
+    m->constants[1] = 0.5 * shear * second;
+}
+
+static void draw_gent(uint64_t *seed, double shear, double straight, dea_material *m)
+{
+    (void)seed;
+    m->constants[0] = shear;
+    m->constants[1] = straight;
+}
+
+/* Up to three terms, those with another sign than their exponent weak. */
+static void draw_ogden(uint64_t *seed, double shear, double straight, dea_material *m)
+{
+    double sum = 0.0;
+    (void)straight;
+    m->entry_count = 1 + (size_t)(3.0 * random_unit(seed));
+    for (size_t i = 0; i < m->entry_count; i++) {
+        const double alpha = random_chance(seed, 0.6) ? random_between(seed, 1.1, 6.0) : random_between(seed, -5.0, -0.5);
+        const double sign = i > 0 && random_chance(seed, 0.2) ? -0.1 : 1.0;
+        m->constants[2 * i] = sign * random_decades(seed, 0.01, 1.0) / alpha;
+        m->constants[2 * i + 1] = alpha;
+        sum += m->constants[2 * i] * alpha;
+    }
+    for (size_t i = 0; i < m->entry_count; i++) {
+        m->constants[2 * i] *= 2.0 * shear / sum;
+    }
+}
+
+static void draw_arruda_boyce(uint64_t *seed, double shear, double straight, dea_material *m)
+{
+    (void)seed;
+    m->constants[0] = shear;
+    m->constants[1] = sqrt(1.0 + straight / 3.0);
+}
+
+static const struct {
+    const char *name;
+    draw_constants *draw;
+} laws[] = {
+    {"neo_hookean", draw_neo_hookean}, {"mooney_rivlin", draw_mooney_rivlin}, {"gent", draw_gent}, {"ogden", draw_ogden},
+    {"arruda_boyce", draw_arruda_boyce},
+};
+
+/* Another law than Yeoh's of about the same stiffness; chains may be straight soon behind the pre-stretch, where I1 - 3 is @p rest. */
+static void draw_law(uint64_t *seed, double shear, double rest, dea_material *m)
+{
+    const double straight = rest * random_decades(seed, 1.02, 30.0) + random_decades(seed, 0.3, 10.0);
+    const size_t chosen = (size_t)((double)(sizeof laws / sizeof *laws) * random_unit(seed));
+    m->law = dea_law_find(laws[chosen].name);
+    memset(m->constants, 0, sizeof m->constants);
+    laws[chosen].draw(seed, shear, straight, m);
+}
+
+static void draw_material(uint64_t *seed, double prestretch, dea_material *m)
+{
+    const double y = prestretch * prestretch, factor = random_decades(seed, 0.1, 30.0);
     random_material(seed, m);
     if (random_chance(seed, 0.2)) {
-        *m = *dea_material_find(random_chance(seed, 0.5) ? "vhb-4910-neo-hookean" : "elastosil-2030");
+        *m = *dea_material_builtin((size_t)((double)dea_material_count() * random_unit(seed)));
+    } else if (random_chance(seed, 0.7)) {
+        draw_law(seed, 2.0 * factor * m->constants[0], 2.0 * y + 1.0 / (y * y) - 3.0, m);
+        m->modulus *= factor;
     } else {
-        const double factor = random_decades(seed, 0.1, 30.0);
-        for (int i = 0; i < DEA_YEOH_TERMS; i++) {
+        for (size_t i = 0; i < m->law->constant_count; i++) {
             m->constants[i] *= factor;
         }
         m->modulus *= factor;
@@ -113,28 +203,61 @@ static void draw_material(uint64_t *seed, dea_material *m)
     }
 }
 
+/* Makes a film neo-Hookean that its material does not hold. */
+static void soften(dea_scene *scene)
+{
+    dea_material *m = &scene->material;
+    const double shear = fabs(m->constants[0]);
+    m->law = dea_law_find("neo_hookean");
+    m->entry_count = 1;
+    memset(m->constants, 0, sizeof m->constants);
+    m->constants[0] = shear;
+}
+
+/* W11 at rest [Pa]. */
+static double stiffness_of(const dea_scene *scene)
+{
+    double constants[DEA_LAW_CONSTANTS];
+    dea_material_long_term(&scene->material, constants);
+    return dea_law_film(scene->material.law, constants, scene->actuator.prestretch).w11;
+}
+
+/* First resonance of a film of that frame, roughly [Hz]. */
+static double pace_of(const dea_scene *scene)
+{
+    const double wave = sqrt(stiffness_of(scene) / scene->material.density);
+    return 0.6 * scene->actuator.prestretch / scene->actuator.frame_radius * wave;
+}
+
 static void draw_film(uint64_t *seed, dea_scene *scene)
 {
     dea_actuator *a = &scene->actuator;
     *scene = random_scene(seed);
-    draw_material(seed, &scene->material);
     a->prestretch = random_chance(seed, 0.6) ? random_between(seed, 1.05, 1.6) : random_between(seed, 1.6, 4.0);
+    draw_material(seed, a->prestretch, &scene->material);
     a->coverage = random_chance(seed, 0.3)
                       ? (random_chance(seed, 0.5) ? random_between(seed, 0.02, 0.1) : random_between(seed, 0.9, 0.98))
                       : random_between(seed, 0.1, 0.9);
     a->film_thickness = random_decades(seed, 1e-6, 1e-3);
     a->frame_radius = random_decades(seed, 1e-3, 0.1);
+    if (!(stiffness_of(scene) > 0.0)) {
+        soften(scene);
+    }
 }
 
-/* A film that its material does not hold at rest is made neo-Hookean. */
+/* Voltage at which a film pulls in, or one that strains it well. */
 static double limit_voltage(dea_scene *scene, const char *model)
 {
-    const double voltage = pull_in_voltage(scene, model);
-    if (static_strain(scene, model, 1e-3 * voltage) == 1.0) {
-        scene->material.constants[1] = scene->material.constants[2] = 0.0;
-        return pull_in_voltage(scene, model);
+    for (int i = 0; i < 2; i++) {
+        const double most =
+            scene->actuator.film_thickness * sqrt(stiffness_of(scene) / DEA_EPSILON_0) / scene->actuator.prestretch;
+        const double voltage = pull_in_below(scene, model, most);
+        if (static_strain(scene, model, 1e-3 * voltage) != 1.0) {
+            return voltage;
+        }
+        soften(scene);
     }
-    return voltage;
+    return 0.0;
 }
 
 static int by_size(const void *a, const void *b)
@@ -268,7 +391,7 @@ static void draw_transient(uint64_t *seed, paper *p)
     dea_transient *run = &scene.transient;
     scene.study = DEA_STUDY_TRANSIENT;
     scene.material.prony_count = 0;
-    const double pace = random_frequency(&scene);
+    const double pace = pace_of(&scene);
     run->until = heavy ? random_decades(seed, 2.0, 40.0) / pace : random_decades(seed, 1e-6, 1e6);
     run->every = run->until / (double)(int)random_decades(seed, 10.0, 400.0);
     run->from_bias = random_chance(seed, 0.25);
@@ -296,7 +419,7 @@ static void draw_response(uint64_t *seed, paper *p)
     const char *model = draw_mover(seed, &scene, heavy);
     scene.study = DEA_STUDY_AC;
     scene.material.prony_count = 0;
-    const double centre = heavy ? random_frequency(&scene) : random_decades(seed, 1e-4, 1e4);
+    const double centre = heavy ? pace_of(&scene) : random_decades(seed, 1e-4, 1e4);
     draw_motion(seed, &scene, 1.0 / centre);
     scene.drive.voltage = random_between(seed, 0.05, 0.95) * limit_voltage(&scene, model);
     draw_ports(seed, &scene, 1.0 / centre);

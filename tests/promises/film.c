@@ -1,62 +1,51 @@
 /* The film straight from physics.md, sections 2, 3 and 5, in long double. */
-#include "promises.h"
+#include "truths.h"
 
 #include <math.h>
 #include <string.h>
 
 static const long double pi = 3.14159265358979323846264338327950288L;
 
-static jet plain(long double value)
+/* A strain that goes with the displacement. */
+static jet strain_of(long double u, long double per_u)
 {
-    return (jet){value, 0.0L, 0.0L};
+    return (jet){u * per_u, per_u, 0.0L, u * per_u};
 }
 
-static jet times(long double factor, jet a)
+/* lambda_pre (1 + e). */
+static jet stretched(const true_film *f, jet strain)
 {
-    return (jet){factor * a.value, factor * a.slope, factor * a.curve};
+    return times(f->prestretch, plus(plain(1.0L), strain));
 }
 
-static jet plus(jet a, jet b)
+/* sigma_1 at two stretches. */
+static jet principal(const true_film *f, jet l1, jet l2)
 {
-    return (jet){a.value + b.value, a.slope + b.slope, a.curve + b.curve};
+    return f->law->stress(f->constants, l1, l2);
 }
 
-static jet by(jet a, jet b)
-{
-    return (jet){a.value * b.value, a.slope * b.value + a.value * b.slope,
-                 a.curve * b.value + 2.0L * a.slope * b.slope + a.value * b.curve};
-}
-
-static jet inverse(jet a)
-{
-    const long double v = 1.0L / a.value;
-    return (jet){v, -a.slope * v * v, 2.0L * a.slope * a.slope * v * v * v - a.curve * v * v};
-}
-
-/* sigma = 2 (l^2 - l^-4) w, as a function of whatever the stretch depends on. */
 static jet cauchy(const true_film *f, jet l)
 {
-    const jet square = by(l, l);
-    const jet fourth = inverse(by(square, square));
-    const jet j = plus(plain(-3.0L), plus(times(2.0L, square), fourth));
-    const jet w = plus(plain(f->yeoh[0]), plus(times(2.0L * f->yeoh[1], j), times(3.0L * f->yeoh[2], by(j, j))));
-    return times(2.0L, by(plus(square, times(-1.0L, fourth)), w));
+    return principal(f, l, l);
 }
 
 jet film_cauchy(const true_film *film, long double stretch)
 {
-    return cauchy(film, (jet){stretch, 1.0L, 0.0L});
+    return cauchy(film, (jet){stretch, 1.0L, 0.0L, 0.0L});
 }
 
-/* sigma(l (1 + e)) - sigma(l), factored in d = y - l^2 with y = l^2 (1 + e)^2, so that a strain of any size keeps its digits. */
 long double film_cauchy_change(const true_film *f, long double e)
 {
-    const long double rest = f->prestretch * f->prestretch, d = rest * e * (2.0L + e), y = rest + d;
-    const long double fall = (y + rest) / (y * y * rest * rest); /* (rest^-2 - y^-2)/d */
-    const long double dg = d * (1.0L + fall), dj = d * (2.0L - fall), j = 2.0L * rest + 1.0L / (rest * rest) - 3.0L;
-    const long double w = f->yeoh[0] + 2.0L * f->yeoh[1] * (j + dj) + 3.0L * f->yeoh[2] * (j + dj) * (j + dj);
-    const long double dw = dj * (2.0L * f->yeoh[1] + 3.0L * f->yeoh[2] * (2.0L * j + dj));
-    return 2.0L * (dg * w + (rest - 1.0L / (rest * rest)) * dw);
+    return cauchy(f, stretched(f, strain_of(e, 1.0L))).change;
+}
+
+true_stress film_stress(const true_film *f, long double d1, long double d2)
+{
+    const jet l1 = {f->prestretch + d1, 0.0L, 0.0L, d1}, l2 = {f->prestretch + d2, 0.0L, 0.0L, d2};
+    const jet along1 = {l1.value, 1.0L, 0.0L, d1}, along2 = {l2.value, 1.0L, 0.0L, d2};
+    const jet first = by(principal(f, along1, l2), inverse(along1)), across = by(principal(f, l2, along1), inverse(l2));
+    const jet second = by(principal(f, along2, l1), inverse(along2));
+    return (true_stress){first.change, second.change, first.slope, across.slope, second.slope};
 }
 
 static void set_material(const dea_scene *scene, true_film *f)
@@ -73,9 +62,12 @@ static void set_material(const dea_scene *scene, true_film *f)
     }
     const long double given = m->instantaneous ? rest : 1.0L;
     f->branches = m->prony_count;
-    for (int i = 0; i < DEA_YEOH_TERMS; i++) {
-        f->yeoh[i] = given * m->constants[i];
+    f->law = true_law_find(m->law->name);
+    for (unsigned i = 0; i < DEA_LAW_CONSTANTS; i++) {
+        f->constants[i] = f->law->moduli >> i & 1u ? given * m->constants[i] : (long double)m->constants[i];
     }
+    f->rest = film_stress(f, 0.0L, 0.0L);
+    f->tension = film_cauchy(f, f->prestretch).value / f->prestretch;
     f->permittivity = 8.8541878128e-12 * (m->permittivity + (long double)m->permittivity_per_stretch * f->prestretch);
     f->modulus = isnan(m->modulus) ? film_cauchy(f, f->prestretch).slope : given * m->modulus;
     f->breakdown = isnan(m->breakdown) ? (long double)INFINITY : (long double)m->breakdown;
@@ -155,50 +147,35 @@ static long double lens_charge(long double p, long double s)
     return sum;
 }
 
-/* Moduli of section 2 at equal stretches. */
-typedef struct moduli {
-    long double w11, w12, tension;
-} moduli;
-
-static moduli moduli_of(const true_film *f)
-{
-    const long double l = f->prestretch, l2 = l * l, sixth = 1.0L / (l2 * l2 * l2);
-    const long double j = 2.0L * l2 + 1.0L / (l2 * l2) - 3.0L;
-    const long double w = f->yeoh[0] + 2.0L * f->yeoh[1] * j + 3.0L * f->yeoh[2] * j * j;
-    const long double q = 2.0L * f->yeoh[1] + 6.0L * f->yeoh[2] * j, a = 2.0L * (l - l * sixth);
-    return (moduli){w * (2.0L + 6.0L * sixth) + q * a * a, 4.0L * w * sixth + q * a * a, w * a};
-}
-
 static true_edge edge_linear(const true_film *f, long double u, bool lame)
 {
     const long double l2 = f->prestretch * f->prestretch, b2 = f->coverage * f->coverage, sign = f->dot ? 1.0L : -1.0L;
     const long double section = 2.0L * pi * f->divide * f->thickness / l2;
     const long double unit = 2.0L * pi * f->permittivity / f->thickness * l2; /* 2 pi H M lambda^2/U^2 */
     const long double q = (1.0L + b2) / ((1.0L - f->coverage) * (1.0L + f->coverage));
-    const moduli m = moduli_of(f);
-    const long double stiffness = lame ? 2.0L * pi * f->thickness * (m.w11 + m.w12 + m.w11 * q - m.w12)
+    const true_stress *m = &f->rest;
+    const long double stiffness = lame ? 2.0L * pi * f->thickness * (m->w11 + m->w12 + m->w11 * q - m->w12)
                                        : f->modulus * section * (1.0L / f->divide + 1.0L / (f->frame - f->divide));
     const long double force = sign * unit * f->divide; /* Eq. 21 over the circumference, per U^2 */
     const long double soft = lame ? unit * (f->dot ? 3.0L : q - 2.0L) : 0.0L;
     const long double area = pi * (f->dot ? f->divide * f->divide : (f->frame - f->divide) * (f->frame + f->divide));
     return (true_edge){.count = 1,
                        .area = {plain(1.0L)},
-                       .stress = {{stiffness * u, stiffness, 0.0L}},
-                       .push = {force + soft * u, soft, 0.0L},
+                       .stress = {strain_of(u, stiffness)},
+                       .push = {force + soft * u, soft, 0.0L, soft * u},
                        .capacitance = f->permittivity * l2 / f->thickness * area + u * (2.0L * force + soft * u)};
 }
 
 static true_edge edge_hyperelastic(const true_film *f, long double u)
 {
     const long double l = f->prestretch, b = f->coverage, p = f->divide / (f->frame - f->divide);
-    const jet s = {u / f->divide, 1.0L / f->divide, 0.0L}, one = plain(1.0L);
-    const jet disc = plus(one, s), annulus = plus(one, times(-p, s));
-    const jet inner = cauchy(f, times(l, disc)), outer = cauchy(f, times(l, annulus));
+    const jet s = strain_of(u, 1.0L / f->divide), away = times(-p, s), one = plain(1.0L);
+    const jet disc = plus(one, s), annulus = plus(one, away);
+    const jet inner = cauchy(f, stretched(f, s)), outer = cauchy(f, stretched(f, away));
     const long double section = 2.0L * pi * f->divide * f->thickness / (l * l);
     const long double unit = f->permittivity * l * l * l * l / (f->thickness * f->thickness);
     const jet area = times(section, inverse(disc)), active = f->dot ? disc : annulus, square = by(active, active);
-    true_edge e = {.count = 1, .area = {area}, .stress = {plus(inner, times(-1.0L, outer))}};
-    e.stress[0].value = film_cauchy_change(f, s.value) - film_cauchy_change(f, -p * s.value);
+    true_edge e = {.count = 1, .area = {area}, .stress = {since_rest(minus(inner, outer))}};
     e.push = times(f->dot ? unit : -unit, by(area, by(square, square)));
     const long double rest = f->permittivity * l * l / f->thickness * pi;
     if (f->dot) {
@@ -210,27 +187,6 @@ static true_edge edge_hyperelastic(const true_film *f, long double u)
     return e;
 }
 
-/* sigma_1 = 2 w (y1 - v) at two stretches, J = y1 + y2 + v - 3, y = l^2, v = 1/(y1 y2). */
-static jet principal(const true_film *f, jet l1, jet l2)
-{
-    const jet y1 = by(l1, l1), y2 = by(l2, l2), v = inverse(by(y1, y2));
-    const jet j = plus(plain(-3.0L), plus(plus(y1, y2), v));
-    const jet w = plus(plain(f->yeoh[0]), plus(times(2.0L * f->yeoh[1], j), times(3.0L * f->yeoh[2], by(j, j))));
-    return times(2.0L, by(plus(y1, times(-1.0L, v)), w));
-}
-
-/* Its change from rest by relative changes of the stretches, factored as film_cauchy_change(). */
-static long double principal_change(const true_film *f, long double e1, long double e2)
-{
-    const long double rest = f->prestretch * f->prestretch, d1 = rest * e1 * (2.0L + e1), d2 = rest * e2 * (2.0L + e2);
-    const long double sum = rest * (d1 + d2) + d1 * d2; /* of y1 y2 */
-    const long double dv = -sum / ((rest + d1) * (rest + d2) * rest * rest), dj = d1 + d2 + dv;
-    const long double j = 2.0L * rest + 1.0L / (rest * rest) - 3.0L;
-    const long double w = f->yeoh[0] + 2.0L * f->yeoh[1] * (j + dj) + 3.0L * f->yeoh[2] * (j + dj) * (j + dj);
-    const long double dw = dj * (2.0L * f->yeoh[1] + 3.0L * f->yeoh[2] * (2.0L * j + dj));
-    return 2.0L * ((d1 - dv) * w + (rest - 1.0L / (rest * rest)) * dw);
-}
-
 /* Section 7: relative changes of the stretches of disc, and radial and hoop of the annulus. */
 typedef struct ring_strains {
     jet disc, radial, hoop;
@@ -239,8 +195,7 @@ typedef struct ring_strains {
 static ring_strains rings_at(const true_film *f, long double u)
 {
     const long double width = f->frame - f->divide, sum = f->frame + f->divide;
-    return (ring_strains){
-        {u / f->divide, 1.0L / f->divide, 0.0L}, {-u / width, -1.0L / width, 0.0L}, {u / sum, 1.0L / sum, 0.0L}};
+    return (ring_strains){strain_of(u, 1.0L / f->divide), strain_of(u, -1.0L / width), strain_of(u, 1.0L / sum)};
 }
 
 /* Area stretch of the electroded film over that at rest. */
@@ -252,19 +207,17 @@ static jet ring_area(const true_film *f, const ring_strains *at)
 
 static true_edge edge_ring(const true_film *f, long double u)
 {
-    const long double l = f->prestretch, section = pi * f->thickness / (l * l), rest = film_cauchy(f, l).value;
-    const jet one = plain(1.0L), lever = {-u, -1.0L, 0.0L};
+    const long double l = f->prestretch, section = pi * f->thickness / (l * l), rest = f->tension * l;
+    const jet one = plain(1.0L), lever = strain_of(u, -1.0L);
     const ring_strains at = rings_at(f, u);
     const jet disc = plus(one, at.disc), radial = plus(one, at.radial), hoop = plus(one, at.hoop);
-    const jet l0 = times(l, disc), l1 = times(l, radial), l2 = times(l, hoop);
+    const jet l0 = stretched(f, at.disc), l1 = stretched(f, at.radial), l2 = stretched(f, at.hoop);
     const long double outer = f->frame + f->divide, inner = f->frame - f->divide;
     true_edge e = {.count = 3,
                    .area = {times(2.0L * section * f->divide, inverse(disc)), times(section * outer, inverse(radial)),
                             times(section * inner, inverse(hoop))},
-                   .stress = {principal(f, l0, l0), times(-1.0L, principal(f, l1, l2)), principal(f, l2, l1)}};
-    e.stress[0].value = principal_change(f, at.disc.value, at.disc.value);
-    e.stress[1].value = -principal_change(f, at.radial.value, at.hoop.value);
-    e.stress[2].value = principal_change(f, at.hoop.value, at.radial.value);
+                   .stress = {since_rest(cauchy(f, l0)), times(-1.0L, since_rest(principal(f, l1, l2))),
+                              since_rest(principal(f, l2, l1))}};
     /* 2 r_a/(1 + e) - (r + r_a)/(1 + e1) + (r - r_a)/(1 + e2), which is 0 at rest, over -u */
     const jet fall =
         plus(times(2.0L, inverse(disc)), plus(times(outer / inner, inverse(radial)), times(inner / outer, inverse(hoop))));
@@ -314,13 +267,13 @@ static long double least(long double a, long double b)
 /* Smallest in-plane stress of lame's disc and annulus. */
 static long double lame_tension(const true_film *f, long double strain, long double m)
 {
-    const moduli at = moduli_of(f);
     const long double l = f->prestretch, soft = m * l * l, b2 = f->coverage * f->coverage;
     const long double d = f->dot ? soft : 0.0L, o = f->dot ? 0.0L : soft, c = l * strain;
-    const long double a1 = at.w11 - d, a2 = at.w12 - 2.0L * d, o1 = at.w11 - o, o2 = at.w12 - 2.0L * o;
+    const long double a1 = f->rest.w11 - d, a2 = f->rest.w12 - 2.0L * d;
+    const long double o1 = f->rest.w11 - o, o2 = f->rest.w12 - 2.0L * o;
     const long double in = -c * (1.0L + b2) / (1.0L - b2), rim = -2.0L * c * b2 / (1.0L - b2);
-    long double t = at.tension - d * l + (a1 + a2) * c;
-    const long double rest = at.tension - o * l;
+    long double t = f->tension - d * l + (a1 + a2) * c;
+    const long double rest = f->tension - o * l;
     t = least(t, rest + least(o1 * in + o2 * c, o2 * in + o1 * c));
     return least(t, rest + least(o1 * rim, o2 * rim));
 }
@@ -330,7 +283,7 @@ static long double ring_tension(const true_film *f, long double u, long double m
 {
     const ring_strains at = rings_at(f, u);
     const true_edge e = edge_ring(f, u);
-    const long double rest = film_cauchy(f, f->prestretch).value,
+    const long double rest = f->tension * f->prestretch,
                       l4 = f->prestretch * f->prestretch * f->prestretch * f->prestretch;
     const long double area = ring_area(f, &at).value, pull = m * l4 * area * area;
     const long double disc = e.stress[0].value - (f->dot ? pull : 0.0L);

@@ -53,13 +53,6 @@ static double spent(void)
     return sum;
 }
 
-double number_at(const void *row, size_t offset)
-{
-    double value;
-    memcpy(&value, (const char *)row + offset, sizeof value);
-    return value;
-}
-
 /* Columns of the study that this scene has. */
 static size_t columns_of(const judged *j, column chosen[COLUMNS])
 {

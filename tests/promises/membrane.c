@@ -7,7 +7,7 @@
  * is stable as long as all pivots of the second derivative are positive; the last one is what a force on the edge would feel, and
  * where it vanishes the branch folds. All in long double; stresses are changes from the pre-stretched film, so that a strain of
  * any size keeps its digits. */
-#include "promises.h"
+#include "truths.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -104,25 +104,9 @@ static int unknown(int element, int number)
 /* At lambda_pre + d1, lambda_pre + d2. */
 static tension tension_at(const true_film *f, long double k, long double d1, long double d2)
 {
-    const long double l = f->prestretch, l1 = l + d1, l2 = l + d2, area = l1 * l2, l4 = l * l * l * l;
-    const long double c = 1.0L / (area * area), i1 = 1.0L / l1, i2 = 1.0L / l2;
-    const long double dc = -(l * (d1 + d2) + d1 * d2) * (area + l * l) * c / l4; /* c - lambda_pre^-4 */
-    const long double j0 = 2.0L * l * l + 1.0L / l4 - 3.0L, dj = d1 * (l1 + l) + d2 * (l2 + l) + dc, j = j0 + dj;
-    const long double dw = dj * (2.0L * f->yeoh[1] + 3.0L * f->yeoh[2] * (2.0L * j0 + dj));
-    const long double w = f->yeoh[0] + 2.0L * f->yeoh[1] * j + 3.0L * f->yeoh[2] * j * j;
-    const long double q = 2.0L * f->yeoh[1] + 6.0L * f->yeoh[2] * j, rest = 2.0L * (l - 1.0L / (l4 * l));
-    const long double da1 = 2.0L * (d1 - dc * i1 + d1 * i1 / (l4 * l)), da2 = 2.0L * (d2 - dc * i2 + d2 * i2 / (l4 * l));
-    const long double a1 = rest + da1, a2 = rest + da2;
-    return (tension){w * da1 + dw * rest - k * area * l2, w * da2 + dw * rest - k * area * l1,
-                     w * (2.0L + 6.0L * c * i1 * i1) + q * a1 * a1 - k * l2 * l2,
-                     4.0L * w * c * i1 * i2 + q * a1 * a2 - 2.0L * k * area,
-                     w * (2.0L + 6.0L * c * i2 * i2) + q * a2 * a2 - k * l1 * l1};
-}
-
-/* Nominal stress of the film at rest [Pa]. */
-static long double tension_at_rest(const true_film *f)
-{
-    return film_cauchy(f, f->prestretch).value / f->prestretch;
+    const long double l1 = f->prestretch + d1, l2 = f->prestretch + d2, area = l1 * l2;
+    const true_stress p = film_stress(f, d1, d2);
+    return (tension){p.p1 - k * area * l2, p.p2 - k * area * l1, p.w11 - k * l2 * l2, p.w12 - 2.0L * k * area, p.w22 - k * l1 * l1};
 }
 
 /* e, de/dx and its derivative at a place of an element. */
@@ -146,6 +130,13 @@ static strain strain_at(const membrane *m, const long double *e, int element, co
 
 /* ---- energy */
 
+/* No film where a stretch is none, or the energy has ended. */
+static void note_ellipticity(membrane *m, long double l1, long double l2, long double s11)
+{
+    const bool is_film = l1 > 0.0L && l2 > 0.0L && !isnan(s11);
+    m->least_s11 = is_film ? fminl(m->least_s11, s11) : -(long double)INFINITY;
+}
+
 static void add_place(membrane *m, int element, int place, const long double *e, long double k)
 {
     const shape *s = &m->at[place];
@@ -154,7 +145,7 @@ static void add_place(membrane *m, int element, int place, const long double *e,
     const strain here = strain_at(m, e, element, s);
     const long double d2 = here.e, d1 = here.e + here.slope, l1 = m->film->prestretch + d1, l2 = m->film->prestretch + d2;
     const tension t = tension_at(m->film, k, d1, d2);
-    m->least_s11 = l1 > 0.0L && l2 > 0.0L ? fminl(m->least_s11, t.s11) : -(long double)INFINITY;
+    note_ellipticity(m, l1, l2, t.s11);
     for (int i = 0; i < SHAPES; i++) {
         const int row = unknown(element, i);
         const long double b2 = s->value[i], b1 = b2 + scale * s->slope[i];
@@ -173,13 +164,6 @@ static void add_place(membrane *m, int element, int place, const long double *e,
     }
 }
 
-static void note_ellipticity(membrane *m, long double k, strain s)
-{
-    const long double l2 = m->film->prestretch + s.e, l1 = l2 + s.slope;
-    const long double s11 = tension_at(m->film, k, s.e + s.slope, s.e).s11;
-    m->least_s11 = l1 > 0.0L && l2 > 0.0L ? fminl(m->least_s11, s11) : -(long double)INFINITY;
-}
-
 static void derive(membrane *m, const long double *e, long double share)
 {
     const true_film *f = m->film;
@@ -193,7 +177,9 @@ static void derive(membrane *m, const long double *e, long double share)
     }
     m->least_s11 = (long double)INFINITY;
     for (int i = 0; i < m->elements; i++) {
-        note_ellipticity(m, annulus, strain_at(m, e, i, &m->begin));
+        const strain end = strain_at(m, e, i, &m->begin);
+        const long double l2 = f->prestretch + end.e;
+        note_ellipticity(m, l2 + end.slope, l2, tension_at(f, annulus, end.e + end.slope, end.e).s11);
         for (int q = 0; q < PLACES; q++) {
             add_place(m, i, q, e, annulus);
         }
@@ -360,7 +346,7 @@ static void widen(const membrane *m, const strain *s, long double k, extremes *x
     const long double l2 = m->film->prestretch + s->e, l1 = l2 + s->slope;
     const tension t = tension_at(m->film, k, s->e + s->slope, s->e);
     x->area = fmaxl(x->area, l1 * l2);
-    x->stress = fminl(x->stress, tension_at_rest(m->film) + fminl(t.s1, t.s2));
+    x->stress = fminl(x->stress, m->film->tension + fminl(t.s1, t.s2));
 }
 
 /* Over a grid of places, and where the area is largest between two of them. */
@@ -369,7 +355,7 @@ static extremes extremes_of(const membrane *m, const long double *e)
     enum { GRID = 16 };
     const true_film *f = m->film;
     const long double k = f->dot ? 0.0L : m->load, edge = e[m->size - 1];
-    extremes x = {tension_at_rest(f) + tension_at(f, f->dot ? m->load : 0.0L, edge, edge).s1, 0.0L};
+    extremes x = {f->tension + tension_at(f, f->dot ? m->load : 0.0L, edge, edge).s1, 0.0L};
     for (int i = 0; i < m->elements; i++) {
         for (int g = 0; g < GRID; g++) {
             long double low = -1.0L + 2.0L * g / GRID, high = -1.0L + 2.0L * (g + 1) / GRID;

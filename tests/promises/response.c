@@ -2,7 +2,7 @@
 #include <complex.h>
 #include <math.h>
 
-#include "promises.h"
+#include "truths.h"
 
 static const long double pi = 3.14159265358979323846264338327950288L;
 

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "promises.h"
+#include "truths.h"
 
 static const long double pi = 3.14159265358979323846264338327950288L;
 static const long double none = (long double)NAN;

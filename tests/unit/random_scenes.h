@@ -73,13 +73,11 @@ static inline dea_scene random_scene(uint64_t *seed)
     return scene;
 }
 
-/* Voltage at which the model pulls in; where it never does, one that strains the film well; where the film is unstable at rest, a
- * millionth of that. */
-static inline double pull_in_voltage(const dea_scene *scene, const char *model)
+/* Voltage at which the model pulls in, below @p most; where it never does, that; where the film is unstable at rest, a millionth of
+ * it. */
+static inline double pull_in_below(const dea_scene *scene, const char *model, double most)
 {
     dea_scene here = *scene;
-    const double most =
-        scene->actuator.film_thickness * sqrt(3.0 * scene->material.constants[0] / DEA_EPSILON_0) / scene->actuator.prestretch;
     double high = most;
     double low = 0.0;
     here.drive.voltage = most;
@@ -91,6 +89,14 @@ static inline double pull_in_voltage(const dea_scene *scene, const char *model)
         *(solve_direct(&here, model).state == DEA_STATE_PULL_IN ? &high : &low) = here.drive.voltage;
     }
     return high;
+}
+
+/* The same of a Yeoh film, below a voltage that strains it well. */
+static inline double pull_in_voltage(const dea_scene *scene, const char *model)
+{
+    const double most =
+        scene->actuator.film_thickness * sqrt(3.0 * scene->material.constants[0] / DEA_EPSILON_0) / scene->actuator.prestretch;
+    return pull_in_below(scene, model, most);
 }
 
 enum { SWEPT_FIELDS = 14 };

@@ -633,8 +633,8 @@ static void full_device_is_told(void **state)
 static void unsupported_engine_names_one_that_can(void **state)
 {
     (void)state;
-    RUN("run", "dot.yaml", "--engine", "ngspice", "--model", "field");
-    check_wrong("cannot do model field");
+    RUN("run", "dot.yaml", "--engine", "ngspice", "--model", "pelrine");
+    check_wrong("cannot do model pelrine");
     assert_non_null(strstr(last.err, "--engine direct"));
 }
 

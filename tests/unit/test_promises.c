@@ -91,6 +91,81 @@ static void static_truths_are_the_reference_numbers(void **state)
     }
 }
 
+/* The table of physics.md, section 8: P, Y, W11, W12 [Pa] and the strains of the membrane, dots at B = 0.25 and 0.5. */
+static const struct {
+    const char *law;
+    double constants[DEA_LAW_CONSTANTS];
+    double stretch, stress, modulus, w11, w12, strain[2];
+} known_laws[] = {
+    {"neo_hookean", {44e3}, 1.2, 35117.386831, 176330.4527, 88206.5329, 29471.0219, {0.133243925, 0.086303401}},
+    {"gent", {45e3, 120.0}, 1.2, 36024.258416, 182037.5643, 90965.0260, 30712.7289, {0.125225028, 0.082668409}},
+    {"gent", {45e3, 120.0}, 3.0, 154092.191910, 362219.7158, 60440.5077, 8935.3336, {0.019130848, 0.015170039}},
+    {"mooney_rivlin", {16e3, 7.3e3}, 1.2, 42319.643621, 246053.6774, 106296.8909, 63481.4705, {0.090688253, 0.064627546}},
+    {"ogden",
+     {43.4e3, 1.445, 84.2, 4.248, -2.4e3, -1.5},
+     1.2, 27786.053173, 143149.1101, 66049.6027, 30086.2781,
+     {0.292386280, 0.127274474}},
+    {"ogden",
+     {43.4e3, 1.445, 84.2, 4.248, -2.4e3, -1.5},
+     3.0, 94590.205011, 181713.4091, 17949.8355, 11091.2325,
+     {0.074849250, 0.057006838}},
+    {"arruda_boyce", {40e3, 5.99}, 3.0, 134153.403209, 303443.6858, 50635.3732, 5794.7210, {0.023109621, 0.018275597}},
+};
+
+static dea_scene scene_of_law(size_t number)
+{
+    const bool far = known_laws[number].stretch > 2.0;
+    dea_scene scene = paper_scene(DEA_DOT, known_laws[number].stretch, 0.25, far ? 2500.0 : 4000.0);
+    scene.actuator.film_thickness = far ? 1e-3 : 250e-6;
+    scene.material.law = dea_law_find(known_laws[number].law);
+    memcpy(scene.material.constants, known_laws[number].constants, sizeof scene.material.constants);
+    scene.material.permittivity = 4.7;
+    return scene;
+}
+
+static void truths_of_all_laws_are_the_reference_numbers(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof known_laws / sizeof *known_laws; i++) {
+        dea_scene scene = scene_of_law(i);
+        const true_film film = film_of(&scene, dea_model_find("field"));
+        assert_printed((double)film.tension, known_laws[i].stress, 6);
+        assert_printed((double)film.modulus, known_laws[i].modulus, 4);
+        assert_printed((double)film.rest.w11, known_laws[i].w11, 4);
+        assert_printed((double)film.rest.w12, known_laws[i].w12, 4);
+        for (int b = 0; b < 2; b++) {
+            scene.actuator.coverage = b == 0 ? 0.25 : 0.5;
+            assert_printed(still_truth(&scene, dea_model_find("field"), 1.0).row.strain, known_laws[i].strain[b], 9);
+        }
+    }
+}
+
+/* Changes so small that a difference of two stresses has no digit left follow the moduli; larger ones are that difference. */
+static void truths_of_all_laws_keep_their_digits(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof known_laws / sizeof *known_laws; i++) {
+        const dea_scene scene = scene_of_law(i);
+        const true_film film = film_of(&scene, dea_model_find("field"));
+        const long double l = film.prestretch, tiny = 1e-17L, small = 1e-4L;
+        const true_stress near = film_stress(&film, tiny, -0.5L * tiny), away = film_stress(&film, small, small);
+        assert_relative((double)near.p1, (double)(tiny * (film.rest.w11 - 0.5L * film.rest.w12)), 1e-15);
+        assert_relative((double)near.p2, (double)(tiny * (film.rest.w12 - 0.5L * film.rest.w11)), 1e-15);
+        const long double there = film_cauchy(&film, l + small).value / (l + small);
+        assert_relative((double)away.p1, (double)(there - film.tension), 1e-13);
+    }
+}
+
+static void the_truth_of_a_film_ends_with_its_energy(void **state)
+{
+    (void)state;
+    const true_law *gent = true_law_find("gent");
+    const long double constants[DEA_LAW_CONSTANTS] = {45e3L, 5.0625L}; /* I1 - 3 where both stretches are 2 */
+    const jet end = plain(2.0L), before = gent->stress(constants, plain(2.0L - 1e-12L), end), past = gent->stress(constants, end, end);
+    assert_true(before.value > 1e15L);
+    assert_true(isnan(past.value) && isnan(past.slope));
+}
+
 /* A lens whose film is slack at full voltage, far from rest, and has no fold on the way from 0 V (by continuation in the voltage,
  * with a mesh of its own). */
 static void a_branch_without_fold_is_slack_and_not_pulled_in(void **state)
@@ -295,18 +370,29 @@ static const struct {
      "model: lumped\nstudy: {transient: {until: 60263 s, every: 251.09749029167287 s}}\n"},
 };
 
-/* A rise that repetition squeezes below the shortest edge. */
-static void a_draw_is_a_valid_scene(void **state)
+/* Of all laws, no rise shorter than edges can be. */
+static void draws_are_valid_scenes_of_all_laws(void **state)
 {
+    enum { DRAWS = 150 };
+    bool drawn[16] = {false};
     (void)state;
-    char *text = draw_scene(77, 36);
-    dea_scene scene;
-    dea_error error = {0};
-    assert_non_null(text);
-    assert_int_equal(dea_scene_parse(text, strlen(text), "draw", ".", NULL, 0, NULL, &scene, &error), DEA_OK);
-    assert_true(scene.drive.waveform.step.rise == 0.0);
-    dea_scene_free(&scene);
-    free(text);
+    for (size_t number = 0; number < DRAWS; number++) {
+        char *text = draw_scene(77, number);
+        dea_scene scene;
+        dea_error error = {0};
+        assert_non_null(text);
+        if (dea_scene_parse(text, strlen(text), "draw", ".", NULL, 0, NULL, &scene, &error) != DEA_OK) {
+            fail_msg("%s", error.message);
+        }
+        for (size_t i = 0; i < dea_law_count(); i++) {
+            drawn[i] = drawn[i] || scene.material.law == dea_law_at(i);
+        }
+        dea_scene_free(&scene);
+        free(text);
+    }
+    for (size_t i = 0; i < dea_law_count(); i++) {
+        assert_true(drawn[i]);
+    }
 }
 
 static void engines_keep_the_promises_that_were_broken(void **state)
@@ -383,11 +469,14 @@ int main(void)
         cmocka_unit_test(the_truth_of_a_ring_is_its_closed_form),
         cmocka_unit_test(the_truth_of_a_slow_film_ends_at_rest),
         cmocka_unit_test(static_truths_are_the_reference_numbers),
+        cmocka_unit_test(truths_of_all_laws_are_the_reference_numbers),
+        cmocka_unit_test(truths_of_all_laws_keep_their_digits),
+        cmocka_unit_test(the_truth_of_a_film_ends_with_its_energy),
         cmocka_unit_test(a_branch_without_fold_is_slack_and_not_pulled_in),
         cmocka_unit_test(a_branch_folds_at_its_critical_voltage),
         cmocka_unit_test(an_engine_that_is_off_by_three_times_the_accuracy_is_found),
         cmocka_unit_test(a_mean_that_is_off_is_found),
-        cmocka_unit_test(a_draw_is_a_valid_scene),
+        cmocka_unit_test(draws_are_valid_scenes_of_all_laws),
         cmocka_unit_test(engines_keep_the_promises_that_were_broken),
         cmocka_unit_test(engines_keep_their_promises_on_random_scenes),
     };

@@ -48,6 +48,11 @@ typedef struct dea_linear {
 struct dea_network;
 struct dea_symbols;
 
+/** Stretches along the radius and along the hoop, pre-stretch included [1]. */
+typedef struct dea_stretches {
+    double radial, hoop;
+} dea_stretches;
+
 /** A static model. */
 typedef struct dea_model {
     const char *name;       /**< e.g. "lumped" */
@@ -62,6 +67,9 @@ typedef struct dea_model {
     void (*network)(const struct dea_symbols *symbols, struct dea_network *network);
     /** Coefficients of the linear network (engine `direct` in transients); NULL where the network is not linear. */
     void (*linear)(const dea_point *point, dea_linear *linear);
+    /** Stretches of the annulus of a film in equilibrium, whose disc edge is strained by @p strain, at @p count places
+     * x = ln(R/R_a) >= 0 that do not fall; false where there is no such film. NULL where the model has no annulus with two stretches. */
+    bool (*along)(const dea_point *point, double strain, size_t count, const double *x, dea_stretches *stretches);
     /** Can do transients and frequency responses. */
     bool dynamic;
     /** It is the boundary value problem of the axisymmetric membrane along the radius. */

@@ -598,6 +598,7 @@ const dea_model dea_model_field = {
     .lens = true,
     .solve = solve,
     .solve_many = solve_many,
+    .along = dea_field_profile,
     .dynamic = true,
     .membrane = true,
 };

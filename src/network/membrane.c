@@ -106,7 +106,7 @@ static bool look_at_ring(const dea_membrane *m, size_t r, const double *u, dea_r
             at->tangent[a][b] = w[a][b] + held * (slope - (a == b ? own / l : 0.0)) / l;
         }
     }
-    if (ring->electroded && m->film.point.skin_share > 0.0) {
+    if (m->rings.rings[r].electroded && m->film.point.skin_share > 0.0) {
         add_skin(&m->film.point, e, at);
     }
     return isfinite(at->nominal[0]) && isfinite(at->nominal[1]);
@@ -461,7 +461,22 @@ static double edge_force(const dea_membrane *m, const dea_membrane_look *look, d
            l[0] * l[1] * l[1];
 }
 
-void dea_membrane_row(const dea_membrane *m, const dea_membrane_look *look, double voltage, const double *u, dea_row *row)
+/* Largest of values at the rings of an element, between them too where it could pass a limit: a polynomial leaves the range of its
+ * values at Lobatto's places by less than that range (Lebesgue constant below 3 up to degree 40). */
+static double largest_up_to(const dea_membrane *m, bool disc, const double *values, double limit)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        const bool counts = m->rings.rings[r].disc == disc;
+        low = counts ? fmin(low, values[r]) : low;
+        high = counts ? fmax(high, values[r]) : high;
+    }
+    return high + (high - low) < limit ? high : dea_rings_largest(&m->rings, disc, values);
+}
+
+/* A row; its field is exact where lambda_1 lambda_2 passes a limit. */
+static void fill_row(const dea_membrane *m, const dea_membrane_look *look, double voltage, const double *u, double limit,
+                     dea_row *row)
 {
     const double k = square_of(m, voltage), tension = m->film.point.film.tension;
     double loss[2][DEA_RINGS_MOST], area[DEA_RINGS_MOST], most = -INFINITY; /* of stresses */
@@ -473,16 +488,21 @@ void dea_membrane_row(const dea_membrane *m, const dea_membrane_look *look, doub
         }
     }
     for (int i = 0; i < 4; i++) {
-        most = fmax(most, dea_rings_largest(&m->rings, i < 2, loss[i % 2]));
+        most = fmax(most, largest_up_to(m, i < 2, loss[i % 2], tension));
     }
     dea_point point = m->film.point;
     point.voltage = voltage;
     dea_row_fill(row, &point,
                  (dea_found){.strain = u[m->rings.edge] / m->film.radius,
                              .force = edge_force(m, look, voltage),
-                             .stretch = dea_rings_largest(&m->rings, m->film.point.kind == DEA_DOT, area),
+                             .stretch = largest_up_to(m, m->film.point.kind == DEA_DOT, area, limit),
                              .capacitance = look->capacitance,
                              .taut = tension > most});
+}
+
+void dea_membrane_row(const dea_membrane *m, const dea_membrane_look *look, double voltage, const double *u, dea_row *row)
+{
+    fill_row(m, look, voltage, u, -INFINITY, row);
 }
 
 /* dC/dt [F/s]. */
@@ -513,7 +533,9 @@ static bool fill_sample(const dea_membrane *m, const dea_membrane_look *look, co
                         const double *v, dea_sample *sample)
 {
     dea_row row = dea_row_failed();
-    dea_membrane_row(m, look, moment->voltage, u, &row);
+    const dea_point *point = &m->film.point;
+    const double field = fabs(moment->voltage) * point->layers / point->film_thickness; /* nominal, of a layer */
+    fill_row(m, look, moment->voltage, u, field > 0.0 ? point->film.breakdown / field : (double)INFINITY, &row);
     *sample = dea_sample_refused(moment->time, moment->source, DEA_STATE_PULL_IN);
     if (row.state == DEA_STATE_FAILED || !isfinite(v[m->rings.edge])) {
         return false;

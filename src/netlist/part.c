@@ -7,7 +7,9 @@
 
 #include "expression/derivative.h"
 #include "expression/formula.h"
+#include "model/models.h"
 #include "netlist/part_text.h"
+#include "netlist/rings_part.h"
 #include "network/network.h"
 #include "support/text.h"
 
@@ -25,13 +27,14 @@ enum {
     LAYERS,
     VOLTAGE,  /* always replaced by a number */
     CONSTANT, /* the first of those of the law */
-    SYMBOLS = CONSTANT + DEA_LAW_CONSTANTS
+    DAMP = CONSTANT + DEA_LAW_CONSTANTS, /* made by the checks; of the membrane alone */
+    SYMBOLS
 };
 
 static const char *const symbol_names[SYMBOLS] = {"radius",  "cover",  "thick", "stretch", "eps_r",
                                                   "y_given", "y_free", "rho",   "areal",   "layer", "",
                                                   "film1",   "film2",  "film3", "film4",   "film5",
-                                                  "film6",   "film7",  "film8"};
+                                                  "film6",   "film7",  "film8", "damp"};
 _Static_assert(DEA_LAW_CONSTANTS == 8, "one name a constant");
 
 typedef struct part {
@@ -42,7 +45,8 @@ typedef struct part {
     size_t constants; /* of the law, in use */
     bool linear;
     size_t branches;
-    dea_network network; /* owned */
+    dea_network network; /* owned; of the membrane that of `ring`, for ranges and numbers at rest */
+    dea_rings_part *rings; /* owned; NULL: one node */
     dea_part_text text;  /* owned */
     /* expressions of the displacement and the symbols, the voltage taken out */
     dea_network_stress stresses[DEA_NETWORK_STRESSES]; /* S_a and their levers B_a */
@@ -77,6 +81,7 @@ static const form *form_of(const dea_model *model)
         {"lame", "_lame", "Lame's disc and annulus with electrostatic softening", false, 1.0, 1e-6},
         {"coverage", "_hyper", "hyperelastic disc and annulus, Eq. 18, quasi-linear relaxation", false, 1e6, 1.0},
         {"ring", "_ring", "hyperelastic disc and annulus, one ring of membrane each, quasi-linear relaxation", false, 1e6, 1.0},
+        {"field", "_field", "the exact membrane as a network of rings, quasi-linear relaxation", false, 1e6, 1.0},
     };
     for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
         if (strcmp(model->name, forms[i].model) == 0) {
@@ -103,8 +108,8 @@ static dea_expr at_volts(dea_pool *pool, dea_expr ref, double volts)
 
 static dea_symbols symbols_of(dea_pool *pool, const part *p)
 {
-    dea_expr s[SYMBOLS];
-    for (int i = 0; i < SYMBOLS; i++) {
+    dea_expr s[DAMP];
+    for (int i = 0; i < DAMP; i++) {
         s[i] = dea_expr_symbol(pool, i);
     }
     dea_symbols symbols = {.pool = pool,
@@ -152,7 +157,7 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is made");
     }
     const dea_symbols symbols = symbols_of(pool, p);
-    const dea_status status = dea_network_build_symbols(&symbols, model, network, error);
+    const dea_status status = dea_network_build_symbols(&symbols, model->membrane ? &dea_model_ring : model, network, error);
     if (status != DEA_OK) {
         return status;
     }
@@ -174,6 +179,14 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
     p->mass = moving_mass(&symbols);
     p->divide = MUL(symbols.frame_radius, symbols.coverage);
     p->width = dea_symbols_annulus_width(&symbols);
+    if (model->membrane && !pool->exhausted) {
+        p->rings = malloc(sizeof *p->rings);
+        if (!p->rings) {
+            return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is made");
+        }
+        const dea_rings_numbers numbers = {dea_expr_symbol(pool, RHO), dea_expr_symbol(pool, AREAL), dea_expr_symbol(pool, DAMP)};
+        dea_rings_part_make(&symbols, &numbers, p->branches, p->rings);
+    }
     p->taut = calloc((size_t)network->tension_count + 1, sizeof *p->taut);
     p->loosen = calloc((size_t)network->tension_count + 1, sizeof *p->loosen);
     if (!p->taut || !p->loosen) {
@@ -575,13 +588,60 @@ static void write_optics(const part *p)
            "[f_height]*((1+v(strain))*(1+v(strain))+[flat]*v(eta)*v(eta))/max(v(eta),1e-3)");
 }
 
+/* What is declared of the membrane: the numbers at rest, the ranges, the rings. */
+static void declare_rings(part *p)
+{
+    const dea_expr all[] = {p->c_rest, p->k_rest, p->divide, p->width};
+    dea_rings_part_declare(p->rings, &p->text);
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        dea_part_text_use(&p->text, all[i]);
+    }
+    for (int i = 0; i < p->network.range_count; i++) {
+        if (is_made(p, p->network.range[i])) {
+            dea_part_text_use(&p->text, p->network.range[i]);
+        }
+    }
+}
+
+/* Film and outputs of the membrane; v(swell) = C/c_rest - 1. */
+static void write_rings(part *p)
+{
+    line(p, ".param still={max(1-rho*1e30,0)*max(1-areal*1e30,0)*max(1-retard*1e30,0)}\n.param damp={retard+1e-9*still}");
+    for (size_t i = 1; i <= p->branches; i++) {
+        write_relaxation_time(p, i);
+    }
+    dea_rings_part_write(p->rings, &p->text);
+    line(p, "* film: v(film) = charge/c_rest on a capacitor of c_rest; v(plate) is its current [mA]");
+    source(p, DEA_VOLTAGE, "charge", "film", "0", "v(plate)+[ok]*v(p,n)*(1+v(swell))");
+    line(p, ".param i_film={1e-3*many}\ncfilm film plate {c_rest}\ngsense plate 0 plate 0 1e-3\ngfilm p n plate 0 {i_film}");
+    line(p, ".param leak={many*r_leak/(r_leak*r_leak+1e-30)}\ngleak p n p n {leak}");
+    line(p, "* to be read: strain [1], force [N], true field at r_a [V/um], capacitance [pF], charge [nC]");
+    char name[DEA_PART_NAME];
+    line(p, ".param per_um={1e-6/%s}\nestrain strain 0 u 0 {per_um}", dea_part_text_parameter(&p->text, p->divide, name));
+    source(p, DEA_VOLTAGE, "force", "force", "0", "[ok]*v(pull)*v(p,n)*v(p,n)");
+    source(p, DEA_VOLTAGE, "field", "field", "0", "[ok]*v(stretched)*v(p,n)");
+    line(p, ".param c_scale={1e12*many*c_rest}\n.param q_scale={1e9*many*c_rest}\nestored q 0 film plate {q_scale}");
+    source(p, DEA_VOLTAGE, "capacity", "c", "0", "[c_scale]*(1+v(swell))");
+    line(p, "* bad = 1: a parameter out of its range, or the edge past centre or frame; slack = 1: the film wrinkles");
+    line(p, ".param u_low={-0.99e6*r_a}\n.param u_high={0.99e6*r_ring}");
+    source(p, DEA_VOLTAGE, "bad", "bad", "0", "min(max(1-[ok],max(1e3*(v(u)-[u_high]),1e3*([u_low]-v(u)))),1)");
+    source(p, DEA_VOLTAGE, "slack", "slack", "0", "1-min(max(1e6*v(tension),0),1)");
+}
+
 static void write_body(part *p, const form *of)
 {
-    declare(p);
+    (p->rings ? declare_rings : declare)(p);
     give_names(p);
     const int checks = write_checks(p, of);
     dea_part_text_parameters(&p->text);
     check_ranges(p, checks);
+    if (p->rings) {
+        write_rings(p);
+        if (p->kind == DEA_LENS) {
+            write_optics(p);
+        }
+        return;
+    }
     write_numbers(p);
     write_displacement(p);
     if (!p->linear) {
@@ -721,7 +781,7 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
                           FILE *out, dea_error *error)
 {
     if (!form_of(model)) {
-        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is no circuit part: lumped, lame, coverage and ring are",
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is no circuit part: lumped, lame, coverage, ring and field are",
                         model->name);
     }
     if (defaults->electrode.law) {
@@ -751,6 +811,7 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
     free(text);
     dea_part_text_close(&p.text);
     dea_network_free(&p.network);
+    free(p.rings);
     free(p.taut);
     free(p.loosen);
     return status;

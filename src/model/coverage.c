@@ -186,6 +186,7 @@ const dea_model dea_model_coverage = {
     .equation = "Eq. 18",
     .leaves_out = "non-uniform passive stress",
     .lens = true,
+    .edge = true,
     .solve = solve,
     .network = build,
     .dynamic = true,

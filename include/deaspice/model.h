@@ -49,6 +49,11 @@ typedef struct dea_linear {
 struct dea_network;
 struct dea_symbols;
 
+/** Stretches along the radius and along the hoop, pre-stretch included [1]. */
+typedef struct dea_stretches {
+    double radial, hoop;
+} dea_stretches;
+
 /** A static model. */
 typedef struct dea_model {
     const char *name;       /**< e.g. "lumped" */
@@ -58,10 +63,15 @@ typedef struct dea_model {
     bool edge;              /**< its film has an edge at r_a, onto which loads act */
     /** The model's own equations (engine `direct`); fills every field of @p row. @p accuracy is what the user wants. */
     void (*solve)(const dea_point *point, double accuracy, dea_row *row);
+    /** The same for @p count points of one film, sooner: each row has the digits of solve(). NULL: one after the other. */
+    void (*solve_many)(const dea_point *points, size_t count, double accuracy, dea_row *rows);
     /** Adds its elements and limits to a network in displacement form; NULL where the model is not a network. */
     void (*network)(const struct dea_symbols *symbols, struct dea_network *network);
     /** Coefficients of the linear network (engine `direct` in transients); NULL where the network is not linear. */
     void (*linear)(const dea_point *point, dea_linear *linear);
+    /** Stretches of the annulus of a film in equilibrium, whose disc edge is strained by @p strain, at @p count places
+     * x = ln(R/R_a) >= 0 that do not fall; false where there is no such film. NULL where the model has no annulus with two stretches. */
+    bool (*along)(const dea_point *point, double strain, size_t count, const double *x, dea_stretches *stretches);
     /** Can do transients and frequency responses. */
     bool dynamic;
     /** It is the boundary value problem of the axisymmetric membrane along the radius. */

@@ -181,6 +181,17 @@ static void build(const dea_symbols *symbols, dea_network *network)
     dea_network_taut(network, SUB(MUL(symbols->prestretch, ADD(one, passive)), one));
 }
 
+/* Equi-biaxial, whatever the place: lambda_P of Eq. 18. */
+static bool along(const dea_point *point, double strain, size_t count, const double *x, dea_stretches *stretches)
+{
+    const double pre = point->film.prestretch, b = point->coverage, passive = pre * (1.0 - b * strain / (1.0 - b));
+    (void)x;
+    for (size_t i = 0; i < count; i++) {
+        stretches[i] = (dea_stretches){passive, passive};
+    }
+    return true;
+}
+
 const dea_model dea_model_coverage = {
     .name = "coverage",
     .equation = "Eq. 18",
@@ -188,6 +199,7 @@ const dea_model dea_model_coverage = {
     .lens = true,
     .edge = true,
     .solve = solve,
+    .along = along,
     .network = build,
     .dynamic = true,
 };

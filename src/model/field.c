@@ -1,4 +1,5 @@
-/* Exact axisymmetric membrane, integrated in x = ln(R/R_a) by Gragg's midpoint rule, extrapolated to order 14 on a fixed mesh.
+/* Exact axisymmetric membrane: by collocation (collocation.h) or, what that leaves, integrated in x = ln(R/R_a) by Gragg's midpoint
+ * rule, extrapolated to order 14 on a fixed mesh.
  *
  * With D = lambda_2 - lambda_1 and e = lambda_2 - lambda_pre the equations of physics.md, section 3, read
  *
@@ -11,6 +12,7 @@
  */
 #include <float.h>
 
+#include "model/collocation.h"
 #include "model/field.h"
 #include "model/film_balance.h"
 
@@ -135,9 +137,15 @@ static bool advance(const membrane *m, radial_state start, double step, radial_s
 static double jump_at_edge(const membrane *m, double l)
 {
     const double jump = (m->disc_k - m->annulus_k) * l * l * l;
+    double sound = 0.0; /* last place within the energy */
     double d = 0.0;
-    for (int i = 0; i < 40; i++) {
+    for (int i = 0; i < 80; i++) {
         const dea_stress here = stress_at(m, l - d, l);
+        if (isnan(here.w11) && d != sound) { /* a step went past the end of the energy */
+            d = 0.5 * (sound + d);
+            continue;
+        }
+        sound = d;
         const double rise = m->film->law->rise(m->film->constants, l, -d, 0.0) + beside_jump(m, l, d);
         const double residual = rise + jump + m->annulus_k * d * l * l;
         const double s11 = here.w11 - m->annulus_k * l * l;
@@ -454,8 +462,9 @@ static bool trace(const membrane *full, double sign, double end, double *edge)
     const double pre = full->film->prestretch;
     place before = {0.0, 0.0, pre};
     place last = before;
-    double step = 0.03;
-    while (fabs(last.edge) < fabs(end) && step > 1e-5) {
+    const double longest = 0.03 * fmin(1.0, full->film->grows); /* a film near the end of its energy has no longer way */
+    double step = longest;
+    while (fabs(last.edge) < fabs(end) && step > 3e-4 * longest) {
         const double at = sign * fmin(fabs(end), fabs(last.edge) + step * (pre + fmax(0.0, last.edge)));
         const double share = share_at(full, at, last.share > 0.0 ? last.share * fabs(at / last.edge) : 0.1);
         const place here = {at, share, radial_stretch(full, share, at)};
@@ -479,7 +488,7 @@ static bool trace(const membrane *full, double sign, double end, double *edge)
         }
         before = last;
         last = here;
-        step = fmin(0.03, 1.5 * step);
+        step = fmin(longest, 1.5 * step);
     }
     return false;
 }
@@ -528,6 +537,18 @@ bool dea_field_profile(const dea_point *point, double strain, size_t count, cons
     return true;
 }
 
+void dea_field_fill(const dea_point *point, dea_field_found found, dea_row *row)
+{
+    const double nominal = dea_point_nominal_field(point), pressure = point->film.permittivity * nominal * nominal;
+    const double lever = 2.0 * DEA_PI * point->film_thickness * dea_point_divide(point) / point->film.prestretch;
+    dea_row_fill(row, point,
+                 (dea_found){.strain = found.strain,
+                             .force = dea_point_sign(point) * lever * pressure * found.edge_force,
+                             .stretch = found.stretch,
+                             .capacitance = found.capacitance,
+                             .taut = found.taut});
+}
+
 void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row)
 {
     const dea_film *film = &point->film;
@@ -551,22 +572,38 @@ void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row)
         dea_row_refuse(row, DEA_STATE_FAILED);
         return;
     }
-    const double force =
-        sign * 2.0 * DEA_PI * point->film_thickness * pressure * x.edge_force * dea_point_divide(point) / film->prestretch;
     const double strain = edge / film->prestretch;
     /* (2 pi eps/H) (r/lambda_pre)^2 c */
     const double annulus = 2.0 * dea_point_full_capacitance(point) * x.charge / (film->square * film->square);
-    dea_row_fill(row, point,
-                 (dea_found){.strain = strain,
-                             .force = force,
-                             .stretch = x.largest_area,
-                             .capacitance = dot ? dea_point_disc_capacitance(point, strain) : annulus,
-                             .taut = x.least_stress > 0.0});
+    dea_field_fill(point,
+                   (dea_field_found){.strain = strain,
+                                     .edge_force = x.edge_force,
+                                     .stretch = x.largest_area,
+                                     .capacitance = dot ? dea_point_disc_capacitance(point, strain) : annulus,
+                                     .taut = x.least_stress > 0.0},
+                   row);
+}
+
+/* By collocation where that is enough, else by integration. */
+static void solve_many(const dea_point *points, size_t count, double accuracy, dea_row *rows)
+{
+    enum { CHUNK = 64 };
+    const dea_field_mesh mesh = {step_for(accuracy), fmin(little, tenth * accuracy)};
+    for (size_t from = 0; from < count; from += CHUNK) {
+        const size_t some = count - from < CHUNK ? count - from : CHUNK;
+        bool solved[CHUNK];
+        dea_collocation_solve(points + from, some, accuracy, rows + from, solved);
+        for (size_t i = 0; i < some; i++) {
+            if (!solved[i] || points[from + i].skin_share > 0.0 || points[from + i].load > 0.0) { /* collocation takes bare films */
+                dea_field_solve(&points[from + i], mesh, &rows[from + i]);
+            }
+        }
+    }
 }
 
 static void solve(const dea_point *point, double accuracy, dea_row *row)
 {
-    dea_field_solve(point, (dea_field_mesh){step_for(accuracy), fmin(little, tenth * accuracy)}, row);
+    solve_many(point, 1, accuracy, row);
 }
 
 const dea_model dea_model_field = {
@@ -576,6 +613,8 @@ const dea_model dea_model_field = {
     .lens = true,
     .edge = true,
     .solve = solve,
+    .solve_many = solve_many,
+    .along = dea_field_profile,
     .dynamic = true,
     .membrane = true,
 };

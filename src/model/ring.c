@@ -280,6 +280,17 @@ static void build(const dea_symbols *symbols, dea_network *network)
     limit_tension(symbols, network, &e);
 }
 
+/* One ring: lambda_1 = dr/dR, lambda_2 = sum r/sum R between its edges. */
+static bool along(const dea_point *point, double strain, size_t count, const double *x, dea_stretches *stretches)
+{
+    const double pre = point->film.prestretch, b = point->coverage;
+    (void)x;
+    for (size_t i = 0; i < count; i++) {
+        stretches[i] = (dea_stretches){pre * (1.0 - b * strain / (1.0 - b)), pre * (1.0 + b * strain / (1.0 + b))};
+    }
+    return true;
+}
+
 const dea_model dea_model_ring = {
     .name = "ring",
     .equation = "one ring of film each for disc and annulus",
@@ -287,6 +298,7 @@ const dea_model dea_model_ring = {
     .lens = true,
     .edge = true,
     .solve = solve,
+    .along = along,
     .network = build,
     .dynamic = true,
 };

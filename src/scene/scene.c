@@ -32,6 +32,8 @@ static dea_status scene_clear(dea_scene *scene)
                   .leakage_resistance = NAN},
         .transient = {.until = NAN, .every = NAN},
         .ac = {.from = NAN, .to = NAN, .points_per_decade = 50, .bias = NAN},
+        .modes = {.bias = NAN},
+        .profile = {.points = 101},
         .model_error = 0.01,
         .accuracy = 1e-6,
         .files = scene->files,

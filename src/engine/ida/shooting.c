@@ -103,10 +103,11 @@ static int residual(sunrealtype x, N_Vector y, N_Vector yp, N_Vector r, void *us
     const double d2 = s->strain * v[HOOP];
     const double l1 = film->prestretch + d1;
     const double l2 = film->prestretch + d2;
-    if (!(l1 > 0.0 && l2 > 0.0)) {
-        return 1; /* a trial step too far: IDA takes a shorter one */
+    const double shear = l1 > 0.0 && l2 > 0.0 ? stress_at(s, ANNULUS, l1, l2).shear : NAN;
+    if (isnan(shear)) {
+        return 1; /* a trial step too far, or past the end of the energy: IDA takes a shorter one */
     }
-    const double difference = (d1 - d2) * (stress_at(s, ANNULUS, l1, l2).shear + s->annulus_k * l1 * l2); /* s1 - s2 */
+    const double difference = (d1 - d2) * (shear + s->annulus_k * l1 * l2); /* s1 - s2 */
     out[SIGMA] = slope[SIGMA] + difference / s->stress;
     out[HOOP] = slope[HOOP] - (v[RADIAL] - v[HOOP]);
     out[RADIAL] = (stress_change(s, ANNULUS, d1, d2) - s->annulus_k * l1 * l2 * l2) / s->stress - v[SIGMA];
@@ -199,11 +200,20 @@ static double jump_guess(const dea_shooting *s, double l)
     const double load = (s->disc_k - s->annulus_k) * l * l * l;
     const double at_edge = stress_change(s, DISC, edge, edge) + load_stress(s, edge);
     double jump = 0.0;
-    for (int i = 0; i < 12; i++) {
+    double sound = 0.0; /* last place within the energy */
+    for (int i = 0; i < 60; i++) {
         const double slope = stress_at(s, ANNULUS, l - jump, l).w11 - s->annulus_k * l * l;
+        if (isnan(slope) && jump != sound) { /* a step went past the end of the energy */
+            jump = 0.5 * (sound + jump);
+            continue;
+        }
+        sound = jump;
         const double excess = stress_change(s, ANNULUS, edge - jump, edge) - at_edge + load + s->annulus_k * jump * l * l;
         const double most = 0.25 * (l - jump); /* lambda_1 moves by a quarter at most: the first root is meant */
         jump += slope > 0.0 ? fmax(-most, fmin(most, excess / slope)) : copysign(most, excess);
+        if (fabs(jump - sound) <= 1e-9 * fabs(jump)) {
+            break;
+        }
     }
     return jump;
 }
@@ -448,8 +458,9 @@ static double follow(dea_shooting *s, double linear, double end, bool *lost)
     double edge = NAN;
     bool torn = false;               /* the last step went past the end of the film */
     s->tolerance = fmax(fine, 1e-9); /* enough to find the neighbourhood */
-    double step = 0.03;
-    while (fabs(last.edge) < end && step > 1e-5) {
+    const double longest = 0.03 * fmin(1.0, s->point->film.grows); /* a film near the end of its energy has no longer way */
+    double step = longest;
+    while (fabs(last.edge) < end && step > 3e-4 * longest) {
         const double at = sign * fmin(end, fabs(last.edge) + step * (pre + fmax(0.0, last.edge)));
         const double guess = last.share > 0.0 ? fmin(1.5, last.share * at / last.edge) : at / linear;
         const double share = share_at(s, at, guess);
@@ -474,7 +485,7 @@ static double follow(dea_shooting *s, double linear, double end, bool *lost)
         }
         before = last;
         last = here;
-        step = fmin(0.03, 1.5 * step);
+        step = fmin(longest, 1.5 * step);
     }
     s->tolerance = fine;
     *lost = *lost || (isnan(edge) && (torn || least_s11(s, last, last) < nearly * s->point->film.w11));

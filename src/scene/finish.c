@@ -101,7 +101,8 @@ static dea_status sheet_check(dea_reader *reader)
 {
     const dea_scene *scene = reader->scene;
     const size_t sheet = offsetof(dea_scene, electrode.sheet_resistance);
-    for (size_t i = 0; i < scene->model_count && dea_study_of(scene)->moves; i++) {
+    const bool currents = dea_study_of(scene)->timed || dea_study_of(scene)->phasors;
+    for (size_t i = 0; i < scene->model_count && currents; i++) {
         if (scene->models[i]->membrane) {
             return dea_place_fail(dea_reader_place(reader, sheet, "electrode"), reader->error, "electrode.sheet_resistance",
                                   "is one resistance, which the model %s has no place for; accepted: models of one node, e.g. ring",

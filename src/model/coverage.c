@@ -199,6 +199,7 @@ const dea_model dea_model_coverage = {
     .equation = "Eq. 18",
     .leaves_out = "non-uniform passive stress",
     .lens = true,
+    .edge = true,
     .solve = solve,
     .along = along,
     .network = build,

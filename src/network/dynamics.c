@@ -174,7 +174,7 @@ dea_status dea_dynamics_settle(const dea_scene *scene, const dea_model *model, d
                         .radius = NAN,
                         .focal_length = scene->actuator.focal_length,
                         .refractive_index = scene->actuator.refractive_index,
-                        .linear = model->linear != NULL && !scene->electrode.law};
+                        .linear = model->linear != NULL && !scene->electrode.law && !(scene->load.stiffness > 0.0)};
     d->softens = !scene->reduction.softening;
     if (!dea_dynamics_relax(d, scene)) {
         return dea_fail(error, DEA_ERROR_USAGE, "the shares g of the branches sum to 1 or more");

@@ -260,6 +260,7 @@ dea_symbols dea_symbols_of(const dea_scene *scene, const dea_axis *axis, dea_poo
     const dea_expr breakdown = scalar(pool, scene, axis, &material->breakdown);
     s.breakdown = given(pool, breakdown) ? breakdown : NUM(INFINITY);
     coat(scene, axis, &s);
+    s.load = scene->load.stiffness > 0.0 ? scalar(pool, scene, axis, &scene->load.stiffness) : NUM(0.0);
     s.voltage = film_voltage(pool, scene, axis, &s);
     s.focal_length = scalar(pool, scene, axis, &actuator->focal_length);
     s.refractive_index = scalar(pool, scene, axis, &actuator->refractive_index);
@@ -354,6 +355,9 @@ dea_status dea_network_build_symbols(const dea_symbols *symbols, const dea_model
 {
     place_edge(symbols, network);
     model->network(symbols, network);
+    if (dea_expr_constant(&network->pool, symbols->load) != 0.0) {
+        dea_network_add(network, DEA_ROLE_BESIDE, "n_load", "compliance of the load between edge and frame [m/N]", symbols->load);
+    }
     if (network->pool.exhausted) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built");
     }

@@ -28,6 +28,7 @@ typedef struct dea_symbols {
     const dea_law *skin;                        /* of the electrodes' skin, NULL: there is none */
     dea_expr skin_constants[DEA_LAW_CONSTANTS]; /* of it */
     dea_expr skin_share;                        /* t/H [1] */
+    dea_expr load;                 /* stiffness of a spring between edge and frame [N/m], NUM(0): none */
     dea_expr voltage;              /* across the film [V] */
     dea_expr focal_length;         /* of a lens at rest [m], NAN: no optics */
     dea_expr refractive_index;     /* of its liquid [1] */

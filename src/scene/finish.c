@@ -164,6 +164,21 @@ static dea_status locking_check(dea_reader *reader)
                           scene->material.constants[last], film.prestretch, film.j, locking, law->constants[last].name);
 }
 
+/* A load gives something, and one that has mass moves a film that has, too. */
+static dea_status load_check(dea_reader *reader)
+{
+    const dea_scene *scene = reader->scene;
+    const dea_node *load = dea_tree_child(reader->root, "load");
+    if (load && isnan(scene->load.mass) && isnan(scene->load.stiffness)) {
+        return dea_place_fail(&load->place, reader->error, "load", "without a number; accepted: mass and stiffness, e.g. {stiffness: 20 N/m}");
+    }
+    if (isnan(scene->load.mass) || !isnan(scene->material.density)) {
+        return DEA_OK;
+    }
+    return dea_place_fail(dea_reader_place(reader, offsetof(dea_scene, load.mass), "load"), reader->error, "load.mass",
+                          "moves with a film that has none; accepted: material.density beside it, e.g. 1080 kg/m^3");
+}
+
 static dea_status radius_check(dea_reader *reader)
 {
     const dea_actuator *actuator = &reader->scene->actuator;
@@ -264,6 +279,7 @@ dea_status dea_reader_finish(dea_reader *reader)
     const dea_holder holder = dea_reader_holder(reader, &film);
     status = status ? status : law_check(reader, &holder);
     status = status ? status : electrode_check(reader);
+    status = status ? status : load_check(reader);
     status = status ? status : locking_check(reader);
     status = status ? status : radius_check(reader);
     status = status ? status : thickness_check(reader);

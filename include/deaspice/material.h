@@ -43,6 +43,17 @@ typedef struct dea_biaxial {
     double w11, w12, w22;
 } dea_biaxial;
 
+/** Where the changes of many strains go: arrays of as many values [Pa]. */
+typedef struct dea_changes {
+    double *value, *slope, *curve;
+} dea_changes;
+
+/** Where those of many pairs of strains go [Pa]. */
+typedef struct dea_biaxials {
+    double *p1, *p2;
+    double *w11, *w12;
+} dea_biaxials;
+
 /** One constant of a law. */
 typedef struct dea_constant {
     const char *name;     /**< e.g. "C1" */
@@ -86,6 +97,9 @@ typedef struct dea_law {
     void (*change)(const struct dea_film *film, size_t count, const double *strains, dea_change *changes);
     /** Both nominal stresses and the moduli at once, as exact as rise(). NULL: they are made of rise() and stress(). */
     dea_biaxial (*biaxial)(const struct dea_film *film, double e1, double e2);
+    /** change() and biaxial() of @p count strains, a multiple of 8, abreast: the same digits, sooner. NULL: one after the other. */
+    void (*changes)(const struct dea_film *film, size_t count, const double *strains, const dea_changes *changes);
+    void (*biaxials)(const struct dea_film *film, size_t count, const double *e1, const double *e2, const dea_biaxials *changes);
     /** The same law as expressions, for networks: constants and stretches l1, l2 are terms of a pool (src/material/form.h). */
     void (*form)(struct dea_pool *pool, const int *constants, int l1, int l2, struct dea_law_form *form);
 } dea_law;
@@ -171,6 +185,9 @@ DEA_API double dea_law_equibiaxial(const dea_law *law, const double constants[DE
 DEA_API double dea_law_modulus(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double stretch);
 /** Changes of both nominal stresses of a film from its pre-stretch, and moduli; NAN where the energy has ended. */
 DEA_API dea_biaxial dea_film_biaxial(const dea_film *film, double e1, double e2);
+/** Those of @p count pairs of strains, and the changes of the equi-biaxial Cauchy stress of @p count strains, a multiple of 8. */
+DEA_API void dea_film_biaxials(const dea_film *film, size_t count, const double *e1, const double *e2, const dea_biaxials *changes);
+DEA_API void dea_film_changes(const dea_film *film, size_t count, const double *strains, const dea_changes *changes);
 /** Film of a law at rest under an equi-biaxial pre-stretch >= 0, its permittivity 0, without breakdown. */
 DEA_API dea_film dea_law_film(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double prestretch);
 

@@ -43,8 +43,33 @@ typedef struct dea_actuator {
     double layers;           /**< films of that thickness in a stack, electrically parallel [1], whole, >= 1, default 1 */
 } dea_actuator;
 
-/** Kinds of waveform. A file and a list of points are both points. */
-typedef enum dea_wave_kind { DEA_WAVE_NONE, DEA_WAVE_STEP, DEA_WAVE_POINTS, DEA_WAVE_SINE } dea_wave_kind;
+/** Electrodes of the electroded region: a skin with an energy of its own, stress-free at the pre-stretch (physics: section 8), and
+ * what they weigh. All of a stack together, as laid on the pre-stretched film. */
+typedef struct dea_electrode {
+    const dea_law *law;                  /**< of the skin, NULL: none */
+    double constants[DEA_LAW_CONSTANTS]; /**< of the law, 0 beyond those in use */
+    size_t entry_count;                  /**< entries in use of a law that is a list, else 1 */
+    double thickness;                    /**< t [m], > 0, NAN: none */
+    double density;                      /**< [kg/m^3], > 0, NAN: no mass but actuator.electrode_mass */
+    double sheet_resistance;             /**< of one electrode [Ohm per square], > 0, NAN: none */
+} dea_electrode;
+
+/** Kinds of waveform, in the order of the table src/drive/waves.c. A file and a list of points are both points. */
+typedef enum dea_wave_kind {
+    DEA_WAVE_NONE,
+    DEA_WAVE_STEP,
+    DEA_WAVE_POINTS,
+    DEA_WAVE_SINE,
+    DEA_WAVE_PULSE,
+    DEA_WAVE_SQUARE,
+    DEA_WAVE_TRIANGLE,
+    DEA_WAVE_CHIRP,
+    DEA_WAVE_BURST,
+    DEA_WAVE_SINES
+} dea_wave_kind;
+
+/** Most numbers of a waveform without a struct of its own, and most sines of a sum. */
+enum { DEA_WAVE_NUMBERS = 8, DEA_SINES = 8 };
 
 /** 0 V, then @p voltage from @p on to @p off; each edge rises or falls linearly within @p rise. */
 typedef struct dea_step {
@@ -68,10 +93,14 @@ typedef struct dea_waveform {
     dea_wave_kind kind;
     dea_step step;
     dea_sine sine;
+    dea_sine sines[DEA_SINES]; /**< their sum, sine_count of them, without delays */
+    size_t sine_count;
+    double numbers[DEA_WAVE_NUMBERS]; /**< of pulse, square, triangle, chirp and burst, each as its file in src/drive says */
+    size_t choice;                    /**< of the words that the kind has a choice of (spacing of a chirp) */
     double *times;    /**< points, not decreasing, point_count of them [s]; two of one time are a jump; owned by the scene */
     double *voltages; /**< their voltages, linear in between and held before the first and after the last [V]; owned too */
     size_t point_count;
-    double period; /**< what step or points say before this time repeats [s], NAN: once */
+    double period; /**< what step, points or burst say before this time repeats [s], NAN: once */
     char columns[DEA_SOURCE_LENGTH]; /**< of points from a file: what each of its columns was taken for, in words; else "" */
 } dea_waveform;
 
@@ -157,6 +186,7 @@ typedef struct dea_reduction {
 typedef struct dea_scene {
     char *title; /**< may be empty, never NULL */
     dea_actuator actuator;
+    dea_electrode electrode;
     dea_material material;
     dea_drive drive;
     const struct dea_model *models[DEA_SCENE_MODELS]; /**< models to run one after the other, model_count of them */

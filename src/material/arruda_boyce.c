@@ -85,6 +85,8 @@ static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
     return dea_invariant_biaxial(slopes, gain, film, e1, e2);
 }
 
+DEA_INVARIANT_ABREAST(slopes, gain)
+
 /* The chain stretch sqrt(I1/3) has come to lambda_m; the five terms go on. */
 static double locking(const double *c)
 {
@@ -125,5 +127,7 @@ const dea_law dea_law_arruda_boyce = {
     .prepare = prepare,
     .change = change,
     .biaxial = biaxial,
+    .changes = changes,
+    .biaxials = biaxials,
     .form = form,
 };

@@ -86,6 +86,36 @@ dea_biaxial dea_film_biaxial(const dea_film *film, double e1, double e2)
                          .w22 = at.w22};
 }
 
+void dea_film_biaxials(const dea_film *film, size_t count, const double *e1, const double *e2, const dea_biaxials *changes)
+{
+    if (film->law->biaxials) {
+        film->law->biaxials(film, count, e1, e2, changes);
+        return;
+    }
+    for (size_t i = 0; i < count; i++) {
+        const dea_biaxial at = dea_film_biaxial(film, e1[i], e2[i]);
+        changes->p1[i] = at.p1;
+        changes->p2[i] = at.p2;
+        changes->w11[i] = at.w11;
+        changes->w12[i] = at.w12;
+    }
+}
+
+void dea_film_changes(const dea_film *film, size_t count, const double *strains, const dea_changes *changes)
+{
+    if (film->law->changes) {
+        film->law->changes(film, count, strains, changes);
+        return;
+    }
+    for (size_t i = 0; i < count; i++) {
+        dea_change at;
+        film->law->change(film, 1, &strains[i], &at);
+        changes->value[i] = at.value;
+        changes->slope[i] = at.slope;
+        changes->curve[i] = at.curve;
+    }
+}
+
 /* As the change from the film that is not stretched, which has no stress. */
 double dea_law_equibiaxial(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double stretch)
 {

@@ -59,6 +59,8 @@ static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
     return dea_invariant_biaxial(slopes, gain, film, e1, e2);
 }
 
+DEA_INVARIANT_ABREAST(slopes, gain)
+
 static double locking(const double *c)
 {
     return c[JM];
@@ -94,5 +96,7 @@ const dea_law dea_law_gent = {
     .prepare = prepare,
     .change = change,
     .biaxial = biaxial,
+    .changes = changes,
+    .biaxials = biaxials,
     .form = form,
 };

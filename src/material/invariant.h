@@ -7,9 +7,10 @@
 #ifndef DEA_INVARIANT_H
 #define DEA_INVARIANT_H
 
-#include "material/law.h"
+#include <string.h>
 
-#define DEA_INLINE static inline __attribute__((always_inline))
+#include "material/law.h"
+#include "support/lanes.h"
 
 /* f', f'' and f''' [Pa]. */
 typedef struct dea_slopes {
@@ -119,5 +120,62 @@ DEA_INLINE dea_biaxial dea_invariant_biaxial(dea_slopes_at *slopes, dea_slope_ga
         .w22 = w * (1.0 + 3.0 * v * inverse2 * inverse2) + w1 * a2 * a2,
     };
 }
+
+/* Both abreast, lane after lane. */
+DEA_INLINE void dea_invariant_changes(dea_slopes_at *slopes, dea_slope_gain *gain, const dea_film *film, size_t count,
+                                      const double *strains, const dea_changes *changes)
+{
+    const dea_film here = *film; /* what is written cannot change it */
+    for (size_t i = 0; i < count; i += DEA_LANES) {
+        double value[DEA_LANES], slope[DEA_LANES], curve[DEA_LANES];
+        DEA_EACH_LANE(l)
+        {
+            const dea_change at = dea_invariant_change(slopes, gain, &here, strains[i + l]);
+            value[l] = at.value;
+            slope[l] = at.slope;
+            curve[l] = at.curve;
+        }
+        memcpy(changes->value + i, value, sizeof value);
+        memcpy(changes->slope + i, slope, sizeof slope);
+        memcpy(changes->curve + i, curve, sizeof curve);
+    }
+}
+
+DEA_INLINE void dea_invariant_biaxials(dea_slopes_at *slopes, dea_slope_gain *gain, const dea_film *film, size_t count,
+                                       const double *e1, const double *e2, const dea_biaxials *changes)
+{
+    const dea_film here = *film;
+    for (size_t i = 0; i < count; i += DEA_LANES) {
+        double p1[DEA_LANES], p2[DEA_LANES], w11[DEA_LANES], w12[DEA_LANES];
+        DEA_EACH_LANE(l)
+        {
+            const dea_biaxial at = dea_invariant_biaxial(slopes, gain, &here, e1[i + l], e2[i + l]);
+            p1[l] = at.p1;
+            p2[l] = at.p2;
+            w11[l] = at.w11;
+            w12[l] = at.w12;
+        }
+        memcpy(changes->p1 + i, p1, sizeof p1);
+        memcpy(changes->p2 + i, p2, sizeof p2);
+        memcpy(changes->w11 + i, w11, sizeof w11);
+        memcpy(changes->w12 + i, w12, sizeof w12);
+    }
+}
+
+/* The law's changes() and biaxials() of these two functions. */
+#define DEA_INVARIANT_ABREAST(slopes, gain)                                                                                      \
+    DEA_INLINE void changes_of(const dea_film *film, size_t count, const double *strains, const dea_changes *out)                \
+    {                                                                                                                            \
+        dea_invariant_changes(slopes, gain, film, count, strains, out);                                                          \
+    }                                                                                                                            \
+    DEA_INLINE void biaxials_of(const dea_film *film, size_t count, const double *e1, const double *e2, const dea_biaxials *out) \
+    {                                                                                                                            \
+        dea_invariant_biaxials(slopes, gain, film, count, e1, e2, out);                                                          \
+    }                                                                                                                            \
+    DEA_LANES_DISPATCH(changes, changes_of, (const dea_film *film, size_t count, const double *strains, const dea_changes *out), \
+                       (film, count, strains, out))                                                                              \
+    DEA_LANES_DISPATCH(biaxials, biaxials_of,                                                                                    \
+                       (const dea_film *film, size_t count, const double *e1, const double *e2, const dea_biaxials *out),        \
+                       (film, count, e1, e2, out))
 
 #endif

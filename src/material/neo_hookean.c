@@ -58,6 +58,8 @@ static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
     return dea_invariant_biaxial(slopes, gain, film, e1, e2);
 }
 
+DEA_INVARIANT_ABREAST(slopes, gain)
+
 static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_law_form *form)
 {
     const dea_form_invariants at = dea_form_invariants_of(pool, l1, l2);
@@ -82,5 +84,7 @@ const dea_law dea_law_neo_hookean = {
     .prepare = prepare,
     .change = change,
     .biaxial = biaxial,
+    .changes = changes,
+    .biaxials = biaxials,
     .form = form,
 };

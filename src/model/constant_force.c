@@ -8,7 +8,7 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     (void)accuracy;
     const double pressure = dea_point_pressure(point);
     double strain;
-    if (!dea_film_balance(&point->film, 0.0, pressure, &strain)) {
+    if (!dea_film_balance(point, 0.0, pressure, &strain)) {
         dea_row_refuse(row, DEA_STATE_PULL_IN);
         return;
     }
@@ -29,6 +29,10 @@ static void build(const dea_symbols *symbols, dea_network *network)
     const dea_expr area = dea_hyperelastic_area(symbols, network->strain);
     dea_network_add_stress(network, "n_disc", "disc, sigma - sigma_pre [Pa] on the area A, Eq. 13",
                            dea_hyperelastic_change(symbols, network->strain), area);
+    if (symbols->skin) {
+        dea_network_add(network, DEA_ROLE_TENSION, "n_skin", "skin of the electrodes, its stress on the area A [N]",
+                        MUL(area, dea_hyperelastic_skin(symbols, network->strain, network->strain)));
+    }
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force, A eps E^2, Eq. 13 [N]",
                     dea_hyperelastic_force(symbols, network->strain, network->strain));
     network->capacitance =

@@ -43,7 +43,7 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     const double ratio = dot ? b / (1.0 - b) : (1.0 - b) / b;
     const double pressure = dea_point_pressure(point);
     double active; /* strain of the electroded film */
-    if (!dea_film_balance(&point->film, ratio, pressure, &active)) {
+    if (!dea_film_balance(point, ratio, pressure, &active)) {
         dea_row_refuse(row, DEA_STATE_PULL_IN);
         return;
     }
@@ -170,6 +170,10 @@ static void build(const dea_symbols *symbols, dea_network *network)
                            dea_hyperelastic_change(symbols, disc), area);
     dea_network_add_stress(network, "n_annulus", "annulus, sigma_pre - sigma [Pa] on the area A, Eqs. 17, 18",
                            NEG(dea_hyperelastic_change(symbols, annulus)), area);
+    if (symbols->skin) {
+        dea_network_add(network, DEA_ROLE_TENSION, "n_skin", "skin of the electrodes, its stress on the area A [N]",
+                        SCALE(network->sign, MUL(area, dea_hyperelastic_skin(symbols, active, active))));
+    }
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force, A eps E^2, Eq. 18 [N]",
                     SCALE(network->sign, dea_hyperelastic_force(symbols, disc, active)));
     network->end = dot ? dea_symbols_annulus_width(symbols) : MUL(symbols->coverage, symbols->frame_radius);

@@ -1,4 +1,4 @@
-/* Exact axisymmetric membrane, integrated in x = ln(R/R_a) by Gragg's midpoint rule, extrapolated to order 14 on a fixed mesh.
+/* Exact axisymmetric membrane: by collocation (collocation.h) or, what that leaves, integrated in x = ln(R/R_a) by Gragg's midpoint rule, extrapolated to order 14 on a fixed mesh.
  *
  * With D = lambda_2 - lambda_1 and e = lambda_2 - lambda_pre the equations of physics.md, section 3, read
  *
@@ -11,6 +11,7 @@
  */
 #include <float.h>
 
+#include "model/collocation.h"
 #include "model/field.h"
 #include "model/film_balance.h"
 
@@ -38,7 +39,9 @@ typedef struct radial_state {
 
 /* The boundary value problem at one load. */
 typedef struct membrane {
+    const dea_point *point;
     const dea_film *film;
+    bool lens; /* the annulus is electroded */
     double disc_k;    /* Maxwell pressure in the disc: M of a dot, 0 of a lens [Pa] */
     double annulus_k; /* and in the annulus [Pa] */
     double length;    /* ln(1/B) */
@@ -53,10 +56,22 @@ typedef struct extremes {
     double charge;       /* c at the frame [1] */
 } extremes;
 
-/* Stresses and moduli of the film. */
+/* Stresses and moduli of the annulus, without what the voltage does, and of the disc. */
 static dea_stress stress_at(const membrane *m, double l1, double l2)
 {
-    return m->film->law->stress(m->film->constants, l1, l2);
+    return m->lens ? dea_point_coated_stress(m->point, l1, l2) : m->film->law->stress(m->film->constants, l1, l2);
+}
+
+static dea_stress disc_stress(const membrane *m, double l)
+{
+    return m->lens ? m->film->law->stress(m->film->constants, l, l) : dea_point_coated_stress(m->point, l, l);
+}
+
+/* Skin's share of the stress s1 of the annulus less that of the disc. */
+static double skin_jump(const membrane *m, double l, double d)
+{
+    const double e = l - m->film->prestretch;
+    return m->lens ? dea_point_skin_rise(m->point, e - d, e) : -dea_point_skin_rise(m->point, e, e);
 }
 
 static radial_state slope_at(const membrane *m, radial_state s)
@@ -129,7 +144,8 @@ static double jump_at_edge(const membrane *m, double l)
             continue;
         }
         sound = d;
-        const double residual = m->film->law->rise(m->film->constants, l, -d, 0.0) + jump + m->annulus_k * d * l * l;
+        const double rise = m->film->law->rise(m->film->constants, l, -d, 0.0) + skin_jump(m, l, d);
+        const double residual = rise + jump + m->annulus_k * d * l * l;
         const double s11 = here.w11 - m->annulus_k * l * l;
         const double most = 0.25 * (l - d); /* lambda_1 moves by a quarter at most: the first root from lambda_2 on is meant */
         const double step = s11 > 0.0 ? residual / s11 : copysign(most, residual);
@@ -221,7 +237,7 @@ static double miss_at_frame(const membrane *m, double edge, extremes *x)
     }
     radial_state s = {jump_at_edge(m, l), edge, 0.0};
     if (x) {
-        const double disc = stress_at(m, l, l).p1 - m->disc_k * l * l * l;
+        const double disc = disc_stress(m, l).p1 - m->disc_k * l * l * l;
         const bool lens = m->annulus_k > 0.0;
         *x = (extremes){disc, lens ? (l - s.d) * l : l * l, lens ? (l - s.d) * l * l : l * l * l, 0.0};
         note(m, limits_at(m, s), x);
@@ -297,7 +313,9 @@ static double linear_guess(const dea_point *point, double m)
     const double b2 = point->coverage * point->coverage;
     const double q = (1.0 + b2) / (1.0 - b2);
     const double softening = m * film->square * (dot ? 3.0 : q - 2.0);
-    const double stiffness = film->w11 + film->w12 + film->w11 * q - film->w12 - softening;
+    const dea_film *skin = &point->skin;
+    const double coat = point->skin_share > 0.0 ? point->skin_share * (dot ? skin->w11 + skin->w12 : skin->w11 * q - skin->w12) : 0.0;
+    const double stiffness = film->w11 + film->w12 + film->w11 * q - film->w12 + coat - softening;
     return stiffness > 0.0 ? dea_point_sign(point) * m * film->square * film->prestretch / stiffness : NAN;
 }
 
@@ -463,7 +481,7 @@ static bool trace(const membrane *full, double sign, double end, double *edge)
 static membrane membrane_of(const dea_point *point, double pressure, dea_field_mesh mesh)
 {
     const bool dot = point->kind == DEA_DOT;
-    return (membrane){&point->film, dot ? pressure : 0.0, dot ? 0.0 : pressure, -log(point->coverage), mesh};
+    return (membrane){point, &point->film, !dot, dot ? pressure : 0.0, dot ? 0.0 : pressure, -log(point->coverage), mesh};
 }
 
 /* Integrates over a stretch of x in steps that are short enough. */
@@ -503,6 +521,18 @@ bool dea_field_profile(const dea_point *point, double strain, size_t count, cons
     return true;
 }
 
+void dea_field_fill(const dea_point *point, dea_field_found found, dea_row *row)
+{
+    const double nominal = dea_point_nominal_field(point), pressure = point->film.permittivity * nominal * nominal;
+    const double lever = 2.0 * DEA_PI * point->film_thickness * dea_point_divide(point) / point->film.prestretch;
+    dea_row_fill(row, point,
+                 (dea_found){.strain = found.strain,
+                             .force = dea_point_sign(point) * lever * pressure * found.edge_force,
+                             .stretch = found.stretch,
+                             .capacitance = found.capacitance,
+                             .taut = found.taut});
+}
+
 void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row)
 {
     const dea_film *film = &point->film;
@@ -526,22 +556,38 @@ void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row)
         dea_row_refuse(row, DEA_STATE_FAILED);
         return;
     }
-    const double force =
-        sign * 2.0 * DEA_PI * point->film_thickness * pressure * x.edge_force * dea_point_divide(point) / film->prestretch;
     const double strain = edge / film->prestretch;
     /* (2 pi eps/H) (r/lambda_pre)^2 c */
     const double annulus = 2.0 * dea_point_full_capacitance(point) * x.charge / (film->square * film->square);
-    dea_row_fill(row, point,
-                 (dea_found){.strain = strain,
-                             .force = force,
-                             .stretch = x.largest_area,
-                             .capacitance = dot ? dea_point_disc_capacitance(point, strain) : annulus,
-                             .taut = x.least_stress > 0.0});
+    dea_field_fill(point,
+                   (dea_field_found){.strain = strain,
+                                     .edge_force = x.edge_force,
+                                     .stretch = x.largest_area,
+                                     .capacitance = dot ? dea_point_disc_capacitance(point, strain) : annulus,
+                                     .taut = x.least_stress > 0.0},
+                   row);
+}
+
+/* By collocation where that is enough, else by integration. */
+static void solve_many(const dea_point *points, size_t count, double accuracy, dea_row *rows)
+{
+    enum { CHUNK = 64 };
+    const dea_field_mesh mesh = {step_for(accuracy), fmin(little, tenth * accuracy)};
+    for (size_t from = 0; from < count; from += CHUNK) {
+        const size_t some = count - from < CHUNK ? count - from : CHUNK;
+        bool solved[CHUNK];
+        dea_collocation_solve(points + from, some, accuracy, rows + from, solved);
+        for (size_t i = 0; i < some; i++) {
+            if (!solved[i]) {
+                dea_field_solve(&points[from + i], mesh, &rows[from + i]);
+            }
+        }
+    }
 }
 
 static void solve(const dea_point *point, double accuracy, dea_row *row)
 {
-    dea_field_solve(point, (dea_field_mesh){step_for(accuracy), fmin(little, tenth * accuracy)}, row);
+    solve_many(point, 1, accuracy, row);
 }
 
 const dea_model dea_model_field = {
@@ -550,6 +596,7 @@ const dea_model dea_model_field = {
     .leaves_out = "bending, all out of plane",
     .lens = true,
     .solve = solve,
+    .solve_many = solve_many,
     .dynamic = true,
     .membrane = true,
 };

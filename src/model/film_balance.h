@@ -11,9 +11,9 @@
 
 #include "model/models.h"
 
-/* Strain e of the active film that is connected to rest under the pressure m = eps lambda_pre^4 (U/H)^2 [Pa].
- * False where there is none: pull-in. */
-bool dea_film_balance(const dea_film *film, double ratio, double m, double *strain);
+/* Strain e of the active film of a point, with its skin, that is connected to rest under the pressure m = eps lambda_pre^4 (U/H)^2
+ * [Pa]. False where there is none: pull-in. */
+bool dea_film_balance(const dea_point *point, double ratio, double m, double *strain);
 
 /* m = eps lambda_pre^4 (U/H)^2 [Pa], the Maxwell stress at the pre-stretch. */
 static inline double dea_point_pressure(const dea_point *point)

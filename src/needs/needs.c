@@ -53,8 +53,8 @@ static void omit(planner *p, dea_omission omission)
 static bool is_start(const planner *p, size_t probe)
 {
     const dea_scene *scene = p->surrogate.scene;
-    const bool held = !isnan(scene->material.density) || scene->actuator.electrode_mass > 0.0 ||
-                      !isnan(scene->material.retardation) || scene->drive.series_resistance > 0.0;
+    const bool held = !isnan(scene->material.density) || dea_electrode_mass(scene) > 0.0 ||
+                      !isnan(scene->material.retardation) || dea_series_resistance(scene) > 0.0;
     return held && scene->transient.from_bias && probe == 0;
 }
 
@@ -134,7 +134,7 @@ static double change_over(const dea_surrogate *s, const dea_segment *segment, do
 {
     const double length = segment->to - segment->from, largest = s->largest * s->largest;
     if (segment->sine) {
-        const double frequency = dea_surrogate_signal(s)->sine.frequency;
+        const double frequency = dea_surrogate_signal(s)->curve.tones[0].frequency;
         return 4.0 * (1.0 + frequency * fmin(length, forgotten)) * fmin(1.0, 2.0 * DEA_PI * frequency * quick);
     }
     const double start = segment->start * segment->start, end = segment->end * segment->end;

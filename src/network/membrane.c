@@ -11,7 +11,7 @@ static void set_masses(const dea_scene *scene, dea_membrane *m)
 {
     const dea_point *point = &m->film.point;
     const double density = isnan(scene->material.density) ? 0.0 : scene->material.density;
-    const double electrode = isnan(scene->actuator.electrode_mass) ? 0.0 : scene->actuator.electrode_mass;
+    const double electrode = dea_electrode_mass(scene);
     m->heavy = m->film.mass > 0.0;
     for (size_t n = 0; n < m->rings.node_count && m->heavy; n++) {
         m->masses[n] = density * point->film_thickness * m->rings.areas[n] +
@@ -56,6 +56,19 @@ static void strain_ring(const dea_membrane *m, const dea_ring *ring, const doubl
     e[1] = hoop;
 }
 
+/* The skin is elastic: no damper or branch follows its stresses. */
+static void add_skin(const dea_point *point, const double e[2], dea_ring_look *at)
+{
+    dea_biaxial skin = {0};
+    dea_point_coat(point, e[0], e[1], &skin);
+    at->nominal[0] += skin.p1;
+    at->nominal[1] += skin.p2;
+    at->tangent[0][0] += skin.w11;
+    at->tangent[0][1] += skin.w12;
+    at->tangent[1][0] += skin.w12;
+    at->tangent[1][1] += skin.w22;
+}
+
 /* S_a = lambda_a P_a + lambda_pre e_a P_0, of absolute stresses P_0 + P_a; dS_a/dlambda_b = lambda_a W_ab + (P_0 + P_a) where
  * a = b. Branches that are held add their share of S_a to the film's own. */
 static bool look_at_ring(const dea_membrane *m, const dea_ring *ring, const double *u, dea_ring_look *at)
@@ -81,7 +94,10 @@ static bool look_at_ring(const dea_membrane *m, const dea_ring *ring, const doub
             at->tangent[a][b] = w[a][b] + held * (slope - (a == b ? own / l : 0.0)) / l;
         }
     }
-    return isfinite(p[0]) && isfinite(p[1]);
+    if (ring->electroded && m->film.point.skin_share > 0.0) {
+        add_skin(&m->film.point, e, at);
+    }
+    return isfinite(at->nominal[0]) && isfinite(at->nominal[1]);
 }
 
 bool dea_membrane_look_at(const dea_membrane *m, const double *u, dea_membrane_look *look)

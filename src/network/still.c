@@ -45,6 +45,9 @@ static dea_biaxial stress_of(const dea_still *still, const dea_ring *ring, strai
     const double k = ring->electroded ? share * still->pressure : 0.0;
     const double l1 = film->prestretch * (1.0 + e.e1), l2 = film->prestretch * (1.0 + e.e2);
     dea_biaxial s = dea_film_biaxial(film, e.e1, e.e2);
+    if (ring->electroded && still->point->skin_share > 0.0) {
+        dea_point_coat(still->point, e.e1, e.e2, &s);
+    }
     s.p1 -= k * l1 * l2 * l2;
     s.p2 -= k * l1 * l1 * l2;
     s.w11 -= k * l2 * l2;
@@ -210,14 +213,14 @@ double dea_still_strain(const dea_still *still, const double *u)
 /* Energies of the displacement u in the stiffness at u and in that at rest without load. */
 bool dea_still_near(const dea_still *still, const double *u)
 {
-    const dea_film *film = &still->point->film;
     double now = 0.0, rest = 0.0, most = 0.0;
     for (size_t q = 0; q < still->rings.ring_count; q++) {
         const dea_ring *ring = &still->rings.rings[q];
         const strains e = strains_of(ring, u);
         const dea_biaxial s = stress_of(still, ring, e, 1.0);
         now += ring->volume * (s.w11 * e.e1 * e.e1 + 2.0 * s.w12 * e.e1 * e.e2 + s.w22 * e.e2 * e.e2);
-        rest += ring->volume * (film->w11 * (e.e1 * e.e1 + e.e2 * e.e2) + 2.0 * film->w12 * e.e1 * e.e2);
+        const dea_biaxial bare = stress_of(still, ring, (strains){0.0, 0.0}, 0.0);
+        rest += ring->volume * (bare.w11 * (e.e1 * e.e1 + e.e2 * e.e2) + 2.0 * bare.w12 * e.e1 * e.e2);
         most = fmax(most, fmax(fabs(e.e1), fabs(e.e2)));
     }
     return most < 0.15 && now > 0.5 * rest && now < 2.0 * rest;

@@ -8,6 +8,7 @@
 
 #include "deaspice/measures.h"
 #include "deaspice/model.h"
+#include "drive/wave.h"
 #include "scene/keys.h"
 #include "study/study.h"
 
@@ -150,15 +151,14 @@ static bool begins_with(const char *path, const char *with)
 /* Does the scene use this scalar? Windows and branches are lists, which have places of their own. */
 static bool is_used(const dea_scene *scene, const dea_key *key)
 {
-    const dea_wave_kind wave = scene->drive.waveform.kind;
+    const dea_wave *wave = dea_wave_of(scene->drive.waveform.kind);
     const unsigned kind = scene->actuator.kind == DEA_DOT ? DEA_KEY_DOT : DEA_KEY_LENS;
     const struct {
         const char *path;
         bool used;
     } parts[] = {
-        {"drive.waveform.step.", wave == DEA_WAVE_STEP},
-        {"drive.waveform.sine.", wave == DEA_WAVE_SINE},
-        {"drive.waveform.", wave != DEA_WAVE_NONE},
+        {"drive.waveform.period", wave},
+        {"drive.waveform.", wave && begins_with(key->path, wave->path) && key->path[strlen(wave->path)] == '.'},
         {"study.transient.average.", false},
         {dea_study_of(scene)->path, true},
         {"study.", false},
@@ -169,7 +169,7 @@ static bool is_used(const dea_scene *scene, const dea_key *key)
     while (!begins_with(key->path, parts[part].path)) {
         part++;
     }
-    const bool listed = key->law && (key->law != scene->material.law || key->stride > 0);
+    const bool listed = (key->law && key->law != scene->material.law) || key->stride > 0;
     return parts[part].used && key->offset != DEA_KEY_NOWHERE && (key->kinds & kind) != 0 && !listed;
 }
 
@@ -272,9 +272,11 @@ static void put_provenance(grid *file, const char *engine)
     put_listed_law(file);
     put_prony(file);
     if (file->study->timed) {
-        static const char *const waves[] = {
-            [DEA_WAVE_NONE] = "none", [DEA_WAVE_STEP] = "step", [DEA_WAVE_POINTS] = "points", [DEA_WAVE_SINE] = "sine"};
-        put_text(file, NC_GLOBAL, "waveform", waves[scene->drive.waveform.kind]);
+        const dea_wave *wave = dea_wave_of(scene->drive.waveform.kind);
+        put_text(file, NC_GLOBAL, "waveform", wave ? dea_wave_name(wave) : "none");
+        if (wave && wave->word) {
+            put_text(file, NC_GLOBAL, wave->word, wave->words[scene->drive.waveform.choice]);
+        }
         put_text(file, NC_GLOBAL, "start", scene->transient.from_bias ? "bias" : "rest");
     }
 }

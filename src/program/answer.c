@@ -217,9 +217,10 @@ static void print_rest(const dea_answer *answer, const dea_scene *scene, const d
     }
     fputs("at rest and 0 V: capacitance ", stderr);
     print_quantity(capacitance, "F", 4);
-    if (!isnan(here.drive.series_resistance)) {
+    const double series = dea_series_resistance(&here);
+    if (!isnan(series)) {
         fputs(", R_s C ", stderr);
-        print_quantity(here.drive.series_resistance * capacitance, "s", 4);
+        print_quantity(series * capacitance, "s", 4);
     }
     if (isfinite(swing.frequency) && !dea_study_of(scene)->timed) {
         fputs(", first resonance ", stderr);

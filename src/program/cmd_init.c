@@ -61,7 +61,7 @@ static const start starts[] = {
      "#   deaspice run transient.yaml -o transient.csv --plot transient.svg\n"
      "title: switched on and off\n" ACTUATOR("dot                  # or lens", "electrode_radius") MOVING
      "drive:\n"
-     "  waveform:                  # in place of voltage; also points, sine, or file: drive.csv (time, voltage)\n"
+     "  waveform:                  # in place of voltage; also points, sine, pulse, square, triangle, chirp, burst, sines, file\n"
      "    step: {on: 0.1 s, off: 0.6 s, voltage: 4.5 kV, rise: 1 ms}\n"
      "  series_resistance: 1 MOhm  # of source and electrodes; optional\n"
      "model: ring                  # or lumped, coverage, lame\n"

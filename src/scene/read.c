@@ -53,18 +53,21 @@ const dea_place *dea_reader_place(dea_reader *reader, size_t offset, const char 
 
 dea_status dea_reader_index(dea_reader *reader, const dea_ref *ref, const dea_place *place)
 {
-    const dea_law *law = reader->scene->material.law;
+    const dea_holder holder = dea_reader_holder(reader, &ref->key);
+    const dea_law *law = *holder.law;
     if (ref->key.law && ref->key.law != law) {
         return dea_place_fail(place, reader->error, ref->path,
-                              "belongs to the law %s, but that of the material is %s; accepted: constants of material.%s, or all of "
-                              "material.%s as %s",
-                              ref->key.law->name, law->name, law->name, ref->key.law->name, ref->key.law->accepted);
+                              "belongs to the law %s, but that of the %s is %s; accepted: constants of %s.%s, or all of %s.%s as %s",
+                              ref->key.law->name, holder.name, law ? law->name : "not given", holder.name,
+                              law ? law->name : ref->key.law->name, holder.name, ref->key.law->name, ref->key.law->accepted);
     }
     const bool window = strncmp(ref->path, "study.transient.average.", 24) == 0;
     const bool listed = strchr(ref->key.path, '#') != NULL;
+    const bool sine = strncmp(ref->path, "drive.waveform.sines.", 21) == 0;
     const dea_material *material = &reader->scene->material;
-    const size_t count = window         ? reader->scene->transient.average_count
-                         : ref->key.law ? material->entry_count
+    const size_t count = sine             ? reader->scene->drive.waveform.sine_count
+                         : window         ? reader->scene->transient.average_count
+                         : ref->key.law ? *holder.entry_count
                                         : material->prony_count;
     if (window && !listed && count > 1) {
         return dea_place_fail(place, reader->error, ref->path,
@@ -73,8 +76,8 @@ dea_status dea_reader_index(dea_reader *reader, const dea_ref *ref, const dea_pl
     if (!listed || ref->index < count) {
         return DEA_OK;
     }
-    return dea_place_fail(place, reader->error, ref->path, "the %s has %zu %s, counted from 0", window ? "transient" : "material",
-                          count, window ? "windows" : ref->key.law ? "terms" : "branches");
+    return dea_place_fail(place, reader->error, ref->path, "the %s has %zu %s, counted from 0",
+                          sine ? "waveform" : window ? "transient" : holder.name, count, sine ? "sines" : window ? "windows" : ref->key.law ? "terms" : "branches");
 }
 
 static dea_status fail_unknown(dea_reader *reader, const char *path, const dea_node *node)

@@ -55,8 +55,8 @@ static dea_status drive_settle(dea_reader *reader)
     if (transient && !waveform) {
         return dea_place_fail(
             dea_reader_place(reader, offsetof(dea_scene, drive.voltage), "drive"), reader->error, "drive.waveform",
-            "missing; a transient takes it in place of drive.voltage; accepted: a mapping with step, points, sine "
-            "or file, e.g. {step: {on: 5 s, off: 15 s, voltage: 4500 V}}");
+            "missing; a transient takes it in place of drive.voltage; accepted: a mapping with a form "
+            "such as step, sine or file, e.g. {step: {on: 5 s, off: 15 s, voltage: 4500 V}}");
     }
     if (!waveform || (transient && !voltage->node)) {
         return DEA_OK;

@@ -3,9 +3,13 @@
 #ifndef DEA_SUPPORT_LANES_H
 #define DEA_SUPPORT_LANES_H
 
+#include <stddef.h>
+
+#define DEA_INLINE static inline __attribute__((always_inline))
+
 enum { DEA_LANES = 8 };
 
-#define DEA_EACH_LANE(l) for (int l = 0; l < DEA_LANES; l++)
+#define DEA_EACH_LANE(l) for (size_t l = 0; l < DEA_LANES; l++)
 
 /* DEA_LANES_DISPATCH(name, body, (parameters), (arguments)): function @p name that runs @p body, which is always inlined, compiled
  * for the widest vectors that the processor has. */

@@ -38,23 +38,67 @@ static void solve_point(const dea_model *model, const dea_scene *scene, const de
     }
 }
 
+static void solve_one_by_one(const visit_state *state, dea_scene *here, const dea_line *line)
+{
+    dea_point point;
+    dea_film_prepare(here, &point.film);
+    for (size_t i = 0; i < line->count; i++) {
+        if (line->axis) {
+            dea_axis_set(line->axis, here, line->axis->values[line->from + i]);
+            if (line->axis->changes_film) {
+                dea_film_prepare(here, &point.film);
+            }
+        }
+        dea_point_place(here, &point);
+        solve_point(state->model, here, &point, &state->rows[line->row + i * line->stride]);
+    }
+}
+
+/* Valid points in front of others that are not, whose rows are made failed; number[i] is the place of point i on the line. */
+static size_t gather(const visit_state *state, dea_scene *here, const dea_line *line, size_t from, size_t count, dea_point *points,
+                     size_t *number)
+{
+    size_t gathered = 0;
+    for (size_t i = from; i < from + count; i++) {
+        dea_axis_set(line->axis, here, line->axis->values[line->from + i]);
+        dea_point_place(here, &points[gathered]);
+        if (dea_point_valid(&points[gathered])) {
+            number[gathered++] = i;
+        } else {
+            state->rows[line->row + i * line->stride] = dea_row_failed();
+        }
+    }
+    return gathered;
+}
+
+/* Points that share a film go many at a time. */
+static void solve_abreast(const visit_state *state, dea_scene *here, const dea_line *line)
+{
+    enum { MANY = 64 };
+    dea_point points[MANY];
+    dea_row rows[MANY];
+    size_t number[MANY];
+    dea_film_prepare(here, &points[0].film);
+    for (size_t i = 1; i < MANY && i < line->count; i++) {
+        points[i].film = points[0].film;
+    }
+    for (size_t from = 0; from < line->count; from += MANY) {
+        const size_t some = line->count - from < MANY ? line->count - from : MANY;
+        const size_t count = gather(state, here, line, from, some, points, number);
+        state->model->solve_many(points, count, here->accuracy, rows);
+        for (size_t i = 0; i < count; i++) {
+            state->rows[line->row + number[i] * line->stride] = rows[i];
+        }
+    }
+}
+
 static dea_status solve_line(void *user, const dea_scene *scene, const dea_line *line, dea_error *error)
 {
     (void)error;
-    const visit_state *state = user;
     dea_scene here = *scene;
-    dea_point point;
-    dea_film_prepare(&here, &point.film);
-    for (size_t i = 0; i < line->count; i++) {
-        if (line->axis) {
-            dea_axis_set(line->axis, &here, line->axis->values[line->from + i]);
-            if (line->axis->changes_film) {
-                dea_film_prepare(&here, &point.film);
-            }
-        }
-        dea_point_place(&here, &point);
-        solve_point(state->model, &here, &point, &state->rows[line->row + i * line->stride]);
-    }
+    const visit_state *state = user;
+    const bool abreast = state->model->solve_many && line->axis && !line->axis->changes_film;
+    (abreast ? solve_abreast : solve_one_by_one)(state, &here, line);
     return DEA_OK;
 }
 

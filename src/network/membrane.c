@@ -17,6 +17,7 @@ static void set_masses(const dea_scene *scene, dea_membrane *m)
         m->masses[n] = density * point->film_thickness * m->rings.areas[n] +
                        electrode * point->film.square * m->rings.coated[n]; /* it lies on the pre-stretched film */
     }
+    m->masses[m->rings.edge] += m->heavy && scene->load.mass > 0.0 ? scene->load.mass : 0.0;
 }
 
 /* A ring at the frame has no node of its own: any does, with a hoop of 0. */
@@ -125,6 +126,7 @@ bool dea_membrane_look_at(const dea_membrane *m, const double *u, dea_membrane_l
         sum += ring->electroded ? ring->volume * area * area : 0.0;
     }
     const double thickness = m->film.point.film_thickness;
+    look->edge = u[m->rings.edge];
     look->capacitance = m->film.point.film.permittivity / (thickness * thickness) * sum;
     return true;
 }
@@ -212,6 +214,7 @@ void dea_membrane_force(const dea_membrane *m, const dea_membrane_look *look, do
         }
         pull_ring(m, r, s, force);
     }
+    force[m->rings.edge] -= m->film.point.load * look->edge;
 }
 
 /* ds_a/dlambda_b of a ring: of the film, of its electrical part k lambda_a lambda_b^2, of x_a/lambda_a at constant x_a, and of a
@@ -270,6 +273,7 @@ void dea_membrane_stiffness(const dea_membrane *m, const dea_membrane_look *look
         ring_tangent(&look->rings[r], m->rings.rings[r].electroded ? k : 0.0, x ? x[r] : NULL, share, t);
         assemble_ring(m, r, t, stiffness);
     }
+    stiffness[m->rings.edge * (m->rings.node_count + 1)] += m->film.point.load;
 }
 
 void dea_membrane_damping(const dea_membrane *m, const dea_membrane_look *look, double share, double *damping)
@@ -461,7 +465,22 @@ static double edge_force(const dea_membrane *m, const dea_membrane_look *look, d
            l[0] * l[1] * l[1];
 }
 
-void dea_membrane_row(const dea_membrane *m, const dea_membrane_look *look, double voltage, const double *u, dea_row *row)
+/* Largest of values at the rings of an element, between them too where it could pass a limit: a polynomial leaves the range of its
+ * values at Lobatto's places by less than that range (Lebesgue constant below 3 up to degree 40). */
+static double largest_up_to(const dea_membrane *m, bool disc, const double *values, double limit)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        const bool counts = m->rings.rings[r].disc == disc;
+        low = counts ? fmin(low, values[r]) : low;
+        high = counts ? fmax(high, values[r]) : high;
+    }
+    return high + (high - low) < limit ? high : dea_rings_largest(&m->rings, disc, values);
+}
+
+/* A row; its field is exact where lambda_1 lambda_2 passes a limit. */
+static void fill_row(const dea_membrane *m, const dea_membrane_look *look, double voltage, const double *u, double limit,
+                     dea_row *row)
 {
     const double k = square_of(m, voltage), tension = m->film.point.film.tension;
     double loss[2][DEA_RINGS_MOST], area[DEA_RINGS_MOST], most = -INFINITY; /* of stresses */
@@ -473,16 +492,21 @@ void dea_membrane_row(const dea_membrane *m, const dea_membrane_look *look, doub
         }
     }
     for (int i = 0; i < 4; i++) {
-        most = fmax(most, dea_rings_largest(&m->rings, i < 2, loss[i % 2]));
+        most = fmax(most, largest_up_to(m, i < 2, loss[i % 2], tension));
     }
     dea_point point = m->film.point;
     point.voltage = voltage;
     dea_row_fill(row, &point,
                  (dea_found){.strain = u[m->rings.edge] / m->film.radius,
                              .force = edge_force(m, look, voltage),
-                             .stretch = dea_rings_largest(&m->rings, m->film.point.kind == DEA_DOT, area),
+                             .stretch = largest_up_to(m, m->film.point.kind == DEA_DOT, area, limit),
                              .capacitance = look->capacitance,
                              .taut = tension > most});
+}
+
+void dea_membrane_row(const dea_membrane *m, const dea_membrane_look *look, double voltage, const double *u, dea_row *row)
+{
+    fill_row(m, look, voltage, u, -INFINITY, row);
 }
 
 /* dC/dt [F/s]. */
@@ -513,7 +537,9 @@ static bool fill_sample(const dea_membrane *m, const dea_membrane_look *look, co
                         const double *v, dea_sample *sample)
 {
     dea_row row = dea_row_failed();
-    dea_membrane_row(m, look, moment->voltage, u, &row);
+    const dea_point *point = &m->film.point;
+    const double field = fabs(moment->voltage) * point->layers / point->film_thickness; /* nominal, of a layer */
+    fill_row(m, look, moment->voltage, u, field > 0.0 ? point->film.breakdown / field : (double)INFINITY, &row);
     *sample = dea_sample_refused(moment->time, moment->source, DEA_STATE_PULL_IN);
     if (row.state == DEA_STATE_FAILED || !isfinite(v[m->rings.edge])) {
         return false;
@@ -679,7 +705,8 @@ static double way_integral(const dea_membrane *m, const double *u, const double 
         }
         sum += dea_gauss_weight(g) * ring_power(m, f, rates);
     }
-    return sum;
+    const size_t edge = m->rings.edge;
+    return z ? sum : sum + 0.5 * m->film.point.load * (to[edge] - u[edge]) * (to[edge] + u[edge]);
 }
 
 void dea_membrane_audit_jump(dea_audit *audit, const dea_membrane *m, const double *u, const double *to, const double *z)

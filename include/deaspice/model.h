@@ -24,6 +24,7 @@ typedef struct dea_point {
     double voltage;        /**< U across the film [V] */
     double focal_length;   /**< of a lens at rest [m], NAN: no optics */
     double refractive_index; /**< of its liquid [1] */
+    double load;             /**< stiffness of a spring between edge and frame [N/m], 0: none */
     double skin_share;       /**< t/H of the electrodes' skin [1], 0: there is none */
     dea_film skin;           /**< the skin at rest, not pre-stretched; set where there is one */
 } dea_point;
@@ -48,12 +49,18 @@ typedef struct dea_linear {
 struct dea_network;
 struct dea_symbols;
 
+/** Stretches along the radius and along the hoop, pre-stretch included [1]. */
+typedef struct dea_stretches {
+    double radial, hoop;
+} dea_stretches;
+
 /** A static model. */
 typedef struct dea_model {
     const char *name;       /**< e.g. "lumped" */
     const char *equation;   /**< e.g. "Eqs. 19-23" */
     const char *leaves_out; /**< what it neglects */
     bool lens;              /**< can do a lens too */
+    bool edge;              /**< its film has an edge at r_a, onto which loads act */
     /** The model's own equations (engine `direct`); fills every field of @p row. @p accuracy is what the user wants. */
     void (*solve)(const dea_point *point, double accuracy, dea_row *row);
     /** The same for @p count points of one film, sooner: each row has the digits of solve(). NULL: one after the other. */
@@ -62,6 +69,9 @@ typedef struct dea_model {
     void (*network)(const struct dea_symbols *symbols, struct dea_network *network);
     /** Coefficients of the linear network (engine `direct` in transients); NULL where the network is not linear. */
     void (*linear)(const dea_point *point, dea_linear *linear);
+    /** Stretches of the annulus of a film in equilibrium, whose disc edge is strained by @p strain, at @p count places
+     * x = ln(R/R_a) >= 0 that do not fall; false where there is no such film. NULL where the model has no annulus with two stretches. */
+    bool (*along)(const dea_point *point, double strain, size_t count, const double *x, dea_stretches *stretches);
     /** Can do transients and frequency responses. */
     bool dynamic;
     /** It is the boundary value problem of the axisymmetric membrane along the radius. */
@@ -97,7 +107,7 @@ DEA_API double dea_series_resistance(const dea_scene *scene);
 DEA_API double dea_sheet_share(dea_kind kind, double coverage, double layers);
 /** Mass of the electrodes per area of pre-stretched film [kg/m^2], 0: none. */
 DEA_API double dea_electrode_mass(const dea_scene *scene);
-/** Mass of film and electrodes that moves with the disc edge [kg], 0 without density: Rayleigh with the shape of Lame's solution,
+/** Mass of film, electrodes and load that moves with the disc edge [kg], 0 without density: Rayleigh with the shape of Lame's solution,
  * the electrodes' mass per area counted over the pre-stretched film (physics: section 5). */
 DEA_API double dea_point_mass(const dea_scene *scene, const dea_point *point);
 

@@ -54,6 +54,12 @@ typedef struct dea_electrode {
     double sheet_resistance;             /**< of one electrode [Ohm per square], > 0, NAN: none */
 } dea_electrode;
 
+/** What is fixed to the edge at r_a, all round: beside the film, and at rest where that is. */
+typedef struct dea_edge_load {
+    double mass;      /**< [kg], > 0, NAN: none */
+    double stiffness; /**< of a spring to the frame, against the radial displacement of the edge [N/m], > 0, NAN: none */
+} dea_edge_load;
+
 /** Kinds of waveform, in the order of the table src/drive/waves.c. A file and a list of points are both points. */
 typedef enum dea_wave_kind {
     DEA_WAVE_NONE,
@@ -67,6 +73,8 @@ typedef enum dea_wave_kind {
     DEA_WAVE_BURST,
     DEA_WAVE_SINES
 } dea_wave_kind;
+
+enum { DEA_WAVES = DEA_WAVE_SINES + 1 };
 
 /** Most numbers of a waveform without a struct of its own, and most sines of a sum. */
 enum { DEA_WAVE_NUMBERS = 8, DEA_SINES = 8 };
@@ -128,7 +136,9 @@ typedef struct dea_axis {
 #define DEA_STUDY_LIST(X)                                                                                                        \
     X(DEA_STUDY_SWEEP, sweep)                                                                                                    \
     X(DEA_STUDY_TRANSIENT, transient)                                                                                            \
-    X(DEA_STUDY_AC, ac)
+    X(DEA_STUDY_AC, ac)                                                                                                          \
+    X(DEA_STUDY_MODES, modes)                                                                                                    \
+    X(DEA_STUDY_PROFILE, profile)
 
 /** What a study asks for. */
 typedef enum dea_study_kind {
@@ -137,6 +147,9 @@ typedef enum dea_study_kind {
 #undef X
         DEA_STUDIES
 } dea_study_kind;
+
+/** Most modes, and most radii of a shape or profile. */
+enum { DEA_MODES_MOST = 12, DEA_RADII_MAX = 10001 };
 
 /** Most windows over which a transient averages, and most samples of one. */
 enum { DEA_WINDOWS = 8, DEA_SAMPLES_MAX = 4000000 };
@@ -163,6 +176,18 @@ typedef struct dea_ac {
     double bias;              /**< source voltage [V], default drive.voltage */
 } dea_ac;
 
+/** Modes of small motion about the equilibrium under the bias. */
+typedef struct dea_modes_study {
+    size_t count;  /**< modes, slowest first, 1 ... DEA_MODES_MOST, default 3 of a membrane, 1 of a film with one node */
+    size_t points; /**< radii at which shapes are told, 2 ... DEA_RADII_MAX; 0 (default): shapes are not told */
+    double bias;   /**< source voltage [V], default drive.voltage, or 0 without one */
+} dea_modes_study;
+
+/** The static film along its radius. */
+typedef struct dea_profile {
+    size_t points; /**< radii from the centre to the frame, 2 ... DEA_RADII_MAX, default 101 */
+} dea_profile;
+
 /** How a branch of the Prony series enters a moving network. */
 typedef enum dea_branch_form {
     DEA_BRANCH_WHOLE,  /**< spring and damper in series */
@@ -187,6 +212,7 @@ typedef struct dea_scene {
     char *title; /**< may be empty, never NULL */
     dea_actuator actuator;
     dea_electrode electrode;
+    dea_edge_load load;
     dea_material material;
     dea_drive drive;
     const struct dea_model *models[DEA_SCENE_MODELS]; /**< models to run one after the other, model_count of them */
@@ -201,6 +227,8 @@ typedef struct dea_scene {
     dea_study_kind study;    /**< what is asked for */
     dea_transient transient; /**< of a transient */
     dea_ac ac;               /**< of an AC study */
+    dea_modes_study modes;   /**< of a study of modes */
+    dea_profile profile;     /**< of a study of profiles */
     dea_axis *axes;          /**< axes of the sweep, or of `over`, in the order of the file; none is one point */
     size_t axis_count;
     struct dea_files *files; /**< those that were read for it, owned; NULL: none */

@@ -97,7 +97,7 @@ static void add(builder *b, double from, double to, double start, double end, bo
         signal->segments = more;
         b->room = room;
     }
-    signal->segments[signal->count++] = (dea_segment){from, to, start, end, sine, sine ? b->origin : 0.0};
+    signal->segments[signal->count++] = (dea_segment){.from = from, .to = to, .start = start, .end = end, .sine = sine, .origin = sine ? b->origin : 0.0};
     b->least = -INFINITY;
     b->most = INFINITY;
     signal->largest = fmax(signal->largest, fmax(fabs(start), fabs(end)));
@@ -188,6 +188,7 @@ dea_status dea_signal_open(const dea_scene *scene, dea_signal *signal, dea_error
 void dea_signal_close(dea_signal *signal)
 {
     free(signal->segments);
+    free(signal->lines);
     *signal = (dea_signal){0};
 }
 
@@ -237,8 +238,30 @@ double dea_curve_largest(const dea_curve *curve)
     return sum;
 }
 
+size_t dea_segment_line(const dea_segment *run, double time)
+{
+    size_t low = 0, high = run->line_count - 1;
+    while (low < high) {
+        const size_t middle = (low + high) / 2;
+        if (time > run->lines[middle].to) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+static const dea_segment *line_at(const dea_segment *run, double time)
+{
+    return &run->lines[dea_segment_line(run, time)];
+}
+
 double dea_segment_voltage(const dea_signal *signal, const dea_segment *segment, double time)
 {
+    if (segment->lines) {
+        return dea_segment_voltage(signal, line_at(segment, time), time);
+    }
     if (segment->sine) {
         double sum = signal->curve.offset;
         for (size_t i = 0; i < signal->curve.count; i++) {
@@ -263,6 +286,7 @@ double dea_segment_voltage_since(const dea_signal *signal, const dea_segment *se
 
 double dea_segment_slope(const dea_signal *signal, const dea_segment *segment, double time)
 {
+    segment = segment->lines ? line_at(segment, time) : segment;
     if (segment->sine) {
         double sum = 0.0;
         for (size_t i = 0; i < signal->curve.count; i++) {
@@ -289,6 +313,9 @@ double dea_segment_curvature(const dea_signal *signal, const dea_segment *segmen
 
 double dea_segment_largest(const dea_signal *signal, const dea_segment *segment)
 {
+    if (segment->lines) {
+        return signal->largest;
+    }
     return segment->sine ? dea_curve_largest(&signal->curve) : fmax(fabs(segment->start), fabs(segment->end));
 }
 

@@ -9,6 +9,10 @@ typedef struct dea_segment {
     double start, end; /* voltage at from, behind an edge there, and at to, before one [V] */
     bool sine;         /* in between that of the signal's curve, else linear */
     double origin;     /* of a curve: time from which its phases count [s] */
+    const struct dea_segment *lines; /* of a curve that is a run of lines: these, line_count of them; else NULL */
+    size_t line_count;
+    double step; /* longest step through such a run [s]; 0: any */
+    bool corner; /* of a line of a run: at its end is a corner that no step may pass */
 } dea_segment;
 
 /* amplitude sin(2 pi n + phase), whose turns n at age t are f t + rate t^2/2, or f (e^(growth t) - 1)/growth of a chirp whose
@@ -33,6 +37,7 @@ typedef struct dea_signal {
     size_t count;          /* >= 1 */
     dea_curve curve;       /* of segments that are part of one */
     double largest;        /* |U| over the run [V] */
+    dea_segment *lines;    /* owned: of segments that are runs of them, or NULL */
 } dea_signal;
 
 /* Segments of the scene's waveform from 0 to `until`; the caller ends it with dea_signal_close(), also after a failure.
@@ -59,6 +64,9 @@ dea_tone dea_tone_from(const dea_tone *tone, double age);
 
 /* Voltage at a time counted from the begin of the segment, so that a short edge late in a run keeps its digits [V]. */
 double dea_segment_voltage_since(const dea_signal *signal, const dea_segment *segment, double since);
+
+/* Number of the line of a run at a time: from < time <= to. */
+size_t dea_segment_line(const dea_segment *run, double time);
 
 /* The segment of a time, searched from segment number @p near on: from < time <= to, the first one at its begin too. */
 size_t dea_signal_find(const dea_signal *signal, size_t near, double time);

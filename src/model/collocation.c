@@ -265,7 +265,8 @@ DEA_LANES_DISPATCH(step, step_body, (batch *b), (b))
 typedef struct findings {
     lanes radial, hardness;    /* lambda_1 and s11 behind the edge [1], [Pa] */
     lanes area[NODES_MAX];     /* lambda_1 lambda_2 at the nodes [1] */
-    lanes stress;              /* smallest nominal stress [Pa] */
+    lanes slack[NODES_MAX];    /* nominal hoop stress there, turned over [Pa] */
+    lanes stress;              /* smallest nominal stress of the disc, and s1 at the nodes [Pa]: s1 is least at an end or at s2 */
     lanes spread;              /* int (lambda_1 lambda_2 - mean)^2 R dR over R_a^2/2 */
     lanes coefficients[3][3];  /* the last three, from the last on, of r, of Q/s11 and of what spread is the sum of */
 } findings;
@@ -296,7 +297,7 @@ DEA_INLINE void measure_body(const batch *b, findings *f)
         const lanes area = nodes[j].l1 * nodes[j].l2;
         const lanes s1 = tension + nodes[j].p1 - k * area * nodes[j].l2, s2 = tension + nodes[j].p2 - k * area * nodes[j].l1;
         lower(&f->stress, &s1);
-        lower(&f->stress, &s2);
+        f->slack[j] = -s2;
         f->area[j] = area;
     }
     for (int j = 0; j <= n; j++) {
@@ -496,9 +497,12 @@ static double largest(const rule *r, const lanes *values, size_t l)
     }
     double low = r->places[most > 0 ? most - 1 : 0], high = r->places[most < r->degree ? most + 1 : most];
     double best = values[most][l];
-    if (most == 0 || most == r->degree) { /* the slope at an end */
-        const double inside = value_at(r, values, l, r->places[most] + (most == 0 ? 1e-4 : -1e-4));
-        if (inside <= best) {
+    if (most == 0 || most == r->degree) {
+        double slope = 0.0;
+        for (int j = 0; j <= r->degree; j++) {
+            slope += r->slopes[most][j] * values[j][l];
+        }
+        if (most == 0 ? slope <= 0.0 : slope >= 0.0) {
             return best;
         }
     }
@@ -527,7 +531,7 @@ static void fill(const rule *r, const traveller *t, const findings *f, size_t l,
                                      .stretch = dot ? stretch * stretch : largest(r, f->area, l),
                                      .capacitance = dot ? dea_point_disc_capacitance(point, strain)
                                                         : dea_point_capacitance(point) * annulus,
-                                     .taut = f->stress[l] > 0.0},
+                                     .taut = fmin(f->stress[l], -largest(r, f->slack, l)) > 0.0},
                    row);
 }
 
@@ -607,8 +611,8 @@ static void solve_chunk(const dea_point *points, size_t count, double accuracy, 
         const double nominal = dea_point_nominal_field(&points[i]);
         loads[i] = points[i].film.permittivity * nominal * nominal;
         solved[i] = false;
-        next[i] = loads[i] > 0.0 && isfinite(loads[i]) && points[i].film.w11 > 0.0 ? first_degree(&points[i], loads[i], accuracy)
-                                                                                  : DEGREES;
+        const bool plain = points[i].skin_share == 0.0 && points[i].film.w11 > 0.0; /* one film all over */
+        next[i] = plain && loads[i] > 0.0 && isfinite(loads[i]) ? first_degree(&points[i], loads[i], accuracy) : DEGREES;
     }
     for (int d = 0; d < DEGREES; d++) {
         rule r = {0};

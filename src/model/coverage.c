@@ -166,6 +166,8 @@ static void build(const dea_symbols *symbols, dea_network *network)
     const dea_expr passive = dot ? annulus : disc;
     const dea_expr area = dea_hyperelastic_area(symbols, disc);
     network->capacitance = capacitance(symbols, disc);
+    dea_network_call(network, ADD(one, disc), "stretch_disc", "stretch of the disc over the pre-stretch [1]");
+    dea_network_call(network, ADD(one, annulus), "stretch_annulus", "stretch of the annulus over the pre-stretch, Eq. 17 [1]");
     dea_network_add_stress(network, "n_disc", "disc, sigma - sigma_pre [Pa] on the area A, Eq. 18",
                            dea_hyperelastic_change(symbols, disc), area);
     dea_network_add_stress(network, "n_annulus", "annulus, sigma_pre - sigma [Pa] on the area A, Eqs. 17, 18",
@@ -181,12 +183,25 @@ static void build(const dea_symbols *symbols, dea_network *network)
     dea_network_taut(network, SUB(MUL(symbols->prestretch, ADD(one, passive)), one));
 }
 
+/* Equi-biaxial, whatever the place: lambda_P of Eq. 18. */
+static bool along(const dea_point *point, double strain, size_t count, const double *x, dea_stretches *stretches)
+{
+    const double pre = point->film.prestretch, b = point->coverage, passive = pre * (1.0 - b * strain / (1.0 - b));
+    (void)x;
+    for (size_t i = 0; i < count; i++) {
+        stretches[i] = (dea_stretches){passive, passive};
+    }
+    return true;
+}
+
 const dea_model dea_model_coverage = {
     .name = "coverage",
     .equation = "Eq. 18",
     .leaves_out = "non-uniform passive stress",
     .lens = true,
+    .edge = true,
     .solve = solve,
+    .along = along,
     .network = build,
     .dynamic = true,
 };

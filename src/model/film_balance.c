@@ -16,6 +16,7 @@ typedef struct film_pair {
     double ratio;
     const dea_film *skin; /* NULL: none */
     double share;         /* t lambda_pre^2/H: its Cauchy stress counts so much [1] */
+    double load, turn;    /* a spring at the edge adds load e (1 + turn e) [Pa], turn e being the strain of the disc */
 } film_pair;
 
 static inline balance balance_at(const film_pair *pair, double e)
@@ -40,6 +41,9 @@ static inline balance balance_at(const film_pair *pair, double e)
         b.slope += pair->share * skin.slope;
         b.curve += pair->share * skin.curve;
     }
+    b.load += pair->load * e * (1.0 + pair->turn * e);
+    b.slope += pair->load * (1.0 + 2.0 * pair->turn * e);
+    b.curve += 2.0 * pair->load * pair->turn;
     b.fold = (1.0 + e) * b.slope - 4.0 * b.load;
     return b;
 }
@@ -63,13 +67,13 @@ static double end_of(const film_pair *pair)
 static double rest_slope(const film_pair *pair)
 {
     const double film = pair->film->prestretch * pair->film->slope * (1.0 + pair->ratio);
-    return pair->skin ? film + pair->share * pair->skin->slope : film;
+    return (pair->skin ? film + pair->share * pair->skin->slope : film) + pair->load;
 }
 
 static double rest_curve(const film_pair *pair)
 {
     const double film = pair->film->square * pair->film->curvature * (1.0 - pair->ratio * pair->ratio);
-    return pair->skin ? film + pair->share * pair->skin->curvature : film;
+    return (pair->skin ? film + pair->share * pair->skin->curvature : film) + 2.0 * pair->load * pair->turn;
 }
 
 /* Halley's iteration from the second-order answer; false where it does not settle. Convergence is cubic, so the step after the
@@ -124,7 +128,13 @@ bool dea_film_balance(const dea_point *point, double ratio, double m, double *st
         return true;
     }
     const bool skinned = point->skin_share > 0.0;
-    const film_pair pair = {&point->film, ratio, skinned ? &point->skin : NULL, point->skin_share * point->film.square};
+    const double turn = point->kind == DEA_DOT ? 1.0 : -ratio;
+    const film_pair pair = {.film = &point->film,
+                            .ratio = ratio,
+                            .skin = skinned ? &point->skin : NULL,
+                            .share = point->skin_share * point->film.square,
+                            .load = point->load * dea_point_divide(point) / dea_point_cross_section(point) * fabs(turn),
+                            .turn = turn};
     const double stiffness = rest_slope(&pair);
     if (!(stiffness > 0.0) || !isfinite(m)) {
         return false;

@@ -175,7 +175,7 @@ static dea_status error_at(const dea_scene *here, const dea_model *model, const 
     if (dea_study_of(here)->phasors) {
         return small_error(here, model, truth, change, error);
     }
-    *change = static_error(here, model, truth);
+    *change = dea_study_of(here)->along ? (double)INFINITY : static_error(here, model, truth);
     return DEA_OK;
 }
 
@@ -200,8 +200,9 @@ static dea_status bound_of(const dea_scene *scene, const dea_model *model, const
 
 static bool fits(const dea_scene *scene, const dea_engine *engine, const dea_model *model)
 {
-    const bool kind = (model->lens || scene->actuator.kind == DEA_DOT) && (model->dynamic || !dea_study_of(scene)->moves);
-    return kind && dea_crew_of(scene, engine, model).count > 0;
+    const bool kind = (model->lens || scene->actuator.kind == DEA_DOT) && dea_study_takes(dea_study_of(scene), model);
+    const bool loaded = scene->load.stiffness > 0.0 || scene->load.mass > 0.0;
+    return kind && (model->edge || !loaded) && dea_crew_of(scene, engine, model).count > 0;
 }
 
 /* Models that fit, the cheapest first, and of those that cost the same the nearest to the membrane: the last of the table. */
@@ -236,7 +237,7 @@ const dea_model *dea_needs_truth(dea_study_kind study)
         const dea_model *model = dea_model_at(i);
         const bool finer = !truth || dea_model_form(model) >= dea_model_form(truth);
         const bool costly = dea_study_at(study)->timed && model->membrane; /* a run of it at every probe */
-        truth = finer && !costly && (model->dynamic || !dea_study_at(study)->moves) ? model : truth;
+        truth = finer && !costly && dea_study_takes(dea_study_at(study), model) ? model : truth;
     }
     return truth;
 }

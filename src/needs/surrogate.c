@@ -249,7 +249,7 @@ enum { NODES = sizeof nodes / sizeof *nodes, MOST_SEGMENTS = 2000000 };
 static void add_line(dea_signal *film, double from, double to, double start, double end)
 {
     if (to > from) {
-        film->segments[film->count++] = (dea_segment){from, to, start, end, false, 0.0};
+        film->segments[film->count++] = (dea_segment){.from = from, .to = to, .start = start, .end = end};
     }
 }
 

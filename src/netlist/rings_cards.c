@@ -126,8 +126,27 @@ static void name(dea_part_text *text, dea_expr ref, const char *what, size_t num
     dea_part_text_use(text, ref);
 }
 
+/* A term is worth a node of its own where the strains stand in it so often, and more than a number times another: a source's
+ * expression is differentiated by each of its nodes, and each node costs a row of the matrix. Measured with Yeoh's law. */
+enum { WORTH = 3 };
+
+static bool is_worth(const dea_part_text *text, dea_expr ref)
+{
+    const dea_term *term = &text->pool->terms[ref];
+    const bool scaled = term->operation == DEA_MUL && (!text->moves[term->a] || !text->moves[term->b]);
+    return text->places[ref] == 0 || (text->places[ref] >= WORTH && !scaled);
+}
+
+void dea_rings_cards_share(dea_part_text *text)
+{
+    for (int i = 0; i < text->pool->count; i++) {
+        text->nodal[i] = text->nodal[i] && is_worth(text, i);
+    }
+}
+
 void dea_rings_cards_declare(const dea_rings_cards *cards, dea_part_text *text)
 {
+    dea_rings_cards_share(text);
     bool declared[DEA_RINGS_STRAINS][2] = {{false}};
     for (size_t q = 0; q < cards->ring_count; q++) {
         const dea_rings_ring *ring = &cards->rings[q];
@@ -193,7 +212,7 @@ static bool strains(const writer *w, const dea_rings_ring *ring, size_t column, 
 {
     *node = ring->first + column;
     *slope = w->cards->slopes[!ring->disc].of[ring->place][column];
-    return *node > 0 && *node <= w->cards->node_count && *slope != 0.0;
+    return *node > 0 && *node <= w->cards->node_count && fabs(*slope) > 1e-12; /* else 0 but for rounding */
 }
 
 static size_t columns_of(const writer *w, const dea_rings_ring *ring)

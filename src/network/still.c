@@ -119,8 +119,14 @@ bool dea_still_step(const dea_still *still, double share, const double *u, doubl
             return false;
         }
         const dea_biaxial s = stress_of(still, ring, e, share);
+        if (!(s.w11 > 0.0)) {
+            return false; /* no longer elliptic: the film thins within a place, and no mesh tells how far */
+        }
         add_ring(still, ring, &s, n, step, k);
     }
+    const size_t edge = still->rings.edge;
+    step[edge] -= still->point->load * u[edge];
+    k[edge * n + edge] += still->point->load;
     if (!factor(n, k)) {
         return false;
     }
@@ -327,17 +333,19 @@ static double edge_error(const dea_still *coarse, const double *u, const dea_sti
     return dea_still_step(fine, 1.0, v, step) ? fabs(step[fine->rings.edge] / v[fine->rings.edge]) : (double)INFINITY;
 }
 
-dea_rings_mesh dea_still_mesh(const dea_point *point, double accuracy, double *u)
+dea_rings_mesh dea_still_mesh(const dea_point *point, double accuracy, double *error)
 {
     const dea_rings_mesh none = {0, 0, true};
-    double own[DEA_RINGS_NODES];
-    double *solution = u ? u : own;
+    double u[DEA_RINGS_NODES];
+    *error = (double)INFINITY;
     for (size_t degree = 2; degree + 2 <= DEA_RINGS_DEGREE; degree++) {
         dea_still still, fine;
         dea_still_open(point, (dea_rings_mesh){1, degree, true}, &still);
         dea_still_open(point, (dea_rings_mesh){1, degree + 2, true}, &fine);
-        if (dea_still_climb(&still, solution) == DEA_STATE_OK &&
-            (still.pressure == 0.0 || edge_error(&still, solution, &fine) <= accuracy)) {
+        if (dea_still_climb(&still, u) == DEA_STATE_OK) {
+            *error = still.pressure == 0.0 ? 0.0 : edge_error(&still, u, &fine);
+        }
+        if (*error <= accuracy) {
             return still.rings.mesh;
         }
     }

@@ -9,6 +9,7 @@
 #include "network/swing.h"
 #include "result/scales.h"
 #include "scene/key_forms.h"
+#include "output/picture.h"
 #include "study/study.h"
 #include "support/number.h"
 
@@ -298,11 +299,11 @@ const dea_study dea_study_transient = {
     .points = {"run", "runs"},
     .rows = {"sample", "samples"},
     .along = true,
-    .moves = true,
     .timed = true,
     .waveform = true,
     .sign = "t",
     .model_fails = "cannot do a transient",
+    .model_lacks = "the model is static",
     .engine_fails = "it has no time domain",
     .at = " at rest under the largest voltage",
     .plot_name = "Transient Analysis",
@@ -316,8 +317,10 @@ const dea_study dea_study_transient = {
     .compared_count = sizeof compared / sizeof *compared,
     .figures = figures,
     .figure_count = sizeof figures / sizeof *figures,
+    .drawer = &dea_drawer_runs,
     .drawn = drawn,
     .drawn_count = sizeof drawn / sizeof *drawn,
+    .takes = dea_study_moves,
     .finish = finish,
     .rest = rest,
     .identify = identify,

@@ -819,7 +819,7 @@ static void what_has_no_closed_form_is_refused_by_name(void **state)
     scene.models[0] = dea_model_find("coverage");
     check_refused(&scene, "not linear");
     scene.models[0] = dea_model_find("field");
-    check_refused(&scene, "static");
+    check_refused(&scene, "moving membrane");
     scene.models[0] = dea_model_find("lumped");
     scene.drive.series_resistance = 1e6;
     check_refused(&scene, "charging");

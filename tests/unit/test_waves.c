@@ -9,6 +9,7 @@
 
 #include "deaspice/scene.h"
 #include "drive/signal.h"
+#include "drive/soften.h"
 #include "drive/wave.h"
 
 enum { SCENES = 40, PLACES = 200 };
@@ -236,6 +237,88 @@ static void axes_are_checked_too(void **state)
     dea_scene_free(&scene);
 }
 
+/* A recorder's table: swings, and where @p noise is not 0, what its converter adds. */
+static dea_scene record(double retardation, double noise)
+{
+    enum { ROWS = 4000 };
+    dea_scene scene;
+    dea_error error;
+    assert_int_equal(parse("points: [[0 s, 0 V]]", "", &scene, &error), DEA_OK);
+    free(scene.drive.waveform.times);
+    free(scene.drive.waveform.voltages);
+    scene.drive.waveform.times = malloc(ROWS * sizeof(double));
+    scene.drive.waveform.voltages = malloc(ROWS * sizeof(double));
+    scene.drive.waveform.point_count = ROWS;
+    const double first = draw(20, 60), second = draw(100, 300), phase = draw(0, 6);
+    for (int i = 0; i < ROWS; i++) {
+        const double t = 0.05 * i / (ROWS - 1.0);
+        scene.drive.waveform.times[i] = t;
+        scene.drive.waveform.voltages[i] = 2000.0 + 800.0 * sin(2.0 * (double)pi * first * t) +
+                                           200.0 * sin(2.0 * (double)pi * second * t + phase) + noise * draw(-1, 1);
+    }
+    scene.material.retardation = retardation;
+    return scene;
+}
+
+static void runs_of_lines_leave_the_voltage_as_it_is(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 8; i++) {
+        dea_scene scene = record(1e-4, i % 2 ? 5.0 : 0.0);
+        dea_signal one, other;
+        dea_error error;
+        scene.accuracy = i % 4 < 2 ? 1e-3 : 1e-5;
+        assert_int_equal(dea_signal_open(&scene, &one, &error), DEA_OK);
+        assert_int_equal(dea_signal_open(&scene, &other, &error), DEA_OK);
+        assert_int_equal(dea_signal_soften(&other, scene.accuracy, i >= 4, &error), DEA_OK);
+        assert_true(i >= 4 || i == 0 ? other.count < one.count / 20 : other.count <= one.count);
+        for (int k = 0; k < PLACES; k++) {
+            const double t = draw(0.0, 0.05);
+            const dea_segment *a = &one.segments[dea_signal_find(&one, 0, t)];
+            const dea_segment *b = &other.segments[dea_signal_find(&other, 0, t)];
+            assert_true(dea_segment_voltage(&one, a, t) == dea_segment_voltage(&other, b, t));
+            assert_true(dea_segment_slope(&one, a, t) == dea_segment_slope(&other, b, t));
+        }
+        assert_true(other.segments[other.count - 1].to == 0.05);
+        dea_signal_close(&one);
+        dea_signal_close(&other);
+        dea_scene_free(&scene);
+    }
+}
+
+/* The closed form takes each line of a record for itself: a film that swings, and one that its damper holds. */
+static void records_move_the_film_as_the_closed_form_says(void **state)
+{
+    (void)state;
+    const dea_engine *ida = dea_engine_find("ida");
+    for (int i = 0; i < 4; i++) {
+        dea_scene scene = record(i < 2 ? 1e-4 : 3e-3, i % 2 ? 5.0 : 0.0);
+        dea_error error = {0};
+        const size_t rows = dea_layout_of(&scene).rows;
+        dea_sample *want = malloc(rows * sizeof *want), *got = malloc(rows * sizeof *got);
+        dea_summary summary;
+        void *session = NULL;
+        double peak = 0.0, off = 0.0;
+        assert_int_equal(dea_engine_find("direct")->transient(NULL, &scene, scene.models[0], want, &summary, &error), DEA_OK);
+        assert_int_equal(ida->begin(&session, &error), DEA_OK);
+        if (ida->transient(session, &scene, scene.models[0], got, &summary, &error) != DEA_OK) {
+            fail_msg("%s", error.message);
+        }
+        ida->end(session);
+        for (size_t k = 0; k < rows; k++) {
+            peak = fmax(peak, fabs(want[k].displacement));
+            off = fmax(off, fabs(want[k].displacement - got[k].displacement));
+        }
+        if (!(off <= summary.error * peak && summary.error <= scene.accuracy)) {
+            fail_msg("record %d: off by %.2g, %.2g told", i, off / peak, summary.error);
+        }
+        assert_true(summary.residual <= 10.0 * scene.accuracy);
+        free(want);
+        free(got);
+        dea_scene_free(&scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -246,6 +329,8 @@ int main(void)
         cmocka_unit_test(bursts_repeat_with_their_period),
         cmocka_unit_test(sines_and_their_offsets_add_up),
         cmocka_unit_test(axes_are_checked_too),
+        cmocka_unit_test(runs_of_lines_leave_the_voltage_as_it_is),
+        cmocka_unit_test(records_move_the_film_as_the_closed_form_says),
     };
     return cmocka_run_group_tests(tests, set_up, NULL);
 }

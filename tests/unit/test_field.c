@@ -131,7 +131,7 @@ static void the_digits_do_not_depend_on_who_goes_abreast(void **state)
 {
     (void)state;
     enum { COUNT = 45 };
-    static const char *models[] = {"field"};
+    static const char *models[] = {"field", "coverage"};
     for (size_t m = 0; m < sizeof models / sizeof *models; m++) {
         const dea_model *model = dea_model_find(models[m]);
         for (size_t law = 0; law < LAWS; law++) {

@@ -581,7 +581,7 @@ static int first_degree(const dea_point *point, double load, double accuracy)
     const dea_film *film = &point->film;
     const double rest = (1.0 - point->coverage) * (1.0 + point->coverage);
     const double fall = fmin(0.5, load * film->square * rest / (2.0 * film->w11));
-    const double wanted = log(15.0 * accuracy) / log(fall) - 2.0;
+    const double wanted = log(3.0 * accuracy) / log(fall) - 2.0;
     int first = 0;
     while (first + 1 < DEGREES && degrees[first] < wanted) {
         first++;

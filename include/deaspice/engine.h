@@ -51,6 +51,10 @@ typedef struct dea_engine {
      * none. */
     dea_status (*ac)(void *session, const dea_scene *scene, const dea_model *model, dea_response *rows, dea_band *band,
                      dea_error *error);
+    /** Solves one point of any other kind of study: fills its rows and what stands behind them. All axes of @p scene are at their
+     * place. NULL: the engine has none of that kind. */
+    dea_status (*solves[DEA_STUDIES])(void *session, const dea_scene *scene, const dea_model *model, const dea_layout *layout,
+                                      void *point, dea_error *error);
     /** Ends a session; NULL is fine. */
     void (*end)(void *session);
 } dea_engine;

@@ -24,6 +24,8 @@ typedef struct dea_point {
     double voltage;        /**< U across the film [V] */
     double focal_length;   /**< of a lens at rest [m], NAN: no optics */
     double refractive_index; /**< of its liquid [1] */
+    double skin_share;       /**< t/H of the electrodes' skin [1], 0: there is none */
+    dea_film skin;           /**< the skin at rest, not pre-stretched; set where there is one */
 } dea_point;
 
 /** Computes the film of a scene. */
@@ -33,10 +35,11 @@ DEA_API void dea_point_place(const dea_scene *scene, dea_point *point);
 /** True where all numbers of the point are in their ranges (a grid can hold a corner that is not). */
 DEA_API bool dea_point_valid(const dea_point *point);
 
-/** A linear network about rest: m u'' + r u' + (stiffness + softening U^2) u + branches = force U^2, with the film's capacitance
+/** A linear network about rest: m u'' + r u' + (stiffness + beside + softening U^2) u + branches = force U^2, with the film's capacitance
  * C0 + C1 u + C2 u^2/2. One half of dC/du is force - softening u (physics: F_DEA = U^2/2 dC/du). */
 typedef struct dea_linear {
     double stiffness;      /**< long-term, of all passive springs [N/m] */
+    double beside;         /**< of what is elastic beside the film: it neither damps nor relaxes [N/m] */
     double softening;      /**< negative where the voltage softens [N/m/V^2] */
     double force;          /**< outward [N/V^2] */
     double capacitance[3]; /**< C0 [F], C1 [F/m], C2 [F/m^2] */
@@ -44,6 +47,11 @@ typedef struct dea_linear {
 
 struct dea_network;
 struct dea_symbols;
+
+/** Stretches along the radius and along the hoop, pre-stretch included [1]. */
+typedef struct dea_stretches {
+    double radial, hoop;
+} dea_stretches;
 
 /** A static model. */
 typedef struct dea_model {
@@ -59,6 +67,9 @@ typedef struct dea_model {
     void (*network)(const struct dea_symbols *symbols, struct dea_network *network);
     /** Coefficients of the linear network (engine `direct` in transients); NULL where the network is not linear. */
     void (*linear)(const dea_point *point, dea_linear *linear);
+    /** Stretches of the annulus of a film in equilibrium, whose disc edge is strained by @p strain, at @p count places
+     * x = ln(R/R_a) >= 0 that do not fall; false where there is no such film. NULL where the model has no annulus with two stretches. */
+    bool (*along)(const dea_point *point, double strain, size_t count, const double *x, dea_stretches *stretches);
     /** Can do transients and frequency responses. */
     bool dynamic;
     /** It is the boundary value problem of the axisymmetric membrane along the radius. */
@@ -84,6 +95,16 @@ DEA_API const dea_model *dea_model_at(size_t index);
 /** Model by name, NULL if there is none. */
 DEA_API const dea_model *dea_model_find(const char *name);
 
+/** Resistance between source and film [Ohm], NAN: none. That of the drive, and what the electrodes' sheets are as one resistance
+ * (see dea_sheet_share()) where they have one. */
+DEA_API double dea_series_resistance(const dea_scene *scene);
+/** A sheet of 1 Ohm per square on the electroded region, fed from its outer rim, as one resistance [1]: the charge that flows in is
+ * spread evenly, so that I^2 R = int_a^b I(r)^2/(2 pi r) dr with I(r) = I (r^2 - a^2)/(b^2 - a^2). 1/(8 pi) of a disc; of the
+ * annulus of a lens [x (1 - 3 B^2)/4 - B^4 ln B]/(2 pi x^2) with x = 1 - B^2. @p layers films between layers + 1 sheets, the inner
+ * ones of which feed two: (4 layers - 2)/layers^2 times that. */
+DEA_API double dea_sheet_share(dea_kind kind, double coverage, double layers);
+/** Mass of the electrodes per area of pre-stretched film [kg/m^2], 0: none. */
+DEA_API double dea_electrode_mass(const dea_scene *scene);
 /** Mass of film and electrodes that moves with the disc edge [kg], 0 without density: Rayleigh with the shape of Lame's solution,
  * the electrodes' mass per area counted over the pre-stretched film (physics: section 5). */
 DEA_API double dea_point_mass(const dea_scene *scene, const dea_point *point);

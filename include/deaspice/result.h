@@ -117,7 +117,39 @@ typedef struct dea_band {
     double bandwidth; /**< where it first falls to 1/sqrt(2) of its value at the lowest frequency [Hz] */
 } dea_band;
 
-enum { DEA_LAYOUT_COLUMNS = 10 };
+/** One mode of small motion about the equilibrium under the bias: with the shape phi(R), sum m phi^2 = 1 over the film's mass, of
+ * K phi = w^2 M phi, the relaxed stiffness K at constant film voltage. */
+typedef struct dea_mode {
+    double number;        /**< 1: the slowest */
+    double frequency;     /**< |Im s|/(2 pi) of the root of s^2 M + K + (damper, branches and charge at s) [Hz], 0: it does not swing */
+    double damping_ratio; /**< -Re s/|s| of that root [1]; NAN: it does not swing */
+    double undamped;      /**< w/(2 pi) [Hz] */
+    double edge_share;    /**< of what a small change of the voltage does to the disc edge at rest; of all modes they sum to 1 [1] */
+    double edge_mass;     /**< mass that moves with the disc edge in this mode, 1/phi^2 there [kg]; NAN: the edge stays */
+    dea_state state;      /**< of the equilibrium */
+} dea_mode;
+
+/** The film at one radius under a static voltage; at r_a that of the disc. Stresses are true ones, in force per deformed area. */
+typedef struct dea_station {
+    double radius;        /**< of the film at rest and 0 V, lambda_pre R [m] */
+    double displacement;  /**< from there, outward [m] */
+    double stretch[2];    /**< lambda_1 along the radius, lambda_2 along the hoop, pre-stretch included [1] */
+    double thickness;     /**< of each layer, H/(lambda_1 lambda_2) [m] */
+    double stress[2];     /**< of film and voltage together, lambda_a P_a - eps E^2 where electroded [Pa] */
+    double field;         /**< true field U lambda_1 lambda_2/H where electroded, else 0 [V/m] */
+    dea_state state;      /**< of the film here */
+} dea_station;
+
+/** Where a film along its radius is nearest to its limits. */
+typedef struct dea_weakest {
+    double field;          /**< largest true field [V/m] */
+    double field_radius;   /**< where, by the radius at rest and 0 V [m]; of a disc, which is uniform, 0 */
+    double tension;        /**< smallest true stress in the plane [Pa] */
+    double tension_radius; /**< where [m] */
+} dea_weakest;
+
+/** Number of columns of a layout, and of those of a shape or a profile. */
+enum { DEA_LAYOUT_COLUMNS = 10, DEA_SPREAD_COLUMNS = 8 };
 
 /** How the result of one point of a study lies in memory: its rows, then its summary or its band. */
 typedef struct dea_layout {
@@ -127,14 +159,24 @@ typedef struct dea_layout {
     size_t state_offset; /**< of the dea_state in a row [bytes] */
     size_t rows;         /**< of one point, >= 1 */
     size_t point_size;   /**< rows and what stands behind them [bytes] */
+    dea_column spread[DEA_SPREAD_COLUMNS]; /**< what each row tells over the radius: offsets in an entry, which is all doubles */
+    size_t spread_count;                   /**< of these, 0: nothing */
+    size_t spread_points;                  /**< radii; entries stand behind the rows and their figures, radius after radius of a row */
+    size_t spread_offset;                  /**< of the first entry in a point [bytes] */
 } dea_layout;
 
 /** Appends a column. */
 DEA_API void dea_layout_add(dea_layout *layout, dea_column column);
+/** Appends to a layout that is else whole @p count numbers that each row tells at @p points radii. */
+DEA_API void dea_layout_spread(dea_layout *layout, const dea_column *columns, size_t count, size_t points);
 /** Layout of the scene's study: which columns depends on what the scene has (electrical port, optics). */
 DEA_API dea_layout dea_layout_of(const dea_scene *scene);
 /** Time of sample @p index of a transient, frequency of row @p index of an AC study. */
 DEA_API double dea_layout_place(const dea_scene *scene, size_t index);
+/** Radius number @p index of what rows tell over the radius, that of the film at rest and 0 V [m]. */
+DEA_API double dea_layout_radius(const dea_scene *scene, const dea_layout *layout, size_t index);
+/** Entry of a row at a radius. */
+DEA_API double *dea_layout_entry(const dea_layout *layout, const void *point, size_t row, size_t index);
 /** State of a row. */
 DEA_API dea_state dea_layout_state(const dea_layout *layout, const void *row);
 /** Makes every row of a point `failed`. */
@@ -143,6 +185,8 @@ DEA_API void dea_layout_fail(const dea_scene *scene, const dea_layout *layout, v
 DEA_API dea_summary dea_summary_failed(void);
 /** Summary of a transient's point. */
 DEA_API dea_summary *dea_layout_summary(const dea_layout *layout, void *point);
+/** What a point of profiles is nearest to its limits by. */
+DEA_API dea_weakest *dea_layout_weakest(const dea_layout *layout, void *point);
 /** Band of a frequency response's point. */
 DEA_API dea_band *dea_layout_band(const dea_layout *layout, void *point);
 

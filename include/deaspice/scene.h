@@ -43,8 +43,35 @@ typedef struct dea_actuator {
     double layers;           /**< films of that thickness in a stack, electrically parallel [1], whole, >= 1, default 1 */
 } dea_actuator;
 
-/** Kinds of waveform. A file and a list of points are both points. */
-typedef enum dea_wave_kind { DEA_WAVE_NONE, DEA_WAVE_STEP, DEA_WAVE_POINTS, DEA_WAVE_SINE } dea_wave_kind;
+/** Electrodes of the electroded region: a skin with an energy of its own, stress-free at the pre-stretch (physics: section 8), and
+ * what they weigh. All of a stack together, as laid on the pre-stretched film. */
+typedef struct dea_electrode {
+    const dea_law *law;                  /**< of the skin, NULL: none */
+    double constants[DEA_LAW_CONSTANTS]; /**< of the law, 0 beyond those in use */
+    size_t entry_count;                  /**< entries in use of a law that is a list, else 1 */
+    double thickness;                    /**< t [m], > 0, NAN: none */
+    double density;                      /**< [kg/m^3], > 0, NAN: no mass but actuator.electrode_mass */
+    double sheet_resistance;             /**< of one electrode [Ohm per square], > 0, NAN: none */
+} dea_electrode;
+
+/** Kinds of waveform, in the order of the table src/drive/waves.c. A file and a list of points are both points. */
+typedef enum dea_wave_kind {
+    DEA_WAVE_NONE,
+    DEA_WAVE_STEP,
+    DEA_WAVE_POINTS,
+    DEA_WAVE_SINE,
+    DEA_WAVE_PULSE,
+    DEA_WAVE_SQUARE,
+    DEA_WAVE_TRIANGLE,
+    DEA_WAVE_CHIRP,
+    DEA_WAVE_BURST,
+    DEA_WAVE_SINES
+} dea_wave_kind;
+
+enum { DEA_WAVES = DEA_WAVE_SINES + 1 };
+
+/** Most numbers of a waveform without a struct of its own, and most sines of a sum. */
+enum { DEA_WAVE_NUMBERS = 8, DEA_SINES = 8 };
 
 /** 0 V, then @p voltage from @p on to @p off; each edge rises or falls linearly within @p rise. */
 typedef struct dea_step {
@@ -68,10 +95,14 @@ typedef struct dea_waveform {
     dea_wave_kind kind;
     dea_step step;
     dea_sine sine;
+    dea_sine sines[DEA_SINES]; /**< their sum, sine_count of them, without delays */
+    size_t sine_count;
+    double numbers[DEA_WAVE_NUMBERS]; /**< of pulse, square, triangle, chirp and burst, each as its file in src/drive says */
+    size_t choice;                    /**< of the words that the kind has a choice of (spacing of a chirp) */
     double *times;    /**< points, not decreasing, point_count of them [s]; two of one time are a jump; owned by the scene */
     double *voltages; /**< their voltages, linear in between and held before the first and after the last [V]; owned too */
     size_t point_count;
-    double period; /**< what step or points say before this time repeats [s], NAN: once */
+    double period; /**< what step, points or burst say before this time repeats [s], NAN: once */
     char columns[DEA_SOURCE_LENGTH]; /**< of points from a file: what each of its columns was taken for, in words; else "" */
 } dea_waveform;
 
@@ -99,7 +130,9 @@ typedef struct dea_axis {
 #define DEA_STUDY_LIST(X)                                                                                                        \
     X(DEA_STUDY_SWEEP, sweep)                                                                                                    \
     X(DEA_STUDY_TRANSIENT, transient)                                                                                            \
-    X(DEA_STUDY_AC, ac)
+    X(DEA_STUDY_AC, ac)                                                                                                          \
+    X(DEA_STUDY_MODES, modes)                                                                                                    \
+    X(DEA_STUDY_PROFILE, profile)
 
 /** What a study asks for. */
 typedef enum dea_study_kind {
@@ -108,6 +141,9 @@ typedef enum dea_study_kind {
 #undef X
         DEA_STUDIES
 } dea_study_kind;
+
+/** Most modes, and most radii of a shape or profile. */
+enum { DEA_MODES_MOST = 12, DEA_RADII_MAX = 10001 };
 
 /** Most windows over which a transient averages, and most samples of one. */
 enum { DEA_WINDOWS = 8, DEA_SAMPLES_MAX = 4000000 };
@@ -134,6 +170,18 @@ typedef struct dea_ac {
     double bias;              /**< source voltage [V], default drive.voltage */
 } dea_ac;
 
+/** Modes of small motion about the equilibrium under the bias. */
+typedef struct dea_modes_study {
+    size_t count;  /**< modes, slowest first, 1 ... DEA_MODES_MOST, default 3 of a membrane, 1 of a film with one node */
+    size_t points; /**< radii at which shapes are told, 2 ... DEA_RADII_MAX; 0 (default): shapes are not told */
+    double bias;   /**< source voltage [V], default drive.voltage, or 0 without one */
+} dea_modes_study;
+
+/** The static film along its radius. */
+typedef struct dea_profile {
+    size_t points; /**< radii from the centre to the frame, 2 ... DEA_RADII_MAX, default 101 */
+} dea_profile;
+
 /** How a branch of the Prony series enters a moving network. */
 typedef enum dea_branch_form {
     DEA_BRANCH_WHOLE,  /**< spring and damper in series */
@@ -157,6 +205,7 @@ typedef struct dea_reduction {
 typedef struct dea_scene {
     char *title; /**< may be empty, never NULL */
     dea_actuator actuator;
+    dea_electrode electrode;
     dea_material material;
     dea_drive drive;
     const struct dea_model *models[DEA_SCENE_MODELS]; /**< models to run one after the other, model_count of them */
@@ -171,6 +220,8 @@ typedef struct dea_scene {
     dea_study_kind study;    /**< what is asked for */
     dea_transient transient; /**< of a transient */
     dea_ac ac;               /**< of an AC study */
+    dea_modes_study modes;   /**< of a study of modes */
+    dea_profile profile;     /**< of a study of profiles */
     dea_axis *axes;          /**< axes of the sweep, or of `over`, in the order of the file; none is one point */
     size_t axis_count;
     struct dea_files *files; /**< those that were read for it, owned; NULL: none */

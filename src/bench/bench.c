@@ -21,7 +21,7 @@ dea_bench_options dea_bench_options_default(void)
 
 static bool can_do(const dea_scene *scene, const dea_model *model)
 {
-    return (scene->actuator.kind == DEA_DOT || model->lens) && (!dea_study_of(scene)->moves || model->dynamic);
+    return (scene->actuator.kind == DEA_DOT || model->lens) && dea_study_takes(dea_study_of(scene), model);
 }
 
 void dea_bench_all_models(dea_scene *scene)

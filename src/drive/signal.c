@@ -1,10 +1,10 @@
-#include "drive/signal.h"
-
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "deaspice/result.h"
+#include "drive/wave.h"
 
 /* Most segments of a run: a waveform that repeats more often than this wants shorter runs. */
 enum { MOST_SEGMENTS = 8000000 };
@@ -13,10 +13,11 @@ enum { MOST_SEGMENTS = 8000000 };
  * that were written in decimals and in another unit: so many units in the last place of the voltage, and of the time. */
 static const double rounding = 8.0 * DBL_EPSILON;
 
-typedef struct builder {
+typedef struct dea_wave_builder {
     const dea_scene *scene;
     dea_signal *signal;
     double until;
+    double origin; /* of the curves that come [s] */
     size_t room;
     double least, most; /* slopes of a line from the begin of the last segment that pass all corners that it took in [V/s] */
     bool exhausted;
@@ -70,6 +71,12 @@ static void add(builder *b, double from, double to, double start, double end, bo
     dea_signal *signal = b->signal;
     from = on_grid(b, from);
     to = on_grid(b, to);
+    if (signal->count > 0) {
+        dea_segment *last = &signal->segments[signal->count - 1];
+        from = last->to;
+        /* a sine that ends where it crosses a level ends there but for rounding */
+        last->end = last->sine && fabs(last->end - start) <= 1e-12 * signal->largest ? start : last->end;
+    }
     if (!(to > from) || from >= b->until || b->exhausted) {
         return;
     }
@@ -90,93 +97,87 @@ static void add(builder *b, double from, double to, double start, double end, bo
         signal->segments = more;
         b->room = room;
     }
-    signal->segments[signal->count++] = (dea_segment){from, to, start, end, sine};
+    signal->segments[signal->count++] = (dea_segment){.from = from, .to = to, .start = start, .end = end, .sine = sine, .origin = sine ? b->origin : 0.0};
     b->least = -INFINITY;
     b->most = INFINITY;
     signal->largest = fmax(signal->largest, fmax(fabs(start), fabs(end)));
 }
 
-static void add_step(builder *b, const dea_step *step, double begin, double end)
+bool dea_lay_affords(builder *b, double repeats)
 {
-    const double on = begin + step->on;
-    const double top = on + step->rise;
-    add(b, begin, fmin(on, end), 0.0, 0.0, false);
-    add(b, on, top, 0.0, step->voltage, false);
-    if (isnan(step->off)) {
-        add(b, top, end, step->voltage, step->voltage, false);
-        return;
-    }
-    const double off = begin + step->off;
-    const double bottom = off + step->rise;
-    add(b, top, off, step->voltage, step->voltage, false);
-    add(b, off, bottom, step->voltage, 0.0, false);
-    add(b, bottom, end, 0.0, 0.0, false);
+    b->exhausted = b->exhausted || !(2.0 * repeats < MOST_SEGMENTS);
+    return !b->exhausted;
 }
 
-static void add_points(builder *b, const dea_waveform *wave, double begin, double end)
+void dea_lay_line(builder *b, double from, double to, double start, double end)
 {
-    const double *v = wave->voltages;
-    const size_t last = wave->point_count - 1;
-    add(b, begin, begin + wave->times[0], v[0], v[0], false);
-    for (size_t i = 0; i < last; i++) {
-        add(b, begin + wave->times[i], begin + wave->times[i + 1], v[i], v[i + 1], false);
-    }
-    add(b, begin + wave->times[last], end, v[last], v[last], false);
+    add(b, from, to, start, end, false);
 }
 
-static void add_sine(builder *b, const dea_sine *sine)
+void dea_lay_tones(builder *b, double offset, const dea_tone *tones, size_t count)
 {
-    const double first = sine->offset + sine->amplitude * sin(sine->phase);
-    add(b, 0.0, fmin(sine->delay, b->until), first, first, false);
-    if (sine->delay < b->until) {
-        dea_signal *signal = b->signal;
-        const dea_segment whole = {.from = sine->delay, .to = b->until, .sine = true};
-        signal->sine = *sine;
-        add(b, whole.from, whole.to, dea_segment_voltage(signal, &whole, whole.from),
-            dea_segment_voltage(signal, &whole, whole.to), true);
-        signal->largest = fmax(signal->largest, fabs(sine->offset) + fabs(sine->amplitude));
+    dea_curve *curve = &b->signal->curve;
+    *curve = (dea_curve){.offset = offset, .count = count};
+    memcpy(curve->tones, tones, count * sizeof *tones);
+}
+
+void dea_lay_origin(builder *b, double origin)
+{
+    b->origin = origin;
+}
+
+void dea_lay_curve(builder *b, double from, double to)
+{
+    const dea_segment whole = {.from = from, .to = fmin(to, b->until), .sine = true, .origin = b->origin};
+    if (whole.from < whole.to) {
+        add(b, whole.from, whole.to, dea_segment_voltage(b->signal, &whole, whole.from),
+            dea_segment_voltage(b->signal, &whole, whole.to), true);
+        b->signal->largest = fmax(b->signal->largest, dea_curve_largest(&b->signal->curve));
     }
 }
 
 /* What repeats is laid out period by period, each begin computed anew so that no rounding adds up. */
-static void add_periods(builder *b, const dea_waveform *wave)
+static void add_periods(builder *b, const dea_wave *kind, const dea_waveform *wave)
 {
     const bool once = isnan(wave->period);
-    for (size_t i = 0; i == 0 || (!once && (double)i * wave->period < b->until); i++) {
+    for (size_t i = 0; i == 0 || (!once && (double)i * wave->period < b->until && !b->exhausted); i++) {
         const double begin = once ? 0.0 : (double)i * wave->period;
-        const double end = once ? b->until : (double)(i + 1) * wave->period;
-        if (wave->kind == DEA_WAVE_STEP) {
-            add_step(b, &wave->step, begin, end);
-        } else {
-            add_points(b, wave, begin, end);
-        }
-        if (b->exhausted) {
-            return;
-        }
+        kind->lay(b, wave, begin, once ? b->until : (double)(i + 1) * wave->period);
     }
 }
 
-/* A swept scalar can leave the order that a scene's own numbers were checked for. */
-static bool in_order(const dea_waveform *wave)
+/* A swept scalar can leave what a scene's own numbers were checked for. */
+static dea_status check_order(const dea_scene *scene, const dea_wave *kind, dea_error *error)
 {
-    const dea_step *step = &wave->step;
-    const double last = wave->kind == DEA_WAVE_POINTS ? wave->times[wave->point_count - 1] : step->off + step->rise;
-    const bool edges = wave->kind != DEA_WAVE_STEP || isnan(step->off) || step->off >= step->on + step->rise;
-    return edges && (isnan(wave->period) || wave->kind == DEA_WAVE_SINE || wave->period >= last);
+    const dea_waveform *wave = &scene->drive.waveform;
+    const dea_wave_bounds bounds = {.low = wave, .high = wave, .every = scene->transient.every};
+    dea_wave_fault fault = {0};
+    double first, last = 0.0, rise;
+    if (kind->extent) {
+        kind->extent(&bounds, &first, &last, &rise);
+    }
+    if (!isnan(wave->period) && !(wave->period >= last)) {
+        return dea_fail(error, DEA_ERROR_USAGE, "the edges of the waveform are out of order");
+    }
+    if (kind->fits && !kind->fits(&bounds, &fault)) {
+        return dea_fail(error, DEA_ERROR_USAGE, "the edges of the waveform are out of order: %s.%s: %s; accepted: %s", kind->path,
+                        fault.number->name, fault.problem, fault.accepted);
+    }
+    return DEA_OK;
 }
 
 dea_status dea_signal_open(const dea_scene *scene, dea_signal *signal, dea_error *error)
 {
     const dea_waveform *wave = &scene->drive.waveform;
+    const dea_wave *kind = dea_wave_of(wave->kind);
     builder b = {.scene = scene, .signal = signal, .until = scene->transient.until};
     *signal = (dea_signal){0};
-    if (!in_order(wave)) {
-        return dea_fail(error, DEA_ERROR_USAGE, "the edges of the waveform are out of order");
+    const dea_status status = kind ? check_order(scene, kind, error) : DEA_OK;
+    if (status) {
+        return status;
     }
-    if (wave->kind == DEA_WAVE_SINE) {
-        add_sine(&b, &wave->sine);
-    } else if (wave->kind != DEA_WAVE_NONE) {
-        add_periods(&b, wave);
+    if (kind) {
+        add_periods(&b, kind, wave);
     }
     if (b.exhausted) {
         return dea_fail(error, DEA_ERROR_MEMORY, "the waveform has too many edges for this run");
@@ -187,20 +188,87 @@ dea_status dea_signal_open(const dea_scene *scene, dea_signal *signal, dea_error
 void dea_signal_close(dea_signal *signal)
 {
     free(signal->segments);
+    free(signal->lines);
     *signal = (dea_signal){0};
 }
 
-/* Phase of the sine, whole turns taken off so that late times keep their digits. */
-static double angle(const dea_sine *sine, double time)
+/* Turns at an age, and the frequency [Hz], whose slope is [Hz/s]. */
+static double turns_at(const dea_tone *tone, double age)
 {
-    const double turns = sine->frequency * (time - sine->delay);
-    return 2.0 * DEA_PI * (turns - floor(turns)) + sine->phase;
+    return tone->growth == 0.0 ? age * (tone->frequency + 0.5 * tone->rate * age)
+                               : tone->frequency * expm1(tone->growth * age) / tone->growth;
+}
+
+static double frequency_at(const dea_tone *tone, double age)
+{
+    return tone->frequency * exp(tone->growth * age) + tone->rate * age;
+}
+
+static double sweep_at(const dea_tone *tone, double age)
+{
+    return tone->growth * tone->frequency * exp(tone->growth * age) + tone->rate;
+}
+
+/* Whole turns taken off so that late times keep their digits. */
+static double angle_at(const dea_tone *tone, double age)
+{
+    const double turns = turns_at(tone, age);
+    return 2.0 * DEA_PI * (turns - floor(turns)) + tone->phase;
+}
+
+dea_tone dea_tone_from(const dea_tone *tone, double age)
+{
+    dea_tone here = *tone;
+    here.phase = angle_at(tone, age);
+    here.frequency = frequency_at(tone, age);
+    return here;
+}
+
+bool dea_curve_is_plain(const dea_curve *curve)
+{
+    return curve->count == 1 && curve->tones[0].rate == 0.0 && curve->tones[0].growth == 0.0;
+}
+
+double dea_curve_largest(const dea_curve *curve)
+{
+    double sum = fabs(curve->offset);
+    for (size_t i = 0; i < curve->count; i++) {
+        sum += fabs(curve->tones[i].amplitude);
+    }
+    return sum;
+}
+
+size_t dea_segment_line(const dea_segment *run, double time)
+{
+    size_t low = 0, high = run->line_count - 1;
+    while (low < high) {
+        const size_t middle = (low + high) / 2;
+        if (time > run->lines[middle].to) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+static const dea_segment *line_at(const dea_segment *run, double time)
+{
+    return &run->lines[dea_segment_line(run, time)];
 }
 
 double dea_segment_voltage(const dea_signal *signal, const dea_segment *segment, double time)
 {
+    if (segment->lines) {
+        return dea_segment_voltage(signal, line_at(segment, time), time);
+    }
     if (segment->sine) {
-        return signal->sine.offset + signal->sine.amplitude * sin(angle(&signal->sine, time));
+        double sum = signal->curve.offset;
+        for (size_t i = 0; i < signal->curve.count; i++) {
+            const dea_tone *tone = &signal->curve.tones[i];
+            sum += tone->amplitude * sin(angle_at(tone, time - segment->origin));
+        }
+        return sum;
     }
     if (segment->start == segment->end || time >= segment->to) {
         return segment->end;
@@ -218,17 +286,49 @@ double dea_segment_voltage_since(const dea_signal *signal, const dea_segment *se
 
 double dea_segment_slope(const dea_signal *signal, const dea_segment *segment, double time)
 {
+    segment = segment->lines ? line_at(segment, time) : segment;
     if (segment->sine) {
-        const double omega = 2.0 * DEA_PI * signal->sine.frequency;
-        return signal->sine.amplitude * omega * cos(angle(&signal->sine, time));
+        double sum = 0.0;
+        for (size_t i = 0; i < signal->curve.count; i++) {
+            const dea_tone *tone = &signal->curve.tones[i];
+            const double age = time - segment->origin, omega = 2.0 * DEA_PI * frequency_at(tone, age);
+            sum += tone->amplitude * omega * cos(angle_at(tone, age));
+        }
+        return sum;
     }
     return (segment->end - segment->start) / (segment->to - segment->from);
 }
 
 double dea_segment_curvature(const dea_signal *signal, const dea_segment *segment, double time)
 {
-    const double omega = 2.0 * DEA_PI * signal->sine.frequency;
-    return segment->sine ? -signal->sine.amplitude * omega * omega * sin(angle(&signal->sine, time)) : 0.0;
+    double sum = 0.0;
+    for (size_t i = 0; i < signal->curve.count && segment->sine; i++) {
+        const dea_tone *tone = &signal->curve.tones[i];
+        const double age = time - segment->origin, omega = 2.0 * DEA_PI * frequency_at(tone, age);
+        const double angle = angle_at(tone, age);
+        sum += tone->amplitude * (2.0 * DEA_PI * sweep_at(tone, age) * cos(angle) - omega * omega * sin(angle));
+    }
+    return sum;
+}
+
+double dea_segment_largest(const dea_signal *signal, const dea_segment *segment)
+{
+    if (segment->lines) {
+        return signal->largest;
+    }
+    return segment->sine ? dea_curve_largest(&signal->curve) : fmax(fabs(segment->start), fabs(segment->end));
+}
+
+double dea_segment_turn(const dea_signal *signal, const dea_segment *segment)
+{
+    double turn = 0.0;
+    for (size_t i = 0; i < signal->curve.count && segment->sine; i++) {
+        const dea_tone *tone = &signal->curve.tones[i];
+        const double first = frequency_at(tone, segment->from - segment->origin);
+        const double last = frequency_at(tone, segment->to - segment->origin);
+        turn = fmax(turn, 2.0 * DEA_PI * fmax(fabs(first), fabs(last)));
+    }
+    return turn;
 }
 
 size_t dea_signal_find(const dea_signal *signal, size_t near, double time)

@@ -1,4 +1,4 @@
-/* The source voltage of a transient as segments: each linear in time or part of one sine, without gaps from 0 to the end. */
+/* The source voltage of a transient as segments: each linear in time or part of a sum of sines, without gaps from 0 to the end. */
 #ifndef DEA_SIGNAL_H
 #define DEA_SIGNAL_H
 
@@ -7,14 +7,37 @@
 typedef struct dea_segment {
     double from, to;   /* [s], from < to */
     double start, end; /* voltage at from, behind an edge there, and at to, before one [V] */
-    bool sine;         /* in between that of the signal's sine, else linear */
+    bool sine;         /* in between that of the signal's curve, else linear */
+    double origin;     /* of a curve: time from which its phases count [s] */
+    const struct dea_segment *lines; /* of a curve that is a run of lines: these, line_count of them; else NULL */
+    size_t line_count;
+    double step; /* longest step through such a run [s]; 0: any */
+    bool corner; /* of a line of a run: at its end is a corner that no step may pass */
 } dea_segment;
+
+/* amplitude sin(2 pi n + phase), whose turns n at age t are f t + rate t^2/2, or f (e^(growth t) - 1)/growth of a chirp whose
+ * frequency grows by equal factors. */
+typedef struct dea_tone {
+    double amplitude; /* [V] */
+    double frequency; /* at age 0 [Hz] */
+    double phase;     /* [rad] */
+    double rate;      /* [Hz/s] */
+    double growth;    /* [1/s] */
+} dea_tone;
+
+/* offset + sum of tones. */
+typedef struct dea_curve {
+    double offset; /* [V] */
+    dea_tone tones[DEA_SINES];
+    size_t count;
+} dea_curve;
 
 typedef struct dea_signal {
     dea_segment *segments; /* owned */
     size_t count;          /* >= 1 */
-    dea_sine sine;         /* of segments that are part of one */
+    dea_curve curve;       /* of segments that are part of one */
     double largest;        /* |U| over the run [V] */
+    dea_segment *lines;    /* owned: of segments that are runs of them, or NULL */
 } dea_signal;
 
 /* Segments of the scene's waveform from 0 to `until`; the caller ends it with dea_signal_close(), also after a failure.
@@ -27,9 +50,23 @@ void dea_signal_close(dea_signal *signal);
 double dea_segment_voltage(const dea_signal *signal, const dea_segment *segment, double time);
 double dea_segment_slope(const dea_signal *signal, const dea_segment *segment, double time);
 double dea_segment_curvature(const dea_signal *signal, const dea_segment *segment, double time);
+/* Largest |U| that a segment can have [V]. */
+double dea_segment_largest(const dea_signal *signal, const dea_segment *segment);
+/* Fastest turn of a curve's tones within a segment [rad/s]; 0 of a line. */
+double dea_segment_turn(const dea_signal *signal, const dea_segment *segment);
+
+/* True where the curve is a single sine of one frequency. */
+bool dea_curve_is_plain(const dea_curve *curve);
+/* |offset| + the amplitudes [V]. */
+double dea_curve_largest(const dea_curve *curve);
+/* The tone at a time, its age counted from there: phase in one turn and frequency of that moment. */
+dea_tone dea_tone_from(const dea_tone *tone, double age);
 
 /* Voltage at a time counted from the begin of the segment, so that a short edge late in a run keeps its digits [V]. */
 double dea_segment_voltage_since(const dea_signal *signal, const dea_segment *segment, double since);
+
+/* Number of the line of a run at a time: from < time <= to. */
+size_t dea_segment_line(const dea_segment *run, double time);
 
 /* The segment of a time, searched from segment number @p near on: from < time <= to, the first one at its begin too. */
 size_t dea_signal_find(const dea_signal *signal, size_t near, double time);

@@ -18,10 +18,10 @@ const dea_engine *dea_engine_at(size_t index)
 const char *dea_engine_refuses(const dea_engine *engine, const dea_scene *scene, const dea_model *model)
 {
     const dea_study *study = dea_study_of(scene);
-    if (study->offered && !study->offered(engine))
+    if (!(study->offered ? study->offered(engine) : engine->solves[scene->study] != NULL))
         return study->engine_fails;
-    if (study->moves && !model->dynamic)
-        return "the model is static";
+    if (!dea_study_takes(study, model))
+        return study->model_lacks;
     return engine->refuses ? engine->refuses(scene, model) : NULL;
 }
 

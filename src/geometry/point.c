@@ -15,13 +15,55 @@ void dea_film_prepare(const dea_scene *scene, dea_film *film)
     film->modulus = isnan(material->modulus) ? film->slope : material->modulus * dea_material_long_term_share(material);
 }
 
-/* Share of the source voltage that a leaking film sees at rest: R_p/(R_s + R_p). */
-static double film_share(const dea_drive *drive)
+static double coverage_of(const dea_actuator *actuator)
 {
-    if (isnan(drive->series_resistance) || isnan(drive->leakage_resistance)) {
-        return 1.0;
+    return isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
+}
+
+/* x (1 - 3 B^2)/4 - B^4 ln B with x = 1 - B^2 is sum of x^k/(k (k - 1) (k - 2)) from k = 3 on: of a narrow annulus the terms cancel. */
+static double sheet_of_annulus(double b)
+{
+    const double b2 = b * b, x = (1.0 - b) * (1.0 + b);
+    if (x > 0.2) {
+        return (0.25 * x * (1.0 - 3.0 * b2) - b2 * b2 * log(b)) / (2.0 * DEA_PI * x * x);
     }
-    return drive->leakage_resistance / (drive->series_resistance + drive->leakage_resistance);
+    double sum = 0.0, power = x;
+    for (int k = 3; k < 30; k++, power *= x) {
+        sum += power / (k * (k - 1) * (k - 2));
+    }
+    return sum / (2.0 * DEA_PI);
+}
+
+double dea_sheet_share(dea_kind kind, double coverage, double layers)
+{
+    const double one = kind == DEA_DOT ? 0.125 / DEA_PI : sheet_of_annulus(coverage);
+    return one * (4.0 * layers - 2.0) / (layers * layers);
+}
+
+double dea_series_resistance(const dea_scene *scene)
+{
+    const dea_actuator *actuator = &scene->actuator;
+    const double sheet = scene->electrode.sheet_resistance, drive = scene->drive.series_resistance;
+    if (!(sheet > 0.0)) {
+        return drive;
+    }
+    const double own = sheet * dea_sheet_share(actuator->kind, coverage_of(actuator), actuator->layers);
+    return isnan(drive) ? own : drive + own;
+}
+
+/* Share of the source voltage that a leaking film sees at rest: R_p/(R_s + R_p). */
+static double film_share(const dea_scene *scene)
+{
+    const double leakage = scene->drive.leakage_resistance, series = dea_series_resistance(scene);
+    return isnan(series) || isnan(leakage) ? 1.0 : leakage / (series + leakage);
+}
+
+static void place_skin(const dea_electrode *electrode, dea_point *point)
+{
+    point->skin_share = electrode->law ? electrode->thickness / point->film_thickness : 0.0;
+    if (electrode->law) {
+        point->skin = dea_law_film(electrode->law, electrode->constants, 1.0);
+    }
 }
 
 void dea_point_place(const dea_scene *scene, dea_point *point)
@@ -29,12 +71,13 @@ void dea_point_place(const dea_scene *scene, dea_point *point)
     const dea_actuator *actuator = &scene->actuator;
     point->kind = actuator->kind;
     point->frame_radius = actuator->frame_radius;
-    point->coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
+    point->coverage = coverage_of(actuator);
     point->film_thickness = actuator->layers * actuator->film_thickness;
     point->layers = actuator->layers;
-    point->voltage = scene->drive.voltage * film_share(&scene->drive);
+    point->voltage = scene->drive.voltage * film_share(scene);
     point->focal_length = actuator->focal_length;
     point->refractive_index = actuator->refractive_index;
+    place_skin(&scene->electrode, point);
 }
 
 bool dea_point_valid(const dea_point *point)
@@ -42,7 +85,7 @@ bool dea_point_valid(const dea_point *point)
     const dea_film *film = &point->film;
     return point->frame_radius > 0.0 && point->coverage > 0.0 && point->coverage < 1.0 && point->film_thickness > 0.0 &&
            film->prestretch >= 1.0 && film->permittivity > 0.0 && film->valid && isfinite(film->modulus) &&
-           isfinite(point->voltage);
+           isfinite(point->voltage) && (point->skin_share == 0.0 || (point->skin_share > 0.0 && point->skin.valid));
 }
 
 /* int w^2 dA over the disc of radius a [m^2]: w = R/a. */
@@ -68,6 +111,14 @@ static double moving_annulus(double a, double b)
     return 2.0 * DEA_PI * a * a * q;
 }
 
+double dea_electrode_mass(const dea_scene *scene)
+{
+    if (scene->electrode.law && !isnan(scene->electrode.density)) {
+        return scene->electrode.density * scene->electrode.thickness;
+    }
+    return isnan(scene->actuator.electrode_mass) ? 0.0 : scene->actuator.electrode_mass;
+}
+
 double dea_point_mass(const dea_scene *scene, const dea_point *point)
 {
     if (isnan(scene->material.density)) {
@@ -78,7 +129,7 @@ double dea_point_mass(const dea_scene *scene, const dea_point *point)
     const double reference = radius / point->film.prestretch; /* A = r_a/lambda_pre in the film of thickness H */
     const double film = moving_disc(reference) + moving_annulus(reference, b);
     const double electrode = point->kind == DEA_DOT ? moving_disc(radius) : moving_annulus(radius, b);
-    const double areal = isnan(scene->actuator.electrode_mass) ? 0.0 : scene->actuator.electrode_mass;
+    const double areal = dea_electrode_mass(scene);
     return scene->material.density * point->film_thickness * film + areal * electrode;
 }
 

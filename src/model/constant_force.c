@@ -39,6 +39,10 @@ static void build(const dea_symbols *symbols, dea_network *network)
     const dea_expr area = dea_hyperelastic_area(symbols, network->strain);
     dea_network_add_stress(network, "n_disc", "disc, sigma - sigma_pre [Pa] on the area A, Eq. 13",
                            dea_hyperelastic_change(symbols, network->strain), area);
+    if (symbols->skin) {
+        dea_network_add(network, DEA_ROLE_TENSION, "n_skin", "skin of the electrodes, its stress on the area A [N]",
+                        MUL(area, dea_hyperelastic_skin(symbols, network->strain, network->strain)));
+    }
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force, A eps E^2, Eq. 13 [N]",
                     dea_hyperelastic_force(symbols, network->strain, network->strain));
     network->capacitance =

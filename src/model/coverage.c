@@ -179,11 +179,26 @@ static void build(const dea_symbols *symbols, dea_network *network)
                            dea_hyperelastic_change(symbols, disc), area);
     dea_network_add_stress(network, "n_annulus", "annulus, sigma_pre - sigma [Pa] on the area A, Eqs. 17, 18",
                            NEG(dea_hyperelastic_change(symbols, annulus)), area);
+    if (symbols->skin) {
+        dea_network_add(network, DEA_ROLE_TENSION, "n_skin", "skin of the electrodes, its stress on the area A [N]",
+                        SCALE(network->sign, MUL(area, dea_hyperelastic_skin(symbols, active, active))));
+    }
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force, A eps E^2, Eq. 18 [N]",
                     SCALE(network->sign, dea_hyperelastic_force(symbols, disc, active)));
     network->end = dot ? dea_symbols_annulus_width(symbols) : MUL(symbols->coverage, symbols->frame_radius);
     network->field = dea_hyperelastic_field(symbols, active);
     dea_network_taut(network, SUB(MUL(symbols->prestretch, ADD(one, passive)), one));
+}
+
+/* Equi-biaxial, whatever the place: lambda_P of Eq. 18. */
+static bool along(const dea_point *point, double strain, size_t count, const double *x, dea_stretches *stretches)
+{
+    const double pre = point->film.prestretch, b = point->coverage, passive = pre * (1.0 - b * strain / (1.0 - b));
+    (void)x;
+    for (size_t i = 0; i < count; i++) {
+        stretches[i] = (dea_stretches){passive, passive};
+    }
+    return true;
 }
 
 const dea_model dea_model_coverage = {
@@ -193,6 +208,7 @@ const dea_model dea_model_coverage = {
     .lens = true,
     .solve = solve,
     .solve_many = solve_many,
+    .along = along,
     .network = build,
     .dynamic = true,
 };

@@ -40,7 +40,9 @@ typedef struct radial_state {
 
 /* The boundary value problem at one load. */
 typedef struct membrane {
+    const dea_point *point;
     const dea_film *film;
+    bool lens; /* the annulus is electroded */
     double disc_k;    /* Maxwell pressure in the disc: M of a dot, 0 of a lens [Pa] */
     double annulus_k; /* and in the annulus [Pa] */
     double length;    /* ln(1/B) */
@@ -55,10 +57,22 @@ typedef struct extremes {
     double charge;       /* c at the frame [1] */
 } extremes;
 
-/* Stresses and moduli of the film. */
+/* Stresses and moduli of the annulus, without what the voltage does, and of the disc. */
 static dea_stress stress_at(const membrane *m, double l1, double l2)
 {
-    return m->film->law->stress(m->film->constants, l1, l2);
+    return m->lens ? dea_point_coated_stress(m->point, l1, l2) : m->film->law->stress(m->film->constants, l1, l2);
+}
+
+static dea_stress disc_stress(const membrane *m, double l)
+{
+    return m->lens ? m->film->law->stress(m->film->constants, l, l) : dea_point_coated_stress(m->point, l, l);
+}
+
+/* Skin's share of the stress s1 of the annulus less that of the disc. */
+static double skin_jump(const membrane *m, double l, double d)
+{
+    const double e = l - m->film->prestretch;
+    return m->lens ? dea_point_skin_rise(m->point, e - d, e) : -dea_point_skin_rise(m->point, e, e);
 }
 
 static radial_state slope_at(const membrane *m, radial_state s)
@@ -122,10 +136,17 @@ static bool advance(const membrane *m, radial_state start, double step, radial_s
 static double jump_at_edge(const membrane *m, double l)
 {
     const double jump = (m->disc_k - m->annulus_k) * l * l * l;
+    double sound = 0.0; /* last place within the energy */
     double d = 0.0;
-    for (int i = 0; i < 40; i++) {
+    for (int i = 0; i < 80; i++) {
         const dea_stress here = stress_at(m, l - d, l);
-        const double residual = m->film->law->rise(m->film->constants, l, -d, 0.0) + jump + m->annulus_k * d * l * l;
+        if (isnan(here.w11) && d != sound) { /* a step went past the end of the energy */
+            d = 0.5 * (sound + d);
+            continue;
+        }
+        sound = d;
+        const double rise = m->film->law->rise(m->film->constants, l, -d, 0.0) + skin_jump(m, l, d);
+        const double residual = rise + jump + m->annulus_k * d * l * l;
         const double s11 = here.w11 - m->annulus_k * l * l;
         const double most = 0.25 * (l - d); /* lambda_1 moves by a quarter at most: the first root from lambda_2 on is meant */
         const double step = s11 > 0.0 ? residual / s11 : copysign(most, residual);
@@ -217,7 +238,7 @@ static double miss_at_frame(const membrane *m, double edge, extremes *x)
     }
     radial_state s = {jump_at_edge(m, l), edge, 0.0};
     if (x) {
-        const double disc = stress_at(m, l, l).p1 - m->disc_k * l * l * l;
+        const double disc = disc_stress(m, l).p1 - m->disc_k * l * l * l;
         const bool lens = m->annulus_k > 0.0;
         *x = (extremes){disc, lens ? (l - s.d) * l : l * l, lens ? (l - s.d) * l * l : l * l * l, 0.0};
         note(m, limits_at(m, s), x);
@@ -293,7 +314,9 @@ static double linear_guess(const dea_point *point, double m)
     const double b2 = point->coverage * point->coverage;
     const double q = (1.0 + b2) / (1.0 - b2);
     const double softening = m * film->square * (dot ? 3.0 : q - 2.0);
-    const double stiffness = film->w11 + film->w12 + film->w11 * q - film->w12 - softening;
+    const dea_film *skin = &point->skin;
+    const double coat = point->skin_share > 0.0 ? point->skin_share * (dot ? skin->w11 + skin->w12 : skin->w11 * q - skin->w12) : 0.0;
+    const double stiffness = film->w11 + film->w12 + film->w11 * q - film->w12 + coat - softening;
     return stiffness > 0.0 ? dea_point_sign(point) * m * film->square * film->prestretch / stiffness : NAN;
 }
 
@@ -424,8 +447,9 @@ static bool trace(const membrane *full, double sign, double end, double *edge)
     const double pre = full->film->prestretch;
     place before = {0.0, 0.0, pre};
     place last = before;
-    double step = 0.03;
-    while (fabs(last.edge) < fabs(end) && step > 1e-5) {
+    const double longest = 0.03 * fmin(1.0, full->film->grows); /* a film near the end of its energy has no longer way */
+    double step = longest;
+    while (fabs(last.edge) < fabs(end) && step > 3e-4 * longest) {
         const double at = sign * fmin(fabs(end), fabs(last.edge) + step * (pre + fmax(0.0, last.edge)));
         const double share = share_at(full, at, last.share > 0.0 ? last.share * fabs(at / last.edge) : 0.1);
         const place here = {at, share, radial_stretch(full, share, at)};
@@ -449,7 +473,7 @@ static bool trace(const membrane *full, double sign, double end, double *edge)
         }
         before = last;
         last = here;
-        step = fmin(0.03, 1.5 * step);
+        step = fmin(longest, 1.5 * step);
     }
     return false;
 }
@@ -458,7 +482,7 @@ static bool trace(const membrane *full, double sign, double end, double *edge)
 static membrane membrane_of(const dea_point *point, double pressure, dea_field_mesh mesh)
 {
     const bool dot = point->kind == DEA_DOT;
-    return (membrane){&point->film, dot ? pressure : 0.0, dot ? 0.0 : pressure, -log(point->coverage), mesh};
+    return (membrane){point, &point->film, !dot, dot ? pressure : 0.0, dot ? 0.0 : pressure, -log(point->coverage), mesh};
 }
 
 /* Integrates over a stretch of x in steps that are short enough. */
@@ -574,6 +598,7 @@ const dea_model dea_model_field = {
     .lens = true,
     .solve = solve,
     .solve_many = solve_many,
+    .along = dea_field_profile,
     .dynamic = true,
     .membrane = true,
 };

@@ -23,12 +23,7 @@ typedef struct dea_field_found {
 
 void dea_field_fill(const dea_point *point, dea_field_found found, dea_row *row);
 
-typedef struct dea_stretches {
-    double radial, hoop; /* lambda_1, lambda_2 */
-} dea_stretches;
-
-/* Stretches of the annulus of a film in equilibrium, whose disc edge is strained by @p strain, at @p count places
- * x = ln(R/R_a) >= 0 that do not fall; false where there is no such film. Right to 1e-13 of the strain. */
+/* The model's along(). Right to 1e-13 of the strain. */
 bool dea_field_profile(const dea_point *point, double strain, size_t count, const double *x, dea_stretches *stretches);
 
 #endif

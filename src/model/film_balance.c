@@ -11,14 +11,18 @@ typedef struct balance {
     double fold;  /* (1 + e) dN/de - 4 N, sign of dU/de */
 } balance;
 
-/* Two films of which the passive one gives back `ratio` of the active one's strain. */
+/* Two films of which the passive one gives back `ratio` of the active one's strain, the active one with its skin. */
 typedef struct film_pair {
     const dea_film *film;
     double ratio;
+    const dea_film *skin; /* NULL: none */
+    double share;         /* t lambda_pre^2/H: its Cauchy stress counts so much [1] */
 } film_pair;
 
-static inline balance balance_at(const dea_film *film, double ratio, double e)
+static inline balance balance_at(const film_pair *pair, double e)
 {
+    const dea_film *film = pair->film;
+    const double ratio = pair->ratio;
     const double strains[] = {e, -ratio * e};
     dea_change changes[2];
     film->law->change(film, ratio > 0.0 ? 2 : 1, strains, changes);
@@ -30,28 +34,51 @@ static inline balance balance_at(const dea_film *film, double ratio, double e)
         b.slope += ratio * passive.slope;
         b.curve -= ratio * ratio * passive.curve;
     }
+    if (pair->skin) {
+        dea_change skin;
+        pair->skin->law->change(pair->skin, 1, &e, &skin);
+        b.load += pair->share * skin.value;
+        b.slope += pair->share * skin.slope;
+        b.curve += pair->share * skin.curve;
+    }
     b.fold = (1.0 + e) * b.slope - 4.0 * b.load;
     return b;
 }
 
 static dea_path_place place_at(const void *user, double e)
 {
-    const film_pair *pair = user;
-    const balance b = balance_at(pair->film, pair->ratio, e);
+    const balance b = balance_at(user, e);
     const double cube = (1.0 + e) * (1.0 + e) * (1.0 + e);
     return (dea_path_place){b.load, b.slope, cube * (1.0 + e), 4.0 * cube};
 }
 
 /* Strain of the active film at which a region vanishes, or the energy of the material ends. */
-static double end_of(const dea_film *film, double ratio)
+static double end_of(const film_pair *pair)
 {
-    const double passive = ratio > 0.0 ? film->shrinks / ratio : film->grows;
-    return passive < film->grows ? passive : film->grows;
+    const double active = pair->skin ? fmin(pair->film->grows, pair->skin->grows) : pair->film->grows;
+    const double passive = pair->ratio > 0.0 ? pair->film->shrinks / pair->ratio : active;
+    return passive < active ? passive : active;
+}
+
+/* dN/de and d2N/de2 at rest. */
+static double rest_slope(const film_pair *pair)
+{
+    const double film = pair->film->prestretch * pair->film->slope * (1.0 + pair->ratio);
+    return pair->skin ? film + pair->share * pair->skin->slope : film;
+}
+
+static double rest_curve(const film_pair *pair)
+{
+    const double film = pair->film->square * pair->film->curvature * (1.0 - pair->ratio * pair->ratio);
+    return pair->skin ? film + pair->share * pair->skin->curvature : film;
 }
 
 /* Films abreast on their way to a root. */
 typedef struct walkers {
-    double ratio[DEA_LANES], m[DEA_LANES], stiffness[DEA_LANES], end[DEA_LANES];
+    const dea_film *film, *skin; /* as of a pair */
+    double share[DEA_LANES];
+    double ratio[DEA_LANES], m[DEA_LANES], end[DEA_LANES];
+    double stiffness[DEA_LANES], curvature[DEA_LANES]; /* dN/de and d2N/de2 at rest */
     double strain[DEA_LANES], last[DEA_LANES];
     double load[DEA_LANES], slope[DEA_LANES], curve[DEA_LANES]; /* of N where it was evaluated last */
     double live[DEA_LANES];                                     /* 1: goes on, 0: has come to its end */
@@ -60,13 +87,12 @@ typedef struct walkers {
 } walkers;
 
 /* The second-order answer: N = K e + c e^2/2 + ..., m (1 + e)^4 = m (1 + 4 e + 6 e^2 + ...). */
-DEA_INLINE void set_off(const dea_film *film, walkers *w)
+DEA_INLINE void set_off(walkers *w)
 {
-    const double curvature = 0.5 * film->square * film->curvature;
     DEA_EACH_LANE(l)
     {
         const double room = w->stiffness[l] - 4.0 * w->m[l];
-        const double bend = curvature * (1.0 - w->ratio[l] * w->ratio[l]) - 6.0 * w->m[l];
+        const double bend = 0.5 * w->curvature[l] - 6.0 * w->m[l];
         const double linear = w->m[l] / room;
         w->strain[l] = w->last[l] = linear / (1.0 + bend * linear / room);
         w->root[l] = 0.0;
@@ -74,9 +100,21 @@ DEA_INLINE void set_off(const dea_film *film, walkers *w)
     }
 }
 
+static void add_skin(const walkers *w, const double *strains, const dea_changes *changes)
+{
+    double value[DEA_LANES], slope[DEA_LANES], curve[DEA_LANES];
+    dea_film_changes(w->skin, DEA_LANES, strains, &(dea_changes){value, slope, curve});
+    DEA_EACH_LANE(l)
+    {
+        changes->value[l] += w->share[l] * value[l];
+        changes->slope[l] += w->share[l] * slope[l];
+        changes->curve[l] += w->share[l] * curve[l];
+    }
+}
+
 /* One step of Halley's iteration. Convergence is cubic, so the step after the next one is foreseen as step^4/last^3, and where that
  * is below rounding the present step was the last one needed. */
-DEA_INLINE void step_on(const dea_film *film, walkers *w)
+DEA_INLINE void step_on(walkers *w)
 {
     double strains[2 * DEA_LANES], value[2 * DEA_LANES], slope[2 * DEA_LANES], curve[2 * DEA_LANES];
     const dea_changes changes = {value, slope, curve};
@@ -85,7 +123,10 @@ DEA_INLINE void step_on(const dea_film *film, walkers *w)
         strains[l] = w->strain[l];
         strains[DEA_LANES + l] = -w->ratio[l] * w->strain[l];
     }
-    dea_film_changes(film, 2 * DEA_LANES, strains, &changes);
+    dea_film_changes(w->film, 2 * DEA_LANES, strains, &changes);
+    if (w->skin) {
+        add_skin(w, strains, &changes);
+    }
     DEA_EACH_LANE(l)
     {
         const double e = w->strain[l], last = w->last[l], ratio = w->ratio[l], m = w->m[l];
@@ -125,14 +166,13 @@ DEA_INLINE bool any_lives(const walkers *w)
 /* Notes where `fold` keeps far from zero all the way from rest to the root, next to which N was evaluated: over so short a way two
  * values and two tangents of it that stay within a factor of two leave no room for a fold between. Spares the samples of
  * dea_path_grows(). */
-DEA_INLINE void look_for_folds(const dea_film *film, walkers *w)
+DEA_INLINE void look_for_folds(walkers *w)
 {
-    const double curvature = film->square * film->curvature;
     DEA_EACH_LANE(l)
     {
         const double e = w->strain[l], ratio = w->ratio[l], stiffness = w->stiffness[l];
         const double fold = (1.0 + e) * w->slope[l] - 4.0 * w->load[l];
-        const double slope_at_rest = curvature * (1.0 - ratio * ratio) - 3.0 * stiffness;
+        const double slope_at_rest = w->curvature[l] - 3.0 * stiffness;
         const double slope_at_end = (1.0 + e) * w->curve[l] - 3.0 * w->slope[l];
         const double tangent_at_rest = stiffness + slope_at_rest * e;
         const double tangent_at_end = fold - slope_at_end * e;
@@ -143,16 +183,16 @@ DEA_INLINE void look_for_folds(const dea_film *film, walkers *w)
     }
 }
 
-DEA_INLINE void settle_body(const dea_film *film, walkers *w)
+DEA_INLINE void settle_body(walkers *w)
 {
-    set_off(film, w);
+    set_off(w);
     for (int i = 0; i < 12 && any_lives(w); i++) {
-        step_on(film, w);
+        step_on(w);
     }
-    look_for_folds(film, w);
+    look_for_folds(w);
 }
 
-DEA_LANES_DISPATCH(settle, settle_body, (const dea_film *film, walkers *w), (film, w))
+DEA_LANES_DISPATCH(settle, settle_body, (walkers *w), (w))
 
 /* True where the root of a lane is the first from rest: U grows all the way to it. */
 static bool is_first(const walkers *w, size_t l, const dea_path *path)
@@ -160,21 +200,30 @@ static bool is_first(const walkers *w, size_t l, const dea_path *path)
     return w->root[l] > 0.0 && w->fold[l] > 0.0 && (w->clear[l] > 0.0 || dea_path_grows(path, w->strain[l]));
 }
 
-/* Strains of up to DEA_LANES films, each with its own ratio, under the pressures m; false where there is none. */
-static void find(const dea_film *film, size_t count, const double *ratio, const double *m, double *strain, bool *found)
+static film_pair pair_of(const dea_point *point, double ratio)
 {
-    walkers w;
+    const bool skinned = point->skin_share > 0.0;
+    return (film_pair){&point->film, ratio, skinned ? &point->skin : NULL, point->skin_share * point->film.square};
+}
+
+/* Strains of up to DEA_LANES films of as many points, each with its own ratio, under the pressures m; false where there is none. */
+static void find(const dea_point *points, size_t count, const double *ratio, const double *m, double *strain, bool *found)
+{
+    walkers w = {.film = &points[0].film, .skin = points[0].skin_share > 0.0 ? &points[0].skin : NULL};
     DEA_EACH_LANE(l)
     {
         const size_t from = l < count ? l : 0; /* an idle lane does what the first does */
+        const film_pair pair = pair_of(&points[from], ratio[from]);
+        w.share[l] = pair.share;
         w.ratio[l] = ratio[from];
         w.m[l] = m[from];
-        w.stiffness[l] = film->prestretch * film->slope * (1.0 + w.ratio[l]);
-        w.end[l] = end_of(film, w.ratio[l]);
+        w.stiffness[l] = rest_slope(&pair);
+        w.curvature[l] = rest_curve(&pair);
+        w.end[l] = end_of(&pair);
     }
-    settle(film, &w);
+    settle(&w);
     for (size_t l = 0; l < count; l++) {
-        const film_pair pair = {film, ratio[l]};
+        const film_pair pair = pair_of(&points[l], ratio[l]);
         const dea_path path = {place_at, &pair, w.stiffness[l], w.end[l], 1.0 / (1.0 + ratio[l])};
         strain[l] = w.strain[l];
         if (m[l] == 0.0) {
@@ -188,18 +237,28 @@ static void find(const dea_film *film, size_t count, const double *ratio, const 
     }
 }
 
+/* Points from the first on that can go abreast: each may have a skin of its own, which then goes alone. */
+static size_t abreast(const dea_point *points, size_t count)
+{
+    size_t some = 1;
+    while (some < count && some < DEA_LANES && points[0].skin_share == 0.0 && points[some].skin_share == 0.0) {
+        some++;
+    }
+    return some;
+}
+
 void dea_film_balances_solve(const dea_point *points, size_t count, double (*ratio)(const dea_point *point),
                              void (*fill)(const dea_point *point, double pressure, double strain, dea_row *row), dea_row *rows)
 {
-    for (size_t from = 0; from < count; from += DEA_LANES) {
-        const size_t some = count - from < DEA_LANES ? count - from : DEA_LANES;
+    for (size_t from = 0, some; from < count; from += some) {
+        some = abreast(points + from, count - from);
         double ratios[DEA_LANES], pressures[DEA_LANES], strains[DEA_LANES];
         bool found[DEA_LANES];
         for (size_t l = 0; l < some; l++) {
             ratios[l] = ratio(&points[from + l]);
             pressures[l] = dea_point_pressure(&points[from + l]);
         }
-        find(&points[0].film, some, ratios, pressures, strains, found);
+        find(&points[from], some, ratios, pressures, strains, found);
         for (size_t l = 0; l < some; l++) {
             if (found[l]) {
                 fill(&points[from + l], pressures[l], strains[l], &rows[from + l]);

@@ -13,6 +13,16 @@ static bool is_taut(double rest, double a, double b, double d1, double d2)
 /* Share of its terms below which a difference is computed again in long double: their rounding would be seen. */
 static const double nearly = 1e-2;
 
+/* 1/(2 pi H n) of the skin: a + b on a disc, a q - b on an annulus, with its moduli [Pa]. */
+static double skin_stiffness(const dea_point *point)
+{
+    const double b2 = point->coverage * point->coverage, q = (1.0 + b2) / (1.0 - b2);
+    if (!(point->skin_share > 0.0)) {
+        return 0.0;
+    }
+    return point->skin_share * (point->kind == DEA_DOT ? point->skin.w11 + point->skin.w12 : point->skin.w11 * q - point->skin.w12);
+}
+
 /* 1/(2 pi H n) of disc, annulus and softening together [Pa], in long double from the constants of the film: just before pull-in
  * the terms cancel. W11 + W12 + W11 (1 + B^2)/(1 - B^2) - W12 = 2 W11/(1 - B^2). */
 static long double fine_stiffness(const dea_point *point)
@@ -24,7 +34,7 @@ static long double fine_stiffness(const dea_point *point)
     const long double b2 = (long double)point->coverage * point->coverage,
                       field = (long double)point->voltage / point->film_thickness;
     const long double share = point->kind == DEA_DOT ? 3.0L : (1.0L + b2) / (1.0L - b2) - 2.0L;
-    return 2.0L * w11 / (1.0L - b2) - share * film->permittivity * field * field * y;
+    return 2.0L * w11 / (1.0L - b2) + skin_stiffness(point) - share * film->permittivity * field * field * y;
 }
 
 /* Area of a lens' annulus over that at rest where the edge of the disc comes to the frame's radius on the other side of the centre,
@@ -46,8 +56,9 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     const double nominal = dea_point_nominal_field(point);
     const double m = film->permittivity * nominal * nominal; /* M */
     const double soft = m * film->square;                    /* M lambda_pre^2 */
-    const double softened1 = film->w11 - soft;
-    const double softened2 = film->w12 - 2.0 * soft;
+    const bool coated = point->skin_share > 0.0;
+    const double softened1 = film->w11 - soft + (coated ? point->skin_share * point->skin.w11 : 0.0);
+    const double softened2 = film->w12 - 2.0 * soft + (coated ? point->skin_share * point->skin.w12 : 0.0);
     const double disc1 = dot ? softened1 : film->w11;
     const double disc2 = dot ? softened2 : film->w12;
     const double annulus1 = dot ? film->w11 : softened1;
@@ -151,7 +162,15 @@ static void build(const dea_symbols *symbols, dea_network *network)
     network->capacitance =
         ADD(dea_symbols_capacitance(symbols), MUL(network->edge, ADD(first, SCALE(0.5, MUL(second, network->edge)))));
     const region passive = {w11, w12, rest};
-    const region active = {SUB(w11, soft), SUB(w12, SCALE(2.0, soft)), SUB(rest, maxwell)};
+    region active = {SUB(w11, soft), SUB(w12, SCALE(2.0, soft)), SUB(rest, maxwell)};
+    if (symbols->skin) {
+        const dea_tangent skin = dea_symbols_skin_tangent(symbols);
+        const dea_expr coat = dot ? ADD(skin.w11, skin.w12) : SUB(MUL(skin.w11, q), skin.w12);
+        active.a = ADD(active.a, skin.w11);
+        active.b = ADD(active.b, skin.w12);
+        dea_network_add(network, DEA_ROLE_BESIDE, "n_skin", "compliance of the electrodes' skin beside its film [m/N]",
+                        MUL(thickness, coat));
+    }
     limit_tension(symbols, network, dot ? active : passive, dot ? passive : active);
     dea_network_limit_area(symbols, network);
 }
@@ -167,6 +186,7 @@ static void linear(const dea_point *point, dea_linear *linear)
     *linear = (dea_linear){.stiffness = thickness * (film->w11 + film->w12 + film->w11 * q - film->w12),
                            .softening = -unit * share,
                            .force = dea_point_sign(point) * unit * dea_point_divide(point)};
+    linear->beside = thickness * skin_stiffness(point);
     linear->capacitance[0] = dea_point_capacitance(point);
     linear->capacitance[1] = 2.0 * linear->force;
     linear->capacitance[2] = 2.0 * unit * share;

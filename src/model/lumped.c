@@ -6,6 +6,13 @@
 /* A difference of terms of size 1 below which it is computed again in long double. */
 static const double nearly = 1e-2;
 
+/* Modulus of one spring that is as stiff as both: (1 - B) Y_disc + B Y_annulus, one of them with the skin. */
+static double modulus_of(const dea_point *point)
+{
+    const double share = point->kind == DEA_DOT ? 1.0 - point->coverage : point->coverage;
+    return point->film.modulus + share * dea_point_skin_modulus(point);
+}
+
 /* Area of a lens' annulus over that at rest where the edge of the disc comes to the frame's radius on the other side of the centre,
  * as a linear film lets it: 1 - (B (1 + s))^2 cancels there. */
 static double fine_area(const dea_point *point)
@@ -13,7 +20,7 @@ static double fine_area(const dea_point *point)
     const dea_film *film = &point->film;
     const long double b = point->coverage, field = (long double)point->voltage / point->film_thickness,
                       y = (long double)film->prestretch * film->prestretch;
-    const long double edge = b * (1.0L - (1.0L - b) * film->permittivity * field * field * y * y / film->modulus);
+    const long double edge = b * (1.0L - (1.0L - b) * film->permittivity * field * field * y * y / modulus_of(point));
     return (double)((1.0L - edge) * (1.0L + edge) / (1.0L - b * b));
 }
 
@@ -22,13 +29,13 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     (void)accuracy;
     const dea_film *film = &point->film;
     const double pressure = dea_point_pressure(point);
-    if (pressure > 0.0 && !(film->modulus > 0.0)) {
+    if (pressure > 0.0 && !(modulus_of(point) > 0.0)) {
         dea_row_refuse(row, DEA_STATE_PULL_IN);
         return;
     }
     const double sign = dea_point_sign(point);
     const double b = point->coverage;
-    const double strain = sign * (1.0 - b) * pressure / film->modulus; /* Eq. 22 */
+    const double strain = sign * (1.0 - b) * pressure / modulus_of(point); /* Eq. 22 */
     const double stretch = 1.0 + strain;
     const double edge = b * stretch;
     /* passive stretch: Eq. 17 of a dot, the disc of a lens; electroded area: the disc of a dot, the annulus of a lens */
@@ -60,6 +67,11 @@ static void build(const dea_symbols *symbols, dea_network *network)
     dea_network_add(network, DEA_ROLE_SPRING, "n_a", "compliance of the disc, Eq. 19 [m/N]", DIV(tensile, divide));
     dea_network_add(network, DEA_ROLE_SPRING, "n_p", "compliance of the annulus, Eq. 20 [m/N]",
                     DIV(tensile, dea_symbols_annulus_width(symbols)));
+    if (symbols->skin) {
+        const dea_expr way = symbols->kind == DEA_DOT ? divide : dea_symbols_annulus_width(symbols);
+        dea_network_add(network, DEA_ROLE_BESIDE, "n_skin", "compliance of the electrodes' skin beside its film [m/N]",
+                        DIV(MUL(dea_symbols_skin_modulus(symbols), section), way));
+    }
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force, Eq. 21 [N]",
                     SCALE(network->sign, MUL(maxwell, section)));
     /* C = C_0 + C_1 u with C_1 = 2 F_DEA/U^2 */
@@ -76,6 +88,7 @@ static void linear(const dea_point *point, dea_linear *linear)
     const double width = (1.0 - point->coverage) * point->frame_radius;
     *linear = (dea_linear){.stiffness = point->film.modulus * section * (1.0 / dea_point_divide(point) + 1.0 / width),
                            .force = dea_point_sign(point) * dea_point_stress_per_volt(point) * section};
+    linear->beside = dea_point_skin_modulus(point) * section / (point->kind == DEA_DOT ? dea_point_divide(point) : width);
     linear->capacitance[0] = dea_point_capacitance(point);
     linear->capacitance[1] = 2.0 * linear->force;
 }

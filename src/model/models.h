@@ -73,6 +73,50 @@ static inline double dea_point_disc_capacitance(const dea_point *point, double s
     return dea_point_capacitance(point) * square * square;
 }
 
+/* dsigma/dlambda that the skin adds to the electroded film at the pre-stretch, t lambda_pre/H Y_e(1) [Pa]. */
+static inline double dea_point_skin_modulus(const dea_point *point)
+{
+    return point->skin_share > 0.0 ? point->skin_share * point->film.prestretch * point->skin.slope : 0.0;
+}
+
+/* Adds what the skin does to the nominal stresses and moduli of the electroded film, t lambda_pre/H dW_e/dlambda. */
+static inline void dea_point_coat(const dea_point *point, double e1, double e2, dea_biaxial *film)
+{
+    const dea_biaxial skin = dea_film_biaxial(&point->skin, e1, e2);
+    const double share = point->skin_share, force = share * point->film.prestretch;
+    film->p1 += force * skin.p1;
+    film->p2 += force * skin.p2;
+    film->w11 += share * skin.w11;
+    film->w12 += share * skin.w12;
+    film->w22 += share * skin.w22;
+}
+
+/* Stresses and moduli of the film under its electrode, without what the voltage does. */
+static inline dea_stress dea_point_coated_stress(const dea_point *point, double l1, double l2)
+{
+    dea_stress film = point->film.law->stress(point->film.constants, l1, l2);
+    if (point->skin_share > 0.0) {
+        const double pre = point->film.prestretch, share = point->skin_share, force = share * pre;
+        const dea_stress skin = point->skin.law->stress(point->skin.constants, l1 / pre, l2 / pre);
+        film.shear += share * skin.shear;
+        film.p1 += force * skin.p1;
+        film.p2 += force * skin.p2;
+        film.w11 += share * skin.w11;
+        film.w12 += share * skin.w12;
+        film.w22 += share * skin.w22;
+    }
+    return film;
+}
+
+/* Nominal stress of the skin in the film under it at lambda_pre + d1, lambda_pre + d2 [Pa]; keeps its digits. */
+static inline double dea_point_skin_rise(const dea_point *point, double d1, double d2)
+{
+    const double pre = point->film.prestretch;
+    return point->skin_share > 0.0
+               ? point->skin_share * pre * point->skin.law->rise(point->skin.constants, 1.0, d1 / pre, d2 / pre)
+               : 0.0;
+}
+
 /* A row without numbers. */
 static inline void dea_row_refuse(dea_row *row, dea_state state)
 {

@@ -18,6 +18,7 @@ typedef struct guess {
 
 /* What does not change along the path of one point. */
 typedef struct rings {
+    const dea_point *point;
     const dea_film *film;
     bool dot;
     double radial, hoop; /* e1/s and e2/s of the annulus */
@@ -44,6 +45,9 @@ static inline ring_place place_at(const rings *r, double x)
     const double s = r->dot ? x : -x;
     const double e1 = r->radial * s, e2 = r->hoop * s, edge = 1.0 + s;
     ring_place place = {.x = x, .disc = dea_film_biaxial(r->film, s, s), .annulus = dea_film_biaxial(r->film, e1, e2)};
+    if (r->point->skin_share > 0.0) {
+        dea_point_coat(r->point, r->dot ? s : e1, r->dot ? s : e2, r->dot ? &place.disc : &place.annulus);
+    }
     const dea_biaxial *disc = &place.disc, *annulus = &place.annulus;
     const double held = disc->p1 + r->inner * annulus->p2 - r->outer * annulus->p1;
     place.path.held = r->dot ? held : -held;
@@ -110,8 +114,11 @@ static bool cannot_fold(const dea_path *path, double m, double x, const dea_path
 static bool balance(const rings *r, double m, double *x, ring_place *at)
 {
     const dea_film *film = r->film;
-    const double lame = film->w11 + 0.5 * film->w11 * (r->aspect + 1.0 / r->aspect);
-    const dea_path path = {path_place, r, film->prestretch * lame, r->dot ? 2.0 * r->inner : 1.0, r->inner / (r->inner + 0.5)};
+    const double both = r->aspect + 1.0 / r->aspect, lame = film->w11 + 0.5 * film->w11 * both;
+    const dea_film *skin = &r->point->skin;
+    const double coat = r->dot ? skin->w11 + skin->w12 : 0.5 * skin->w11 * both - skin->w12;
+    const double held = r->point->skin_share > 0.0 ? lame + r->point->skin_share * coat : lame;
+    const dea_path path = {path_place, r, film->prestretch * held, r->dot ? 2.0 * r->inner : 1.0, r->inner / (r->inner + 0.5)};
     if (!isfinite(m) || !(path.rest > 0.0)) {
         return false;
     }
@@ -147,7 +154,8 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     (void)accuracy;
     const dea_film *film = &point->film;
     const double b = point->coverage, nominal = dea_point_nominal_field(point);
-    const rings r = {.film = film,
+    const rings r = {.point = point,
+                     .film = film,
                      .dot = point->kind == DEA_DOT,
                      .radial = -b / (1.0 - b),
                      .hoop = b / (1.0 + b),
@@ -208,15 +216,35 @@ static dea_expr tension_of(const dea_symbols *symbols, const ring_strains *e, co
     return MUL(dea_symbols_rest_stress(symbols), SUB(annulus, MUL(lever->disc, e->disc)));
 }
 
+/* The skin's stresses on the levers of the electroded region. */
+static void add_skin(const dea_symbols *symbols, dea_network *network, const ring_strains *e, const ring_levers *lever)
+{
+    dea_pool *pool = symbols->pool;
+    dea_expr force;
+    if (symbols->kind == DEA_DOT) {
+        force = MUL(lever->disc, dea_hyperelastic_skin(symbols, e->disc, e->disc));
+    } else {
+        const dea_expr radial = MUL(lever->radial, dea_hyperelastic_skin(symbols, e->radial, e->hoop));
+        force = SUB(MUL(lever->hoop, dea_hyperelastic_skin(symbols, e->hoop, e->radial)), radial);
+    }
+    dea_network_add(network, DEA_ROLE_TENSION, "n_skin", "skin of the electrodes, on these levers [N]", force);
+}
+
 static void limit_tension(const dea_symbols *symbols, dea_network *network, const ring_strains *e)
 {
     dea_pool *pool = symbols->pool;
     const dea_expr rest = dea_symbols_rest_stress(symbols);
     const dea_expr pull = MUL(dea_symbols_pressure(symbols), SQUARE(MUL(SQUARE(symbols->prestretch), e->area)));
     const bool dot = symbols->kind == DEA_DOT;
-    const dea_expr disc = ADD(rest, dea_hyperelastic_change(symbols, e->disc));
-    const dea_expr radial = ADD(rest, dea_hyperelastic_principal(symbols, e->radial, e->hoop));
-    const dea_expr hoop = ADD(rest, dea_hyperelastic_principal(symbols, e->hoop, e->radial));
+    dea_expr disc = ADD(rest, dea_hyperelastic_change(symbols, e->disc));
+    dea_expr radial = ADD(rest, dea_hyperelastic_principal(symbols, e->radial, e->hoop));
+    dea_expr hoop = ADD(rest, dea_hyperelastic_principal(symbols, e->hoop, e->radial));
+    if (symbols->skin && dot) {
+        disc = ADD(disc, dea_hyperelastic_skin(symbols, e->disc, e->disc));
+    } else if (symbols->skin) {
+        radial = ADD(radial, dea_hyperelastic_skin(symbols, e->radial, e->hoop));
+        hoop = ADD(hoop, dea_hyperelastic_skin(symbols, e->hoop, e->radial));
+    }
     dea_network_taut(network, dot ? SUB(disc, pull) : disc);
     dea_network_taut(network, dot ? radial : SUB(radial, pull));
     dea_network_taut(network, dot ? hoop : SUB(hoop, pull));
@@ -237,6 +265,9 @@ static void build(const dea_symbols *symbols, dea_network *network)
                            dea_hyperelastic_principal(symbols, e.hoop, e.radial), lever.hoop);
     dea_network_add(network, DEA_ROLE_TENSION, "n_tension", "pre-stress sigma_pre on the change of these areas [N]",
                     tension_of(symbols, &e, &lever));
+    if (symbols->skin) {
+        add_skin(symbols, network, &e, &lever);
+    }
     const dea_expr rest = MUL(dea_symbols_pressure(symbols), SQUARE(SQUARE(symbols->prestretch)));
     const dea_expr force = MUL(MUL(dea_symbols_cross_section(symbols), rest), MUL(ADD(one, e.disc), e.area));
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force U^2/2 dC/du of the true area [N]",
@@ -247,12 +278,24 @@ static void build(const dea_symbols *symbols, dea_network *network)
     limit_tension(symbols, network, &e);
 }
 
+/* One ring: lambda_1 = dr/dR, lambda_2 = sum r/sum R between its edges. */
+static bool along(const dea_point *point, double strain, size_t count, const double *x, dea_stretches *stretches)
+{
+    const double pre = point->film.prestretch, b = point->coverage;
+    (void)x;
+    for (size_t i = 0; i < count; i++) {
+        stretches[i] = (dea_stretches){pre * (1.0 - b * strain / (1.0 - b)), pre * (1.0 + b * strain / (1.0 + b))};
+    }
+    return true;
+}
+
 const dea_model dea_model_ring = {
     .name = "ring",
     .equation = "one ring of film each for disc and annulus",
     .leaves_out = "how stress and stretch vary across the annulus",
     .lens = true,
     .solve = solve,
+    .along = along,
     .network = build,
     .dynamic = true,
 };

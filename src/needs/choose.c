@@ -175,7 +175,7 @@ static dea_status error_at(const dea_scene *here, const dea_model *model, const 
     if (dea_study_of(here)->phasors) {
         return small_error(here, model, truth, change, error);
     }
-    *change = static_error(here, model, truth);
+    *change = dea_study_of(here)->along ? (double)INFINITY : static_error(here, model, truth);
     return DEA_OK;
 }
 
@@ -200,7 +200,7 @@ static dea_status bound_of(const dea_scene *scene, const dea_model *model, const
 
 static bool fits(const dea_scene *scene, const dea_engine *engine, const dea_model *model)
 {
-    const bool kind = (model->lens || scene->actuator.kind == DEA_DOT) && (model->dynamic || !dea_study_of(scene)->moves);
+    const bool kind = (model->lens || scene->actuator.kind == DEA_DOT) && dea_study_takes(dea_study_of(scene), model);
     return kind && dea_crew_of(scene, engine, model).count > 0;
 }
 
@@ -236,7 +236,7 @@ const dea_model *dea_needs_truth(dea_study_kind study)
         const dea_model *model = dea_model_at(i);
         const bool finer = !truth || dea_model_form(model) >= dea_model_form(truth);
         const bool costly = dea_study_at(study)->timed && model->membrane; /* a run of it at every probe */
-        truth = finer && !costly && (model->dynamic || !dea_study_at(study)->moves) ? model : truth;
+        truth = finer && !costly && dea_study_takes(dea_study_at(study), model) ? model : truth;
     }
     return truth;
 }

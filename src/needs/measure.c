@@ -68,7 +68,7 @@ static double static_peak(const judge *j)
     dea_film_prepare(&still, &point.film);
     dea_point_place(&still, &point);
     point.voltage = j->trial.signal.largest;
-    double charge = still.drive.series_resistance > 0.0 ? 0.0 : (double)INFINITY;
+    double charge = dea_series_resistance(&still) > 0.0 ? 0.0 : (double)INFINITY;
     for (size_t i = 0; i < j->with[FINE].end; i++) {
         charge = fmax(charge, fabs(j->with[FINE].samples[i].charge));
     }

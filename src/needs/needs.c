@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/models.h"
 #include "needs/surrogate.h"
 #include "network/swing.h"
 #include "study/study.h"
@@ -21,6 +22,9 @@ static const double missed = 0.01;         /* share of the static displacement t
 
 static const double rounding = 1e-12; /* of a stand-in's answer, relative to its peak */
 
+/* Of a membrane the ring stands in, whose mass and swing are off by up to a half, for its mass alone: it swings in many modes. */
+static const double safe_membrane = 4.0;
+
 enum { MANY_BRANCHES = 8 };
 
 typedef struct planner {
@@ -28,6 +32,7 @@ typedef struct planner {
     dea_surrogate_answer now, next; /* owned: with what is left out so far, and with one more */
     dea_reduction reduction;
     const dea_engine *engine;
+    bool many_nodes; /* the surrogate is of a film that has one node only */
     dea_needs *needs;
     double left; /* of the budget [1] */
     double safety;
@@ -37,7 +42,7 @@ typedef struct planner {
 
 static bool pays(const planner *p, dea_part part)
 {
-    return (p->engine->omits & 1u << part) != 0;
+    return (p->engine->omits & 1u << part) != 0 && (!p->many_nodes || part == DEA_PART_MASS);
 }
 
 static void omit(planner *p, dea_omission omission)
@@ -53,8 +58,8 @@ static void omit(planner *p, dea_omission omission)
 static bool is_start(const planner *p, size_t probe)
 {
     const dea_scene *scene = p->surrogate.scene;
-    const bool held = !isnan(scene->material.density) || scene->actuator.electrode_mass > 0.0 ||
-                      !isnan(scene->material.retardation) || scene->drive.series_resistance > 0.0;
+    const bool held = !isnan(scene->material.density) || dea_electrode_mass(scene) > 0.0 ||
+                      !isnan(scene->material.retardation) || dea_series_resistance(scene) > 0.0;
     return held && scene->transient.from_bias && probe == 0;
 }
 
@@ -134,7 +139,7 @@ static double change_over(const dea_surrogate *s, const dea_segment *segment, do
 {
     const double length = segment->to - segment->from, largest = s->largest * s->largest;
     if (segment->sine) {
-        const double frequency = dea_surrogate_signal(s)->sine.frequency;
+        const double frequency = dea_surrogate_signal(s)->curve.tones[0].frequency;
         return 4.0 * (1.0 + frequency * fmin(length, forgotten)) * fmin(1.0, 2.0 * DEA_PI * frequency * quick);
     }
     const double start = segment->start * segment->start, end = segment->end * segment->end;
@@ -473,20 +478,15 @@ dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const 
     if (!dea_study_of(scene)->timed || engine->omits == 0) {
         return DEA_OK;
     }
-    if (model->membrane) { /* no stand-in of one node tells what its modes do */
-        const dea_swing swing = dea_swing_free(scene, model);
-        needs->resonance = swing.frequency;
-        needs->decay = swing.decay;
-        return DEA_OK;
-    }
-    dea_status status = dea_surrogate_open(scene, model, &p.surrogate, &usable, error);
+    p.many_nodes = model->membrane;
+    dea_status status = dea_surrogate_open(scene, model->membrane ? &dea_model_ring : model, &p.surrogate, &usable, error);
     if (status == DEA_OK) {
-        const dea_swing swing = dea_swing_of(&p.surrogate.dynamics, 0.0, 0.0);
+        const dea_swing swing = p.many_nodes ? dea_swing_free(scene, model) : dea_swing_of(&p.surrogate.dynamics, 0.0, 0.0);
         needs->resonance = swing.frequency;
         needs->decay = swing.decay;
     }
     if (status == DEA_OK && usable) {
-        p.safety = safety_of(&p.surrogate);
+        p.safety = safety_of(&p.surrogate) * (p.many_nodes ? safe_membrane : 1.0);
         status = plan(&p, error);
     }
     dea_surrogate_close(&p.surrogate);

@@ -249,7 +249,7 @@ enum { NODES = sizeof nodes / sizeof *nodes, MOST_SEGMENTS = 2000000 };
 static void add_line(dea_signal *film, double from, double to, double start, double end)
 {
     if (to > from) {
-        film->segments[film->count++] = (dea_segment){from, to, start, end, false};
+        film->segments[film->count++] = (dea_segment){.from = from, .to = to, .start = start, .end = end};
     }
 }
 
@@ -278,10 +278,11 @@ static double charge_segment(dea_signal *film, const dea_segment *source, double
 }
 
 /* The sine of a film that charges: smaller by 1/(1 + i w T), and late. */
-static void charge_sine(dea_sine *sine, double lag, double share)
+static void charge_sine(dea_curve *curve, double lag, double share)
 {
+    dea_tone *sine = &curve->tones[0];
     const double turn = 2.0 * DEA_PI * sine->frequency * lag;
-    sine->offset *= share;
+    curve->offset *= share;
     sine->amplitude *= share / hypot(1.0, turn);
     sine->phase -= atan(turn);
 }
@@ -291,9 +292,7 @@ static void see_largest(dea_surrogate *s)
     const dea_signal *film = &s->film;
     s->largest = 0.0;
     for (size_t i = 0; i < film->count; i++) {
-        const dea_segment *segment = &film->segments[i];
-        s->largest = fmax(s->largest, segment->sine ? fabs(film->sine.offset) + fabs(film->sine.amplitude)
-                                                    : fmax(fabs(segment->start), fabs(segment->end)));
+        s->largest = fmax(s->largest, dea_segment_largest(film, &film->segments[i]));
     }
 }
 
@@ -303,8 +302,8 @@ static bool charge_film(dea_surrogate *s, double lag, double share)
 {
     dea_signal *film = &s->film;
     double y = s->scene->transient.from_bias ? share * s->source.segments[0].start : 0.0;
-    *film = (dea_signal){.sine = s->source.sine};
-    charge_sine(&film->sine, lag, share);
+    *film = (dea_signal){.curve = s->source.curve};
+    charge_sine(&film->curve, lag, share);
     if (s->source.count < MOST_SEGMENTS / (NODES + 1)) {
         film->segments = malloc(s->source.count * (NODES + 1) * sizeof *film->segments);
     }
@@ -502,7 +501,8 @@ dea_status dea_surrogate_open(const dea_scene *scene, const dea_model *model, de
     }
     s->largest = s->source.largest;
     const bool charging = s->dynamics.series > 0.0;
-    *usable = s->count > 0 && s->largest > 0.0 && place_points(s);
+    *usable = s->count > 0 && s->largest > 0.0 && (s->source.curve.count == 0 || dea_curve_is_plain(&s->source.curve)) &&
+              place_points(s);
     if (*usable && charging) {
         *usable = charge_film(s, dea_surrogate_lag(s), share_of(s));
     }

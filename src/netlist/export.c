@@ -62,7 +62,7 @@ static dea_status refuse_models(const dea_scene *scene, dea_error *error)
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "a netlist holds one model, the scene has %zu: choose one, --model %s",
                         scene->model_count, scene->models[0]->name);
     }
-    if (!scene->models[0]->network) {
+    if (!scene->models[0]->network && !(scene->models[0]->membrane && scene->study == DEA_STUDY_SWEEP)) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is not a network: --model lumped is one",
                         scene->models[0]->name);
     }

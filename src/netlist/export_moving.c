@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "engine/ngspice/pieces.h"
+#include "netlist/curve_cards.h"
 #include "netlist/export.h"
 #include "netlist/mobility.h"
 #include "netlist/part_text.h"
@@ -302,31 +303,23 @@ static void write_corners(const writer *w)
     fputs(")\n", w->out);
 }
 
-static void write_sine(const writer *w, const char *node)
+static void write_curves(const writer *w, const char *node)
 {
-    const dea_sine *sine = &w->signal.sine;
-    const double numbers[] = {sine->offset, sine->amplitude, sine->frequency, sine->delay, 0.0, sine->phase * 180.0 / DEA_PI};
-    fprintf(w->out, "vsource %s 0 sin(", node);
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
-        fputs(i > 0 ? " " : "", w->out);
-        dea_export_number(w->out, numbers[i]);
-    }
-    fputs(")\n", w->out);
-    if (sine->delay > 0.0) {
-        fputs("* makes the end of the delay a time point\nvdelay delay 0 pwl(0 0 ", w->out);
-        dea_export_number(w->out, sine->delay);
-        fputs(" 0 ", w->out);
-        dea_export_number(w->out, sine->delay + w->export->scene->transient.until);
-        fputs(" 0)\nrdelay delay 0 1\n", w->out);
-    }
+    const dea_curve_cards cards = {.out = w->out,
+                                   .dialect = w->dialect,
+                                   .number = dea_export_number,
+                                   .signal = &w->signal,
+                                   .count = w->signal.count,
+                                   .node = node};
+    dea_curve_cards_write(&cards);
 }
 
 static void write_source(const writer *w)
 {
     const char *node = w->dynamics.series > 0.0 ? "source" : "film";
     fputs("* voltage of the source [V]; i(vsource) = its current [A], counted into the source\n", w->out);
-    if (w->signal.segments[w->signal.count - 1].sine) {
-        write_sine(w, node);
+    if (dea_signal_curves(&w->signal)) {
+        write_curves(w, node);
     } else {
         fprintf(w->out, "vsource %s 0 pwl(", node);
         write_corners(w);
@@ -504,8 +497,9 @@ static double step_wanted(writer *w)
         step = fmin(step, share * pace.fastest);
         w->quick = fmin(w->quick, pace.omega > 0.0 ? fmin(pace.fastest, 1.0 / pace.omega) : pace.fastest);
     }
-    if (w->signal.segments[w->signal.count - 1].sine) {
-        step = fmin(step, share / (4.0 * DEA_PI * w->signal.sine.frequency));
+    for (size_t i = 0; i < w->signal.count; i++) {
+        const double turn = dea_segment_turn(&w->signal, &w->signal.segments[i]);
+        step = turn > 0.0 ? fmin(step, 0.5 * share / turn) : step;
     }
     return step;
 }
@@ -610,6 +604,10 @@ dea_status dea_export_transient(dea_export *export, dea_error *error)
     }
     if (status == DEA_OK) {
         status = dea_signal_open(export->scene, &w.signal, error);
+    }
+    if (status == DEA_OK && !dea_curve_cards_fit(&w.signal)) {
+        status = dea_fail(error, DEA_ERROR_UNSUPPORTED, "the burst repeats too often for a netlist, which takes at most %d; export a shorter run",
+                          DEA_CURVE_CARDS_MAX);
     }
     if (status == DEA_OK && w.signal.count > MOST_CORNERS) {
         status = dea_fail(error, DEA_ERROR_UNSUPPORTED, "the waveform has %zu edges, a netlist holds %d", w.signal.count,

@@ -7,6 +7,7 @@
 #include "engine/line.h"
 #include "netlist/export.h"
 #include "netlist/part_text.h"
+#include "netlist/rings_line.h"
 #include "network/balance.h"
 #include "support/text.h"
 
@@ -36,6 +37,7 @@ typedef struct line_text {
     writer *w;
     const dea_scene *scene; /* axes at the first point */
     const dea_axis *axis;   /* NULL: one point */
+    bool membrane;          /* a network of rings, else one node: */
     dea_network network;    /* owned */
     dea_balance balance;    /* owned */
     dea_part_text text;     /* owned */
@@ -48,9 +50,35 @@ static double symbol_at(const line_text *l, size_t i)
     return l->axis ? l->axis->values[i] : 0.0;
 }
 
+/* Static displacement at a point of the line, from the model's own equation: where Newton starts. NAN where there is none. */
+static double solve_at(const line_text *l, size_t i)
+{
+    dea_scene here = *l->scene;
+    dea_point point;
+    dea_row row = dea_row_failed();
+    if (l->axis) {
+        dea_axis_set(l->axis, &here, symbol_at(l, i));
+    }
+    dea_film_prepare(&here, &point.film);
+    dea_point_place(&here, &point);
+    if (dea_point_valid(&point)) {
+        here.models[0]->solve(&point, 1e-9, &row);
+    }
+    return row.displacement;
+}
+
+static double displacement_at(const line_text *l, size_t i)
+{
+    const double u = solve_at(l, i);
+    return isfinite(u) ? u : 0.0;
+}
+
 static bool has_equilibrium(line_text *l, size_t i)
 {
     double share, fold;
+    if (l->membrane) {
+        return isfinite(solve_at(l, i));
+    }
     const double symbol = symbol_at(l, i);
     return dea_balance_valid(&l->balance, symbol) && !dea_balance_folds(&l->balance, symbol, &share, &fold);
 }
@@ -137,21 +165,6 @@ static void write_forces(const line_text *l)
     dea_dialect_source_end(l->w->dialect, out);
 }
 
-/* Static displacement at a point of the line, from the model's own equation: where Newton starts. */
-static double displacement_at(const line_text *l, size_t i)
-{
-    dea_scene here = *l->scene;
-    dea_point point;
-    dea_row row = dea_row_failed();
-    if (l->axis) {
-        dea_axis_set(l->axis, &here, symbol_at(l, i));
-    }
-    dea_film_prepare(&here, &point.film);
-    dea_point_place(&here, &point);
-    here.models[0]->solve(&point, 1e-9, &row);
-    return isfinite(row.displacement) ? row.displacement : 0.0;
-}
-
 static void write_guess(const line_text *l, const char *node, int number, double value)
 {
     FILE *out = l->w->out;
@@ -207,6 +220,14 @@ static void write_place(const line_text *l)
     }
 }
 
+static dea_status write_membrane(line_text *l, dea_error *error)
+{
+    dea_rings_line line = {.scene = l->scene, .axis = l->axis, .from = l->from, .to = l->to, .number = l->w->lines};
+    dea_rings_line_choose(&line);
+    write_place(l);
+    return dea_rings_line_write(&line, l->w->dialect, l->w->out, error);
+}
+
 static dea_status write_line(line_text *l, dea_error *error)
 {
     FILE *out = l->w->out;
@@ -232,14 +253,30 @@ static dea_status write_line(line_text *l, dea_error *error)
     return write_start(l, error);
 }
 
+/* Size of the film at a point. */
+static double length_at(line_text *l, size_t i)
+{
+    if (!l->membrane) {
+        (void)dea_balance_valid(&l->balance, symbol_at(l, i)); /* moves the balance there */
+        return dea_balance_length(&l->balance);
+    }
+    dea_scene here = *l->scene;
+    dea_point point;
+    if (l->axis) {
+        dea_axis_set(l->axis, &here, symbol_at(l, i));
+    }
+    dea_point_place(&here, &point);
+    return point.frame_radius * fmin(point.coverage, 1.0 - point.coverage);
+}
+
 static void divide_steps(line_text *l)
 {
     double before = displacement_at(l, l->from);
     for (size_t i = l->from + 1; i < l->to; i++) {
         const double next = displacement_at(l, i);
-        (void)dea_balance_valid(&l->balance, symbol_at(l, i)); /* moves the balance there */
+        const double length = length_at(l, i);
         while (l->w->parts < MOST_PARTS &&
-               fabs(next - before) > (double)l->w->parts * longest_step * dea_balance_length(&l->balance)) {
+               fabs(next - before) > (double)l->w->parts * longest_step * length) {
             l->w->parts *= 2;
         }
         before = next;
@@ -248,6 +285,11 @@ static void divide_steps(line_text *l)
 
 static void add_scales(line_text *l)
 {
+    if (l->membrane) { /* of numbers of size 1 */
+        l->w->length = fmin(l->w->length, 1.0);
+        l->w->force = fmin(l->w->force, 1.0);
+        return;
+    }
     const dea_forces f = dea_balance_forces(&l->balance, symbol_at(l, l->from), 0.0);
     const double length = l->scene->actuator.frame_radius;
     l->w->length = fmin(l->w->length, length);
@@ -260,8 +302,9 @@ static dea_status visit_line(void *user, const dea_scene *scene, const dea_line 
     writer *w = user;
     line_text l = {.w = w, .scene = scene, .axis = line->axis};
     w->lines++;
-    dea_status status = dea_network_build(scene, scene->models[0], line->axis, &l.network, error);
-    if (status == DEA_OK) {
+    l.membrane = scene->models[0]->membrane;
+    dea_status status = l.membrane ? DEA_OK : dea_network_build(scene, scene->models[0], line->axis, &l.network, error);
+    if (status == DEA_OK && !l.membrane) {
         l.elastic = dea_network_elastic(&l.network);
         l.load = dea_network_load(&l.network);
         status = dea_balance_open(&l.network, &l.balance, error);
@@ -272,7 +315,7 @@ static dea_status visit_line(void *user, const dea_scene *scene, const dea_line 
             add_scales(&l);
             divide_steps(&l);
             fprintf(w->names, "%sv(edge%zu)", ++w->written % NAMES_A_LINE == 0 ? "\n+ " : " ", w->lines);
-            status = write_line(&l, error);
+            status = (l.membrane ? write_membrane : write_line)(&l, error);
         } else {
             fprintf(w->out, "* line %zu has no point with an equilibrium\n", w->lines);
         }

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "model/models.h"
+#include "netlist/curve_cards.h"
 #include "netlist/expression_text.h"
 #include "expression/derivative.h"
 #include "expression/formula.h"
@@ -238,21 +239,20 @@ static void write_source(const writer *w, const char *node)
 {
     const dea_mobility_piece *p = w->piece;
     const dea_segment *segment = &p->signal->segments[p->segment];
-    fprintf(w->out, "* voltage of the source [V]\nvsource %s 0 ", node);
+    fputs("* voltage of the source [V]\n", w->out);
     if (segment->sine) {
-        const dea_sine *sine = &p->signal->sine;
-        const double turns = sine->frequency * (p->from - sine->delay);
-        fputs("sin(", w->out);
-        dea_netlist_number(w->out, sine->offset);
-        fputc(' ', w->out);
-        dea_netlist_number(w->out, sine->amplitude);
-        fputc(' ', w->out);
-        dea_netlist_number(w->out, sine->frequency);
-        fputs(" 0 0 ", w->out);
-        dea_netlist_number(w->out, 360.0 * (turns - floor(turns)) + sine->phase * 180.0 / DEA_PI);
-        fputs(")\n", w->out);
+        const dea_curve_cards cards = {.out = w->out,
+                                       .dialect = dea_dialect_at(0),
+                                       .number = dea_netlist_number,
+                                       .signal = p->signal,
+                                       .first = p->segment,
+                                       .count = 1,
+                                       .begin = p->from,
+                                       .node = node};
+        dea_curve_cards_write(&cards);
         return;
     }
+    fprintf(w->out, "vsource %s 0 ", node);
     fputs("pwl(0 ", w->out);
     dea_netlist_number(w->out, dea_segment_voltage(p->signal, segment, p->from));
     for (size_t i = p->segment; i < p->signal->count && p->signal->segments[i].from < p->to; i++) {

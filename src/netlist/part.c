@@ -722,6 +722,9 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is no circuit part: lumped, lame, coverage and ring are",
                         model->name);
     }
+    if (defaults->electrode.law) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "a circuit part has no skin of its electrodes");
+    }
     const size_t branches = defaults->material.prony_count;
     char *text = NULL;
     size_t length = 0;

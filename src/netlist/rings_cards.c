@@ -56,30 +56,44 @@ static void make_element(dea_rings_cards *cards, bool disc)
     }
 }
 
-/* s_1 and s_2 of a kind of ring; @p pressure lambda_pre^4 M [MPa], NUM(0) where bare. */
-static void make_stress(const dea_symbols *symbols, dea_rings_strain strain, dea_expr pressure, dea_expr stress[2])
+/* s_1 and s_2 of a kind of ring; @p pressure lambda_pre^4 M [MPa]. */
+static void make_stress(const dea_symbols *symbols, dea_rings_strain strain, bool electroded, dea_expr pressure, dea_expr stress[2])
 {
     dea_pool *pool = symbols->pool;
     const dea_expr e1 = dea_expr_node(pool, DEA_RINGS_E1);
     const dea_expr e2 = strain == DEA_RINGS_FRAME ? NUM(0.0) : strain == DEA_RINGS_UNIFORM ? e1 : dea_expr_node(pool, DEA_RINGS_E2);
     const dea_expr l1 = ADD(NUM(1.0), e1), l2 = ADD(NUM(1.0), e2);
     dea_hyperelastic_nominal(symbols, e1, e2, stress);
-    stress[0] = SUB(stress[0], MUL(pressure, MUL(l1, SQUARE(l2))));
-    stress[1] = SUB(stress[1], MUL(pressure, MUL(l2, SQUARE(l1))));
+    if (electroded && symbols->skin) {
+        stress[0] = ADD(stress[0], DIV(dea_hyperelastic_skin(symbols, e1, e2), l1));
+        stress[1] = ADD(stress[1], DIV(dea_hyperelastic_skin(symbols, e2, e1), l2));
+    }
+    if (electroded) {
+        stress[0] = SUB(stress[0], MUL(pressure, MUL(l1, SQUARE(l2))));
+        stress[1] = SUB(stress[1], MUL(pressure, MUL(l2, SQUARE(l1))));
+    }
+}
+
+/* Moduli in MPa. */
+static void scale_law(dea_pool *pool, const dea_law *law, const dea_expr *constants, dea_expr *scaled)
+{
+    for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
+        scaled[i] = law->constants[i % law->constant_count].modulus ? SCALE(1.0 / mega, constants[i]) : constants[i];
+    }
 }
 
 void dea_rings_cards_make(const dea_symbols *symbols, dea_rings_mesh mesh, dea_rings_cards *cards)
 {
     dea_pool *pool = symbols->pool;
     *cards = (dea_rings_cards){.symbols = *symbols, .mesh = mesh, .node_count = mesh.disc + mesh.annulus - 1, .edge = mesh.disc};
-    for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
-        const bool modulus = symbols->law->constants[i % symbols->law->constant_count].modulus;
-        cards->symbols.constants[i] = modulus ? SCALE(1.0 / mega, symbols->constants[i]) : symbols->constants[i];
+    scale_law(pool, symbols->law, symbols->constants, cards->symbols.constants);
+    if (symbols->skin) {
+        scale_law(pool, symbols->skin, symbols->skin_constants, cards->symbols.skin_constants);
     }
     const dea_expr pressure = SCALE(1.0 / mega, MUL(dea_symbols_pressure(symbols), SQUARE(SQUARE(symbols->prestretch))));
     for (int strain = 0; strain < DEA_RINGS_STRAINS; strain++) {
-        make_stress(&cards->symbols, (dea_rings_strain)strain, NUM(0.0), cards->stress[strain][0]);
-        make_stress(&cards->symbols, (dea_rings_strain)strain, pressure, cards->stress[strain][1]);
+        make_stress(&cards->symbols, (dea_rings_strain)strain, false, pressure, cards->stress[strain][0]);
+        make_stress(&cards->symbols, (dea_rings_strain)strain, true, pressure, cards->stress[strain][1]);
     }
     dea_rings_slopes_of(mesh.disc, &cards->slopes[0]);
     dea_rings_slopes_of(mesh.annulus, &cards->slopes[1]);
@@ -112,8 +126,22 @@ static void name(dea_part_text *text, dea_expr ref, const char *what, size_t num
     dea_part_text_use(text, ref);
 }
 
+/* A term is worth a node of its own where the strains stand in it so often, and more than a number times another: a source's
+ * expression is differentiated by each of its nodes, and each node costs a row of the matrix. Measured with Yeoh's law. */
+enum { WORTH = 3 };
+
+static bool is_worth(const dea_part_text *text, dea_expr ref)
+{
+    const dea_term *term = &text->pool->terms[ref];
+    const bool scaled = term->operation == DEA_MUL && (!text->moves[term->a] || !text->moves[term->b]);
+    return text->places[ref] == 0 || (text->places[ref] >= WORTH && !scaled);
+}
+
 void dea_rings_cards_declare(const dea_rings_cards *cards, dea_part_text *text)
 {
+    for (int i = 0; i < text->pool->count; i++) {
+        text->nodal[i] = text->nodal[i] && is_worth(text, i);
+    }
     bool declared[DEA_RINGS_STRAINS][2] = {{false}};
     for (size_t q = 0; q < cards->ring_count; q++) {
         const dea_rings_ring *ring = &cards->rings[q];
@@ -179,7 +207,7 @@ static bool strains(const writer *w, const dea_rings_ring *ring, size_t column, 
 {
     *node = ring->first + column;
     *slope = w->cards->slopes[!ring->disc].of[ring->place][column];
-    return *node > 0 && *node <= w->cards->node_count && *slope != 0.0;
+    return *node > 0 && *node <= w->cards->node_count && fabs(*slope) > 1e-12; /* else 0 but for rounding */
 }
 
 static size_t columns_of(const writer *w, const dea_rings_ring *ring)

@@ -3,9 +3,11 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "engine/line.h"
 #include "expression/formula.h"
 #include "expression/tape.h"
 #include "netlist/export.h"
+#include "network/still.h"
 
 enum { AXIS, SYMBOLS = 8 + DEA_LAW_CONSTANTS };
 
@@ -64,7 +66,7 @@ static void write_quantities(const writer *w)
 {
     for (size_t i = 1; i < w->count; i++) {
         const quantity *q = &w->quantities[i];
-        fprintf(w->out, "* [%s]\n", q->unit);
+        fprintf(w->out, "* %s [%s]\n", q->name, q->unit);
         dea_export_parameter(w->out, q->name, q->value);
     }
 }
@@ -143,6 +145,9 @@ static dea_status write_all(writer *w, dea_error *error)
     }
     dea_rings_cards_declare(&w->cards, &w->text);
     dea_part_text_use(&w->text, w->symbols.frame_radius);
+    fprintf(w->out, "* exact membrane: %zu moving nodes (degrees of disc and annulus: %zu, %zu), displacement v(u<n>)/r, expected error\n",
+            w->cards.node_count, line->mesh.disc, line->mesh.annulus);
+    fprintf(w->out, "* of v(edge): %.0e. ring q: strains v(a<q>), v(b<q>), stresses v(s<q>), v(t<q>) [MPa]\n", line->error);
     fprintf(w->out, ".subckt line%zu k edge\n", line->number);
     write_quantities(w);
     dea_part_text_parameters(&w->text);
@@ -154,6 +159,31 @@ static dea_status write_all(writer *w, dea_error *error)
     write_edge(w);
     fprintf(w->out, ".ends\nxline%zu k edge%zu line%zu\n", line->number, line->number, line->number);
     return line->axis ? write_start(w, error) : DEA_OK;
+}
+
+/* Share of the wanted accuracy that is the mesh's. */
+static const double mesh_share = 0.03;
+
+void dea_rings_line_choose(dea_rings_line *line)
+{
+    enum { PROBES = 5 };
+    dea_scene scene = *line->scene;
+    line->mesh = (dea_rings_mesh){1, 3, true};
+    line->error = 0.0;
+    for (size_t probe = 0; probe < (line->axis ? PROBES : 1); probe++) {
+        dea_point point;
+        double error;
+        if (line->axis) {
+            dea_axis_set(line->axis, &scene, line->axis->values[line->from + probe * (line->to - line->from - 1) / (PROBES - 1)]);
+        }
+        dea_film_prepare(&scene, &point.film);
+        dea_point_place(&scene, &point);
+        if (dea_point_valid(&point) && point.voltage != 0.0) {
+            const dea_rings_mesh mesh = dea_still_mesh(&point, mesh_share * scene.accuracy, &error);
+            line->error = mesh.annulus > 0 ? fmax(line->error, error) : line->error;
+            line->mesh = mesh.annulus > line->mesh.annulus ? mesh : line->mesh;
+        }
+    }
 }
 
 dea_status dea_rings_line_write(const dea_rings_line *line, const dea_dialect *dialect, FILE *out, dea_error *error)

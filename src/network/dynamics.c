@@ -81,8 +81,9 @@ bool dea_dynamics_relax(dea_dynamics *d, const dea_scene *scene)
 static void set_port(const dea_scene *scene, dea_dynamics *d)
 {
     const dea_drive *drive = &scene->drive;
-    d->port = !isnan(drive->series_resistance) || !isnan(drive->leakage_resistance);
-    d->series = isnan(drive->series_resistance) ? 0.0 : drive->series_resistance;
+    const double series = dea_series_resistance(scene);
+    d->port = !isnan(series) || !isnan(drive->leakage_resistance);
+    d->series = isnan(series) ? 0.0 : series;
     if (scene->reduction.series) {
         d->dropped = d->series;
         d->series = 0.0;
@@ -137,7 +138,7 @@ static dea_status compile(dea_network *network, dea_dynamics *d, dea_error *erro
 static dea_scene film_of(const dea_scene *scene)
 {
     dea_scene film = *scene;
-    film.drive.series_resistance = film.drive.leakage_resistance = (double)NAN;
+    film.electrode.sheet_resistance = film.drive.series_resistance = film.drive.leakage_resistance = (double)NAN;
     film.drive.voltage = 1.0;
     return film;
 }
@@ -161,7 +162,7 @@ static dea_status place(const dea_scene *scene, dea_dynamics *d, dea_error *erro
     const dea_scene film = film_of(scene);
     dea_film_prepare(&film, &d->point.film);
     dea_point_place(&film, &d->point);
-    if (!dea_point_valid(&d->point) || !(scene->actuator.electrode_mass >= 0.0 || isnan(scene->actuator.electrode_mass))) {
+    if (!dea_point_valid(&d->point) || !(dea_electrode_mass(scene) >= 0.0)) {
         return dea_fail(error, DEA_ERROR_USAGE, "the scene has a number out of its range");
     }
     return DEA_OK;
@@ -173,7 +174,7 @@ dea_status dea_dynamics_settle(const dea_scene *scene, const dea_model *model, d
                         .radius = NAN,
                         .focal_length = scene->actuator.focal_length,
                         .refractive_index = scene->actuator.refractive_index,
-                        .linear = model->linear != NULL};
+                        .linear = model->linear != NULL && !scene->electrode.law};
     d->softens = !scene->reduction.softening;
     if (!dea_dynamics_relax(d, scene)) {
         return dea_fail(error, DEA_ERROR_USAGE, "the shares g of the branches sum to 1 or more");

@@ -38,7 +38,7 @@ typedef struct dea_dynamics {
     double conductance;                    /* 1/R_p [S], 0: no leakage */
     double radius;                         /* r_a [m] */
     double focal_length, refractive_index; /* NAN: no optics */
-    bool linear;                           /* one stress K u on the lever 1, without G */
+    bool linear;                           /* one stress K u on the lever 1, without G, as without a skin, as without a skin */
     dea_tape tape;                         /* owned: G, phi, C, then S_a and B_a in turn */
     dea_balance balance;                   /* owned: rows */
 } dea_dynamics;

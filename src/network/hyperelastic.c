@@ -15,6 +15,17 @@ dea_expr dea_hyperelastic_principal(const dea_symbols *symbols, dea_expr e1, dea
     return dea_expr_change(pool, form.stress[0]);
 }
 
+dea_expr dea_hyperelastic_skin(const dea_symbols *symbols, dea_expr e1, dea_expr e2)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_expr one = NUM(1.0);
+    dea_law_form form = {0};
+    if (!pool->exhausted) {
+        symbols->skin->form(pool, symbols->skin_constants, ADD(one, e1), ADD(one, e2), &form);
+    }
+    return MUL(MUL(symbols->skin_share, SQUARE(symbols->prestretch)), dea_expr_change(pool, form.stress[0]));
+}
+
 void dea_hyperelastic_nominal(const dea_symbols *symbols, dea_expr e1, dea_expr e2, dea_expr stress[2])
 {
     dea_pool *pool = symbols->pool;

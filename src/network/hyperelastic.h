@@ -11,6 +11,10 @@ dea_expr dea_hyperelastic_principal(const dea_symbols *symbols, dea_expr e1, dea
 /* lambda_pre (P_a - P_a(lambda_pre)) [Pa] at these stretches, likewise: work-conjugate to e_a. */
 void dea_hyperelastic_nominal(const dea_symbols *symbols, dea_expr e1, dea_expr e2, dea_expr stress[2]);
 
+/* t lambda_pre^2/H sigma_e(1 + e1, 1 + e2) [Pa], the Cauchy stress that the skin adds to the film under it. Only where there is a
+ * skin. */
+dea_expr dea_hyperelastic_skin(const dea_symbols *symbols, dea_expr e1, dea_expr e2);
+
 /* A(lambda_a) = 2 pi r_a H/(lambda_pre^2 (1 + s)) [m^2]. */
 dea_expr dea_hyperelastic_area(const dea_symbols *symbols, dea_expr strain);
 

@@ -11,11 +11,22 @@ static void set_masses(const dea_scene *scene, dea_membrane *m)
 {
     const dea_point *point = &m->film.point;
     const double density = isnan(scene->material.density) ? 0.0 : scene->material.density;
-    const double electrode = isnan(scene->actuator.electrode_mass) ? 0.0 : scene->actuator.electrode_mass;
+    const double electrode = dea_electrode_mass(scene);
     m->heavy = m->film.mass > 0.0;
     for (size_t n = 0; n < m->rings.node_count && m->heavy; n++) {
         m->masses[n] = density * point->film_thickness * m->rings.areas[n] +
                        electrode * point->film.square * m->rings.coated[n]; /* it lies on the pre-stretched film */
+    }
+}
+
+/* A ring at the frame has no node of its own: any does, with a hoop of 0. */
+static void find_own(dea_membrane *m)
+{
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        const dea_ring *ring = &m->rings.rings[r];
+        for (size_t i = 0; i < ring->count; i++) {
+            m->own[r] = ring->hoop[i] != 0.0 ? i : m->own[r];
+        }
     }
 }
 
@@ -26,6 +37,7 @@ dea_status dea_membrane_open(const dea_scene *scene, const dea_model *model, dea
     if (status == DEA_OK) {
         dea_rings_cut(&m->film.point, mesh, &m->rings);
         set_masses(scene, m);
+        find_own(m);
     }
     return status;
 }
@@ -44,26 +56,39 @@ static double square_of(const dea_membrane *m, double voltage)
 }
 
 /* lambda_pre (1 + e_a): stretches of a ring, and their changes from rest. */
-static void strain_ring(const dea_membrane *m, const dea_ring *ring, const double *u, double e[2])
+static void strain_ring(const dea_membrane *m, size_t r, const double *u, double e[2])
 {
-    double radial = 0.0, hoop = 0.0;
-    (void)m;
+    const dea_ring *ring = &m->rings.rings[r];
+    const double *at = u + ring->first;
+    double radial = 0.0;
     for (size_t i = 0; i < ring->count; i++) {
-        radial += ring->radial[i] * u[ring->first + i];
-        hoop += ring->hoop[i] * u[ring->first + i];
+        radial += ring->radial[i] * at[i];
     }
     e[0] = radial;
-    e[1] = hoop;
+    e[1] = ring->hoop[m->own[r]] * at[m->own[r]];
+}
+
+/* The skin is elastic: no damper or branch follows its stresses. */
+static void add_skin(const dea_point *point, const double e[2], dea_ring_look *at)
+{
+    dea_biaxial skin = {0};
+    dea_point_coat(point, e[0], e[1], &skin);
+    at->nominal[0] += skin.p1;
+    at->nominal[1] += skin.p2;
+    at->tangent[0][0] += skin.w11;
+    at->tangent[0][1] += skin.w12;
+    at->tangent[1][0] += skin.w12;
+    at->tangent[1][1] += skin.w22;
 }
 
 /* S_a = lambda_a P_a + lambda_pre e_a P_0, of absolute stresses P_0 + P_a; dS_a/dlambda_b = lambda_a W_ab + (P_0 + P_a) where
  * a = b. Branches that are held add their share of S_a to the film's own. */
-static bool look_at_ring(const dea_membrane *m, const dea_ring *ring, const double *u, dea_ring_look *at)
+static bool look_at_ring(const dea_membrane *m, size_t r, const double *u, dea_ring_look *at)
 {
     const dea_film *film = &m->film.point.film;
     const double held = m->film.held, l0 = film->prestretch;
     double e[2];
-    strain_ring(m, ring, u, e);
+    strain_ring(m, r, u, e);
     if (!(e[0] > -1.0 && e[1] > -1.0)) {
         return false;
     }
@@ -81,7 +106,10 @@ static bool look_at_ring(const dea_membrane *m, const dea_ring *ring, const doub
             at->tangent[a][b] = w[a][b] + held * (slope - (a == b ? own / l : 0.0)) / l;
         }
     }
-    return isfinite(p[0]) && isfinite(p[1]);
+    if (m->rings.rings[r].electroded && m->film.point.skin_share > 0.0) {
+        add_skin(&m->film.point, e, at);
+    }
+    return isfinite(at->nominal[0]) && isfinite(at->nominal[1]);
 }
 
 bool dea_membrane_look_at(const dea_membrane *m, const double *u, dea_membrane_look *look)
@@ -90,7 +118,7 @@ bool dea_membrane_look_at(const dea_membrane *m, const double *u, dea_membrane_l
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         const dea_ring *ring = &m->rings.rings[r];
         dea_ring_look *at = &look->rings[r];
-        if (!look_at_ring(m, ring, u, at)) {
+        if (!look_at_ring(m, r, u, at)) {
             return false;
         }
         const double area = at->stretch[0] * at->stretch[1];
@@ -102,18 +130,21 @@ bool dea_membrane_look_at(const dea_membrane *m, const double *u, dea_membrane_l
 }
 
 /* Subtracts what nominal stresses f_a of one ring do to its nodes. */
-static void pull_ring(const dea_ring *ring, double l0, const double f[2], double *force)
+static void pull_ring(const dea_membrane *m, size_t r, const double f[2], double *force)
 {
-    const double radial = ring->volume * l0 * f[0], hoop = ring->volume * l0 * f[1];
+    const dea_ring *ring = &m->rings.rings[r];
+    const double unit = ring->volume * m->film.point.film.prestretch, radial = unit * f[0];
+    double *at = force + ring->first;
     for (size_t i = 0; i < ring->count; i++) {
-        force[ring->first + i] -= radial * ring->radial[i] + hoop * ring->hoop[i];
+        at[i] -= radial * ring->radial[i];
     }
+    at[m->own[r]] -= unit * f[1] * ring->hoop[m->own[r]];
 }
 
 void dea_membrane_pull(const dea_membrane *m, double (*f)[2], double *force)
 {
     for (size_t r = 0; r < m->rings.ring_count; r++) {
-        pull_ring(&m->rings.rings[r], m->film.point.film.prestretch, f[r], force);
+        pull_ring(m, r, f[r], force);
     }
 }
 
@@ -125,7 +156,7 @@ void dea_membrane_push(const dea_membrane *m, const dea_membrane_look *look, dou
         const double *l = look->rings[r].stretch;
         const double f[2] = {-unit * l[0] * l[1] * l[1], -unit * l[0] * l[0] * l[1]};
         if (m->rings.rings[r].electroded) {
-            pull_ring(&m->rings.rings[r], m->film.point.film.prestretch, f, push);
+            pull_ring(m, r, f, push);
         }
     }
 }
@@ -133,7 +164,7 @@ void dea_membrane_push(const dea_membrane *m, const dea_membrane_look *look, dou
 void dea_membrane_rates(const dea_membrane *m, const double *v, double (*rates)[2])
 {
     for (size_t r = 0; r < m->rings.ring_count; r++) {
-        strain_ring(m, &m->rings.rings[r], v, rates[r]);
+        strain_ring(m, r, v, rates[r]);
         rates[r][0] *= m->film.point.film.prestretch;
         rates[r][1] *= m->film.point.film.prestretch;
     }
@@ -179,7 +210,7 @@ void dea_membrane_force(const dea_membrane *m, const dea_membrane_look *look, do
         for (int a = 0; a < 2; a++) {
             s[a] = at->nominal[a] - pressure * at->stretch[1 - a] + (x ? x[r][a] / at->stretch[a] : 0.0);
         }
-        pull_ring(ring, m->film.point.film.prestretch, s, force);
+        pull_ring(m, r, s, force);
     }
 }
 
@@ -210,19 +241,23 @@ bool dea_membrane_elliptic(const dea_membrane *m, const dea_membrane_look *look,
     return true;
 }
 
-/* Adds lever^T t lever of one ring. */
-static void assemble_ring(const dea_membrane *m, const dea_ring *ring, double t[2][2], double *matrix)
+/* Adds lever^T t lever of one ring; t is symmetric. */
+static void assemble_ring(const dea_membrane *m, size_t r, double t[2][2], double *matrix)
 {
-    const double l0 = m->film.point.film.prestretch, unit = ring->volume * l0 * l0;
-    const size_t n = m->rings.node_count;
+    const dea_ring *ring = &m->rings.rings[r];
+    const double l0 = m->film.point.film.prestretch, unit = ring->volume * l0 * l0, hoop = ring->hoop[m->own[r]];
+    const size_t n = m->rings.node_count, own = m->own[r];
+    double *block = matrix + ring->first * n + ring->first;
     for (size_t j = 0; j < ring->count; j++) {
-        const double radial = unit * (t[0][0] * ring->radial[j] + t[0][1] * ring->hoop[j]);
-        const double hoop = unit * (t[1][0] * ring->radial[j] + t[1][1] * ring->hoop[j]);
-        double *column = matrix + (ring->first + j) * n + ring->first;
+        const double radial = unit * t[0][0] * ring->radial[j];
         for (size_t i = 0; i < ring->count; i++) {
-            column[i] += ring->radial[i] * radial + ring->hoop[i] * hoop;
+            block[j * n + i] += ring->radial[i] * radial;
         }
+        const double mixed = unit * t[0][1] * ring->radial[j] * hoop;
+        block[own * n + j] += mixed;
+        block[j * n + own] += mixed;
     }
+    block[own * n + own] += unit * t[1][1] * hoop * hoop;
 }
 
 void dea_membrane_stiffness(const dea_membrane *m, const dea_membrane_look *look, double voltage, double (*x)[2], double share,
@@ -233,7 +268,7 @@ void dea_membrane_stiffness(const dea_membrane *m, const dea_membrane_look *look
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         double t[2][2];
         ring_tangent(&look->rings[r], m->rings.rings[r].electroded ? k : 0.0, x ? x[r] : NULL, share, t);
-        assemble_ring(m, &m->rings.rings[r], t, stiffness);
+        assemble_ring(m, r, t, stiffness);
     }
 }
 
@@ -247,7 +282,7 @@ void dea_membrane_damping(const dea_membrane *m, const dea_membrane_look *look, 
             t[a][0] = share * at->slope[a][0] / at->stretch[a];
             t[a][1] = share * at->slope[a][1] / at->stretch[a];
         }
-        assemble_ring(m, &m->rings.rings[r], t, damping);
+        assemble_ring(m, r, t, damping);
     }
 }
 
@@ -273,7 +308,7 @@ static double largest_strain(const dea_membrane *m, const double *u)
     double largest = 0.0;
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         double e[2];
-        strain_ring(m, &m->rings.rings[r], u, e);
+        strain_ring(m, r, u, e);
         largest = fmax(largest, fmax(fabs(e[0]), fabs(e[1])));
     }
     return largest;
@@ -426,7 +461,22 @@ static double edge_force(const dea_membrane *m, const dea_membrane_look *look, d
            l[0] * l[1] * l[1];
 }
 
-void dea_membrane_row(const dea_membrane *m, const dea_membrane_look *look, double voltage, const double *u, dea_row *row)
+/* Largest of values at the rings of an element, between them too where it could pass a limit: a polynomial leaves the range of its
+ * values at Lobatto's places by less than that range (Lebesgue constant below 3 up to degree 40). */
+static double largest_up_to(const dea_membrane *m, bool disc, const double *values, double limit)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (size_t r = 0; r < m->rings.ring_count; r++) {
+        const bool counts = m->rings.rings[r].disc == disc;
+        low = counts ? fmin(low, values[r]) : low;
+        high = counts ? fmax(high, values[r]) : high;
+    }
+    return high + (high - low) < limit ? high : dea_rings_largest(&m->rings, disc, values);
+}
+
+/* A row; its field is exact where lambda_1 lambda_2 passes a limit. */
+static void fill_row(const dea_membrane *m, const dea_membrane_look *look, double voltage, const double *u, double limit,
+                     dea_row *row)
 {
     const double k = square_of(m, voltage), tension = m->film.point.film.tension;
     double loss[2][DEA_RINGS_MOST], area[DEA_RINGS_MOST], most = -INFINITY; /* of stresses */
@@ -438,16 +488,21 @@ void dea_membrane_row(const dea_membrane *m, const dea_membrane_look *look, doub
         }
     }
     for (int i = 0; i < 4; i++) {
-        most = fmax(most, dea_rings_largest(&m->rings, i < 2, loss[i % 2]));
+        most = fmax(most, largest_up_to(m, i < 2, loss[i % 2], tension));
     }
     dea_point point = m->film.point;
     point.voltage = voltage;
     dea_row_fill(row, &point,
                  (dea_found){.strain = u[m->rings.edge] / m->film.radius,
                              .force = edge_force(m, look, voltage),
-                             .stretch = dea_rings_largest(&m->rings, m->film.point.kind == DEA_DOT, area),
+                             .stretch = largest_up_to(m, m->film.point.kind == DEA_DOT, area, limit),
                              .capacitance = look->capacitance,
                              .taut = tension > most});
+}
+
+void dea_membrane_row(const dea_membrane *m, const dea_membrane_look *look, double voltage, const double *u, dea_row *row)
+{
+    fill_row(m, look, voltage, u, -INFINITY, row);
 }
 
 /* dC/dt [F/s]. */
@@ -474,40 +529,46 @@ double dea_membrane_current(const dea_membrane *m, const dea_membrane_look *look
     return look->capacitance * moment->slope + capacitance_rate(m, look, v) * moment->voltage + leak;
 }
 
-/* The first sample of a run from rest, over a resistance that the network leaves out: the film has no charge yet. */
-static dea_moment uncharged(const dea_membrane *m, const dea_moment *moment)
+static bool fill_sample(const dea_membrane *m, const dea_membrane_look *look, const dea_moment *moment, const double *u,
+                        const double *v, dea_sample *sample)
 {
-    return (dea_moment){.time = moment->time, .source = moment->source, .charging = true,
-                        .charge_slope = moment->source / m->film.dropped};
-}
-
-bool dea_membrane_sample(const dea_membrane *m, const dea_moment *moment, const double *u, const double *v, dea_sample *sample)
-{
-    static const double still[DEA_RINGS_NODES] = {0.0};
-    const bool first = m->film.dropped > 0.0 && moment->time == 0.0 && !m->film.biased;
-    const dea_moment at = first ? uncharged(m, moment) : *moment;
-    const double *speed = first ? still : v;
-    dea_membrane_look look;
     dea_row row = dea_row_failed();
-    *sample = dea_sample_refused(at.time, at.source, DEA_STATE_PULL_IN);
-    if (dea_membrane_look_at(m, first ? still : u, &look)) {
-        dea_membrane_row(m, &look, at.voltage, first ? still : u, &row);
-    }
-    if (row.state == DEA_STATE_FAILED || !isfinite(speed[m->rings.edge])) {
+    const dea_point *point = &m->film.point;
+    const double field = fabs(moment->voltage) * point->layers / point->film_thickness; /* nominal, of a layer */
+    fill_row(m, look, moment->voltage, u, field > 0.0 ? point->film.breakdown / field : (double)INFINITY, &row);
+    *sample = dea_sample_refused(moment->time, moment->source, DEA_STATE_PULL_IN);
+    if (row.state == DEA_STATE_FAILED || !isfinite(v[m->rings.edge])) {
         return false;
     }
-    *sample = dea_sample_refused(at.time, at.source, row.state);
+    sample->state = row.state;
     sample->displacement = row.displacement;
     sample->strain = row.strain;
-    sample->velocity = speed[m->rings.edge];
+    sample->velocity = v[m->rings.edge];
     sample->force = row.force;
     sample->focal_length = row.focal_length;
-    sample->film_voltage = at.voltage;
+    sample->film_voltage = moment->voltage;
     if (m->film.port) {
-        sample->current = dea_membrane_current(m, &look, &at, speed);
+        sample->current = dea_membrane_current(m, look, moment, v);
         sample->charge = row.charge;
     }
     return true;
+}
+
+/* The first sample of a run from rest, over a resistance that the network leaves out: the film has no charge yet. */
+static bool sample_uncharged(const dea_membrane *m, const dea_moment *moment, dea_sample *sample)
+{
+    static const double still[DEA_RINGS_NODES] = {0.0};
+    const dea_moment at = {.time = moment->time, .source = moment->source, .charging = true,
+                           .charge_slope = moment->source / m->film.dropped};
+    dea_membrane_look look;
+    return dea_membrane_look_at(m, still, &look) && fill_sample(m, &look, &at, still, still, sample);
+}
+
+bool dea_membrane_sample(const dea_membrane *m, const dea_membrane_look *look, const dea_moment *moment, const double *u,
+                         const double *v, dea_sample *sample)
+{
+    const bool first = m->film.dropped > 0.0 && moment->time == 0.0 && !m->film.biased;
+    return first ? sample_uncharged(m, moment, sample) : fill_sample(m, look, moment, u, v, sample);
 }
 
 static double dot(size_t n, const double *a, const double *b)

@@ -21,6 +21,7 @@ typedef struct dea_membrane {
     dea_rings rings;
     double masses[DEA_RINGS_NODES]; /* m_n [kg]; all 0: none */
     bool heavy;
+    size_t own[DEA_RINGS_MOST]; /* place, among the nodes of a ring, of the one at its own radius, which alone strains its hoop */
 } dea_membrane;
 
 /* A ring at a state. */
@@ -106,9 +107,10 @@ void dea_membrane_row(const dea_membrane *membrane, const dea_membrane_look *loo
 /* Current of the source at a moment [A]; its u and v are not looked at. */
 double dea_membrane_current(const dea_membrane *membrane, const dea_membrane_look *look, const dea_moment *moment,
                             const double *v);
-/* Fills a row of a transient; u and v of the moment are not looked at. False, and pull_in, where the film cannot be at u. */
-bool dea_membrane_sample(const dea_membrane *membrane, const dea_moment *moment, const double *u, const double *v,
-                         dea_sample *sample);
+/* Fills a row of a transient from a look at u; u and v of the moment are not looked at. False, and pull_in, where it has no numbers.
+ */
+bool dea_membrane_sample(const dea_membrane *membrane, const dea_membrane_look *look, const dea_moment *moment, const double *u,
+                         const double *v, dea_sample *sample);
 
 /* Adds @p weight [s] times the powers at a moment to the audit. */
 void dea_membrane_audit_add(dea_audit *audit, const dea_membrane *membrane, const dea_membrane_look *look, const dea_moment *moment,

@@ -100,26 +100,50 @@ static dea_expr long_term_share(dea_pool *pool, const dea_scene *scene, const de
     return share;
 }
 
+/* What the sheets of the electrodes add to the series resistance: dea_sheet_share(). */
+static dea_expr sheet_resistance(dea_pool *pool, const dea_scene *scene, const dea_axis *axis, dea_expr b, dea_expr layers)
+{
+    const dea_expr sheet = scalar(pool, scene, axis, &scene->electrode.sheet_resistance), b2 = SQUARE(b);
+    dea_expr share = NUM(0.125 / DEA_PI);
+    if (scene->actuator.kind == DEA_LENS && !isnan(dea_expr_constant(pool, b))) {
+        share = NUM(dea_sheet_share(DEA_LENS, dea_expr_constant(pool, b), 1.0) / 2.0);
+    } else if (scene->actuator.kind == DEA_LENS) {
+        const dea_expr x = SUB(NUM(1.0), b2);
+        const dea_expr rest = SUB(SCALE(0.25, MUL(x, SUB(NUM(1.0), SCALE(3.0, b2)))), MUL(SQUARE(b2), LN(b)));
+        share = SCALE(0.5 / DEA_PI, DIV(rest, SQUARE(x)));
+    }
+    return MUL(MUL(sheet, share), DIV(SUB(SCALE(4.0, layers), NUM(2.0)), SQUARE(layers)));
+}
+
 /* Source voltage, less what a leaking film leaves on the series resistance. */
-static dea_expr film_voltage(dea_pool *pool, const dea_scene *scene, const dea_axis *axis)
+static dea_expr film_voltage(dea_pool *pool, const dea_scene *scene, const dea_axis *axis, const dea_symbols *s)
 {
     const dea_expr source = scalar(pool, scene, axis, &scene->drive.voltage);
-    const dea_expr series = scalar(pool, scene, axis, &scene->drive.series_resistance);
     const dea_expr leakage = scalar(pool, scene, axis, &scene->drive.leakage_resistance);
+    dea_expr series = scalar(pool, scene, axis, &scene->drive.series_resistance);
+    if (scene->electrode.sheet_resistance > 0.0) {
+        const dea_expr sheet = sheet_resistance(pool, scene, axis, s->coverage, s->layers);
+        series = given(pool, series) ? ADD(series, sheet) : sheet;
+    }
     if (!given(pool, series) || !given(pool, leakage)) {
         return source;
     }
     return MUL(source, DIV(leakage, ADD(series, leakage)));
 }
 
-/* The law at two stretches. */
-static dea_law_form form_at(const dea_symbols *symbols, dea_expr l1, dea_expr l2)
+/* A law at two stretches. */
+static dea_law_form form_of(dea_pool *pool, const dea_law *law, const dea_expr *constants, dea_expr l1, dea_expr l2)
 {
     dea_law_form form = {0};
-    if (!symbols->pool->exhausted) {
-        symbols->law->form(symbols->pool, symbols->constants, l1, l2, &form);
+    if (!pool->exhausted) {
+        law->form(pool, constants, l1, l2, &form);
     }
     return form;
+}
+
+static dea_law_form form_at(const dea_symbols *symbols, dea_expr l1, dea_expr l2)
+{
+    return form_of(symbols->pool, symbols->law, symbols->constants, l1, l2);
 }
 
 dea_expr dea_symbols_rest_stress(const dea_symbols *symbols)
@@ -128,31 +152,58 @@ dea_expr dea_symbols_rest_stress(const dea_symbols *symbols)
 }
 
 /* dsigma/dlambda at an equi-biaxial stretch. */
-static dea_expr modulus_at(const dea_symbols *symbols, dea_expr stretch)
+static dea_expr modulus_at(dea_pool *pool, const dea_law *law, const dea_expr *constants, dea_expr stretch)
 {
-    dea_pool *pool = symbols->pool;
     const dea_expr l = dea_expr_node(pool, 0);
-    return dea_expr_put(pool, dea_expr_slope(pool, form_at(symbols, l, l).stress[0]), DEA_NODE, 0, stretch);
+    return dea_expr_put(pool, dea_expr_slope(pool, form_of(pool, law, constants, l, l).stress[0]), DEA_NODE, 0, stretch);
 }
 
 dea_expr dea_symbols_modulus(const dea_symbols *symbols)
 {
-    return modulus_at(symbols, symbols->prestretch);
+    return modulus_at(symbols->pool, symbols->law, symbols->constants, symbols->prestretch);
+}
+
+dea_expr dea_symbols_skin_modulus(const dea_symbols *symbols)
+{
+    dea_pool *pool = symbols->pool;
+    return MUL(MUL(symbols->skin_share, symbols->prestretch), modulus_at(pool, symbols->skin, symbols->skin_constants, NUM(1.0)));
 }
 
 /* P1 = sigma_1/l1, so that W11 = (dsigma_1/dl1 - sigma_1/l)/l and W12 = dsigma_1/dl2/l at l1 = l2 = l. */
-dea_tangent dea_symbols_tangent(const dea_symbols *symbols)
+static dea_tangent tangent_at(dea_pool *pool, const dea_law *law, const dea_expr *constants, dea_expr l)
 {
-    dea_pool *pool = symbols->pool;
-    const dea_expr l = symbols->prestretch;
-    const dea_expr stress = form_at(symbols, dea_expr_node(pool, 0), dea_expr_node(pool, 1)).stress[0];
+    const dea_expr stress = form_of(pool, law, constants, dea_expr_node(pool, 0), dea_expr_node(pool, 1)).stress[0];
     dea_expr slope[2];
     for (int i = 0; i < 2; i++) {
         const dea_expr over = dea_expr_derivative(pool, stress, DEA_NODE, i);
         slope[i] = dea_expr_put(pool, over, DEA_NODE, -1, l);
     }
-    const dea_expr along = SUB(slope[0], DIV(dea_symbols_rest_stress(symbols), l));
+    const dea_expr along = SUB(slope[0], DIV(form_of(pool, law, constants, l, l).stress[0], l));
     return (dea_tangent){DIV(along, l), DIV(slope[1], l)};
+}
+
+dea_tangent dea_symbols_tangent(const dea_symbols *symbols)
+{
+    return tangent_at(symbols->pool, symbols->law, symbols->constants, symbols->prestretch);
+}
+
+dea_tangent dea_symbols_skin_tangent(const dea_symbols *symbols)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_tangent skin = tangent_at(pool, symbols->skin, symbols->skin_constants, NUM(1.0));
+    return (dea_tangent){MUL(symbols->skin_share, skin.w11), MUL(symbols->skin_share, skin.w12)};
+}
+
+/* The skin of the electrodes, if there is one. */
+static void coat(const dea_scene *scene, const dea_axis *axis, dea_symbols *s)
+{
+    const dea_electrode *electrode = &scene->electrode;
+    dea_pool *pool = s->pool;
+    s->skin = electrode->law;
+    for (size_t i = 0; i < DEA_LAW_CONSTANTS && s->skin; i++) {
+        s->skin_constants[i] = scalar(pool, scene, axis, &electrode->constants[i]);
+    }
+    s->skin_share = s->skin ? DIV(scalar(pool, scene, axis, &electrode->thickness), s->film_thickness) : NUM(0.0);
 }
 
 dea_symbols dea_symbols_of(const dea_scene *scene, const dea_axis *axis, dea_pool *pool)
@@ -179,7 +230,8 @@ dea_symbols dea_symbols_of(const dea_scene *scene, const dea_axis *axis, dea_poo
     s.permittivity = MUL(SCALE(DEA_EPSILON_0, relative), SQUARE(s.layers));
     const dea_expr breakdown = scalar(pool, scene, axis, &material->breakdown);
     s.breakdown = given(pool, breakdown) ? breakdown : NUM(INFINITY);
-    s.voltage = film_voltage(pool, scene, axis);
+    coat(scene, axis, &s);
+    s.voltage = film_voltage(pool, scene, axis, &s);
     s.focal_length = scalar(pool, scene, axis, &actuator->focal_length);
     s.refractive_index = scalar(pool, scene, axis, &actuator->refractive_index);
     return s;
@@ -260,8 +312,12 @@ static void place_edge(const dea_symbols *symbols, dea_network *network)
     dea_network_demand(network, symbols->coverage);
     dea_network_demand(network, SUB(one, symbols->coverage));
     dea_network_demand(network, symbols->permittivity);
-    dea_network_demand(network, modulus_at(symbols, one)); /* three times the shear modulus, twice over */
+    dea_network_demand(network, modulus_at(pool, symbols->law, symbols->constants, one)); /* three times the shear modulus, twice over */
     dea_network_demand(network, form_at(symbols, symbols->prestretch, symbols->prestretch).room);
+    if (symbols->skin) {
+        dea_network_demand(network, symbols->skin_share);
+        dea_network_demand(network, modulus_at(pool, symbols->skin, symbols->skin_constants, one));
+    }
     network->breakdown = symbols->breakdown;
 }
 
@@ -328,7 +384,8 @@ int dea_network_stresses(dea_network *network, dea_network_stress *stresses)
 
 dea_expr dea_network_tension(dea_network *network)
 {
-    return sum_of(network, DEA_ROLE_TENSION);
+    dea_pool *pool = &network->pool;
+    return ADD(sum_of(network, DEA_ROLE_TENSION), MUL(sum_of(network, DEA_ROLE_BESIDE), network->edge));
 }
 
 dea_expr dea_network_softening(dea_network *network)

@@ -25,12 +25,15 @@ typedef struct dea_symbols {
     dea_expr modulus;              /* Y [Pa]: the scene's, or dsigma/dlambda at the pre-stretch */
     dea_expr permittivity;         /* absolute, times layers^2 [F/m] */
     dea_expr breakdown;            /* breakdown strength [V/m], +inf: none */
+    const dea_law *skin;                        /* of the electrodes' skin, NULL: there is none */
+    dea_expr skin_constants[DEA_LAW_CONSTANTS]; /* of it */
+    dea_expr skin_share;                        /* t/H [1] */
     dea_expr voltage;              /* across the film [V] */
     dea_expr focal_length;         /* of a lens at rest [m], NAN: no optics */
     dea_expr refractive_index;     /* of its liquid [1] */
 } dea_symbols;
 
-typedef enum dea_role { DEA_ROLE_SPRING, DEA_ROLE_SOFTENING, DEA_ROLE_HYPERELASTIC, DEA_ROLE_TENSION, DEA_ROLE_SOURCE } dea_role;
+typedef enum dea_role { DEA_ROLE_SPRING, DEA_ROLE_SOFTENING, DEA_ROLE_HYPERELASTIC, DEA_ROLE_TENSION, DEA_ROLE_BESIDE, DEA_ROLE_SOURCE } dea_role;
 
 /* One element between edge and frame. */
 typedef struct dea_element {
@@ -38,7 +41,8 @@ typedef struct dea_element {
     const char *name;    /* netlist name, e.g. "n_a" */
     const char *meaning; /* what it is, with its unit and equation */
     dea_expr value; /* spring, softening: stiffness 1/n [N/m]; hyperelastic spring: change of its stress from rest [Pa]; tension:
-                       what the stress at rest does by its levers, against u [N]; source: outward force [N] */
+                       what the stress at rest does by its levers, and what is elastic beside the film, against u [N]; beside:
+                       stiffness of what neither damps nor relaxes [N/m]; source: outward force [N] */
     dea_expr lever; /* of a hyperelastic spring: force against u over stress [m^2] */
 } dea_element;
 
@@ -110,6 +114,10 @@ typedef struct dea_tangent {
     dea_expr w11, w12;
 } dea_tangent;
 dea_tangent dea_symbols_tangent(const dea_symbols *symbols);
+/* Tangent moduli of the skin at rest times t/H, and dsigma/dlambda, t lambda_pre/H Y_e(1): what it adds to the film [Pa]. Only where
+ * there is a skin. */
+dea_tangent dea_symbols_skin_tangent(const dea_symbols *symbols);
+dea_expr dea_symbols_skin_modulus(const dea_symbols *symbols);
 /* Y = dsigma/dlambda at the pre-stretch [Pa]. */
 dea_expr dea_symbols_modulus(const dea_symbols *symbols);
 /* True field of the film at rest in one of its layers, layers U/H [V/m] without pre-stretch. */

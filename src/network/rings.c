@@ -119,7 +119,7 @@ void dea_rings_cut(const dea_point *point, dea_rings_mesh mesh, dea_rings *rings
     const element disc = {.to = edge, .disc = true, .electroded = dot};
     const element annulus = {.from = edge, .to = rim, .logarithmic = mesh.logarithmic, .electroded = !dot, .node = mesh.disc};
     const size_t frame = mesh.disc + mesh.annulus;
-    *rings = (dea_rings){.mesh = mesh, .node_count = frame - 1, .edge = mesh.disc - 1};
+    *rings = (dea_rings){.mesh = mesh, .node_count = frame - 1, .edge = mesh.disc - 1, .rim = rim};
     cut_element(&disc, mesh.disc, frame, point, rings);
     cut_element(&annulus, mesh.annulus, frame, point, rings);
 }
@@ -212,12 +212,12 @@ double dea_rings_largest(const dea_rings *rings, bool disc, const double *values
     return s.count < 3 ? largest : fmax(largest, largest_between(&s, fmax(first, place - width), fmin(last, place + width)));
 }
 
-/* Lagrange polynomial number @p n of the rule at x. */
-static double lagrange(const lobatto *rule, size_t n, double x)
+/* Lagrange polynomial number @p n of a degree at x. */
+static double lagrange(const double *places, size_t degree, size_t n, double x)
 {
     double value = 1.0;
-    for (size_t i = 0; i <= rule->degree; i++) {
-        value *= i == n ? 1.0 : (x - rule->places[i]) / (rule->places[n] - rule->places[i]);
+    for (size_t i = 0; i <= degree; i++) {
+        value *= i == n ? 1.0 : (x - places[i]) / (places[n] - places[i]);
     }
     return value;
 }
@@ -233,7 +233,7 @@ static void transfer_element(size_t degree, size_t from, size_t from_count, size
         for (size_t n = 0; n <= degree; n++) {
             const size_t row = to + q, column = from + n;
             if (row > 0 && row <= to_count && column > 0 && column <= from_count) {
-                matrix[(row - 1) * from_count + column - 1] = lagrange(&rule, n, other.places[q]);
+                matrix[(row - 1) * from_count + column - 1] = lagrange(rule.places, degree, n, other.places[q]);
             }
         }
     }
@@ -257,4 +257,43 @@ void dea_rings_move(const double *matrix, size_t from_count, const double *u, si
             v[i] += matrix[i * from_count + n] * u[n];
         }
     }
+}
+
+/* Value and slope over x of the polynomial with those values at the nodes of a rule. */
+static double interpolate(const lobatto *rule, const double *values, double x, double *slope)
+{
+    double sum = 0.0, slopes = 0.0;
+    for (size_t n = 0; n <= rule->degree; n++) {
+        double at = 0.0; /* polynomials of degree p are exact at the nodes, and so are their slopes */
+        for (size_t q = 0; q <= rule->degree; q++) {
+            at += rule->slopes[n][q] * values[q];
+        }
+        const double weight = lagrange(rule, n, x);
+        sum += weight * values[n];
+        slopes += weight * at;
+    }
+    *slope = slopes;
+    return sum;
+}
+
+double dea_rings_displacement(const dea_rings *rings, const double *u, double radius, bool outside, double *slope)
+{
+    const double edge = rings->radii[rings->edge];
+    const bool disc = radius < edge || (radius <= edge && !outside);
+    const element e = disc ? (element){.to = edge} : (element){.from = edge, .to = rings->rim, .logarithmic = rings->mesh.logarithmic};
+    const size_t degree = disc ? rings->mesh.disc : rings->mesh.annulus, first = disc ? 0 : rings->mesh.disc;
+    double values[DEA_RINGS_DEGREE + 1], stretch, over;
+    lobatto rule;
+    make_lobatto(degree, &rule);
+    for (size_t i = 0; i <= degree; i++) {
+        const size_t node = first + i;
+        values[i] = node == 0 || node > rings->node_count ? 0.0 : u[node - 1];
+    }
+    const double x = e.logarithmic ? 2.0 * log(radius / e.from) / log(e.to / e.from) - 1.0 : 2.0 * (radius - e.from) / (e.to - e.from) - 1.0;
+    const double value = interpolate(&rule, values, fmin(x, 1.0), &over);
+    radius_at(&e, fmin(x, 1.0), &stretch);
+    if (slope) {
+        *slope = over / stretch;
+    }
+    return value;
 }

@@ -13,7 +13,7 @@
 #include "deaspice/model.h"
 
 /* Largest degree of an element, and what follows: most moving nodes and rings. */
-enum { DEA_RINGS_DEGREE = 24, DEA_RINGS_NODES = 2 * DEA_RINGS_DEGREE - 1, DEA_RINGS_MOST = 2 * DEA_RINGS_DEGREE + 1 };
+enum { DEA_RINGS_DEGREE = 40, DEA_RINGS_NODES = 2 * DEA_RINGS_DEGREE - 1, DEA_RINGS_MOST = 2 * DEA_RINGS_DEGREE + 1 };
 
 /* How fine: degrees of the elements of disc and annulus, 1 ... DEA_RINGS_DEGREE, and whether the nodes of the annulus lie evenly in
  * ln R, which statics and small discs want, or in R. */
@@ -39,6 +39,7 @@ typedef struct dea_rings {
     double radii[DEA_RINGS_NODES]; /* R_n in the reference film [m] */
     double areas[DEA_RINGS_NODES]; /* of reference film that moves with each, electroded or not [m^2] */
     double coated[DEA_RINGS_NODES]; /* and of electroded film [m^2] */
+    double rim;  /* F [m] */
     size_t ring_count;
     dea_ring rings[DEA_RINGS_MOST]; /* from the centre out; the edge has one of the disc and one of the annulus */
 } dea_rings;
@@ -62,5 +63,9 @@ double dea_rings_largest(const dea_rings *rings, bool disc, const double *values
  * another by the polynomials of its elements; both even in R or in ln R. And its product with displacements. */
 void dea_rings_transfer(dea_rings_mesh from, dea_rings_mesh to, double *matrix);
 void dea_rings_move(const double *matrix, size_t from_count, const double *u, size_t to_count, double *v);
+
+/* Displacement at reference radius R, 0 ... F, of displacements of the nodes [m]; *@p slope becomes du/dR [1] unless it is NULL,
+ * at the edge that of the annulus where @p outside. */
+double dea_rings_displacement(const dea_rings *rings, const double *u, double radius, bool outside, double *slope);
 
 #endif

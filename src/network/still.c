@@ -45,6 +45,9 @@ static dea_biaxial stress_of(const dea_still *still, const dea_ring *ring, strai
     const double k = ring->electroded ? share * still->pressure : 0.0;
     const double l1 = film->prestretch * (1.0 + e.e1), l2 = film->prestretch * (1.0 + e.e2);
     dea_biaxial s = dea_film_biaxial(film, e.e1, e.e2);
+    if (ring->electroded && still->point->skin_share > 0.0) {
+        dea_point_coat(still->point, e.e1, e.e2, &s);
+    }
     s.p1 -= k * l1 * l2 * l2;
     s.p2 -= k * l1 * l1 * l2;
     s.w11 -= k * l2 * l2;
@@ -116,6 +119,9 @@ bool dea_still_step(const dea_still *still, double share, const double *u, doubl
             return false;
         }
         const dea_biaxial s = stress_of(still, ring, e, share);
+        if (!(s.w11 > 0.0)) {
+            return false; /* no longer elliptic: the film thins within a place, and no mesh tells how far */
+        }
         add_ring(still, ring, &s, n, step, k);
     }
     if (!factor(n, k)) {
@@ -210,14 +216,14 @@ double dea_still_strain(const dea_still *still, const double *u)
 /* Energies of the displacement u in the stiffness at u and in that at rest without load. */
 bool dea_still_near(const dea_still *still, const double *u)
 {
-    const dea_film *film = &still->point->film;
     double now = 0.0, rest = 0.0, most = 0.0;
     for (size_t q = 0; q < still->rings.ring_count; q++) {
         const dea_ring *ring = &still->rings.rings[q];
         const strains e = strains_of(ring, u);
         const dea_biaxial s = stress_of(still, ring, e, 1.0);
         now += ring->volume * (s.w11 * e.e1 * e.e1 + 2.0 * s.w12 * e.e1 * e.e2 + s.w22 * e.e2 * e.e2);
-        rest += ring->volume * (film->w11 * (e.e1 * e.e1 + e.e2 * e.e2) + 2.0 * film->w12 * e.e1 * e.e2);
+        const dea_biaxial bare = stress_of(still, ring, (strains){0.0, 0.0}, 0.0);
+        rest += ring->volume * (bare.w11 * (e.e1 * e.e1 + e.e2 * e.e2) + 2.0 * bare.w12 * e.e1 * e.e2);
         most = fmax(most, fmax(fabs(e.e1), fabs(e.e2)));
     }
     return most < 0.15 && now > 0.5 * rest && now < 2.0 * rest;
@@ -324,17 +330,19 @@ static double edge_error(const dea_still *coarse, const double *u, const dea_sti
     return dea_still_step(fine, 1.0, v, step) ? fabs(step[fine->rings.edge] / v[fine->rings.edge]) : (double)INFINITY;
 }
 
-dea_rings_mesh dea_still_mesh(const dea_point *point, double accuracy, double *u)
+dea_rings_mesh dea_still_mesh(const dea_point *point, double accuracy, double *error)
 {
     const dea_rings_mesh none = {0, 0, true};
-    double own[DEA_RINGS_NODES];
-    double *solution = u ? u : own;
+    double u[DEA_RINGS_NODES];
+    *error = (double)INFINITY;
     for (size_t degree = 2; degree + 2 <= DEA_RINGS_DEGREE; degree++) {
         dea_still still, fine;
         dea_still_open(point, (dea_rings_mesh){1, degree, true}, &still);
         dea_still_open(point, (dea_rings_mesh){1, degree + 2, true}, &fine);
-        if (dea_still_climb(&still, solution) == DEA_STATE_OK &&
-            (still.pressure == 0.0 || edge_error(&still, solution, &fine) <= accuracy)) {
+        if (dea_still_climb(&still, u) == DEA_STATE_OK) {
+            *error = still.pressure == 0.0 ? 0.0 : edge_error(&still, u, &fine);
+        }
+        if (*error <= accuracy) {
             return still.rings.mesh;
         }
     }

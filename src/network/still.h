@@ -15,7 +15,7 @@ typedef struct dea_still {
 void dea_still_open(const dea_point *point, dea_rings_mesh mesh, dea_still *still);
 
 /* Newton's step at @p u under that share of the load, node_count values [m]. False where the stiffness matrix is not positive
- * definite (a pivot <= 0: the film is not stable) or a ring has no stress; then @p step is undefined. */
+ * definite (a pivot <= 0: the film is not stable), a ring has no stress or is no longer elliptic (ds_1/dlambda_1 <= 0); then @p step is undefined. */
 bool dea_still_step(const dea_still *still, double share, const double *u, double *step);
 
 /* Follows the equilibrium from rest as the load grows; on DEA_STATE_OK @p u holds it under the full load, good to rounding.
@@ -32,9 +32,9 @@ double dea_still_strain(const dea_still *still, const double *u);
 /* Fills the row of an equilibrium; its state says slack or breakdown. */
 void dea_still_fill(const dea_still *still, const double *u, dea_row *row);
 
-/* Coarsest mesh on which the edge's displacement is good to @p accuracy, relative, by the Newton step of a mesh two degrees finer:
- * of a film that has an equilibrium, the nodes of its annulus evenly in ln R. @p u may be NULL; else it holds the equilibrium.
- * Degree 0: there is none, or none so good. */
-dea_rings_mesh dea_still_mesh(const dea_point *point, double accuracy, double *u);
+/* Coarsest mesh on which the edge's displacement is good to @p accuracy, relative, by the Newton step of a mesh two degrees finer,
+ * which is *error: of a film that has an equilibrium, the nodes of its annulus evenly in ln R. Degree 0: there is none, or none so
+ * good. */
+dea_rings_mesh dea_still_mesh(const dea_point *point, double accuracy, double *error);
 
 #endif

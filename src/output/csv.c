@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CSV_BUFFER = 1 << 16, CSV_TAIL = (DEA_LAYOUT_COLUMNS + 2) * DEA_NUMBER_LENGTH + 16 };
+enum { CSV_BUFFER = 1 << 16, CSV_TAIL = (DEA_LAYOUT_COLUMNS + DEA_SPREAD_COLUMNS + 3) * DEA_NUMBER_LENGTH + 16 };
 
 typedef struct csv {
     const dea_scene *scene;
@@ -91,7 +91,8 @@ static size_t csv_lead(csv *sheet)
     return (size_t)(out - sheet->prefix);
 }
 
-static void csv_row(csv *sheet, size_t lead, const char *row)
+/* A row, and of what it tells over the radius the entry at one radius (NULL: it tells nothing). */
+static void csv_row(csv *sheet, size_t lead, const char *row, double radius, const double *entry)
 {
     const dea_layout *layout = &sheet->layout;
     csv_put(sheet, sheet->prefix, lead);
@@ -101,6 +102,10 @@ static void csv_row(csv *sheet, size_t lead, const char *row)
         double value;
         memcpy(&value, row + layout->columns[i].offset, sizeof value);
         out += dea_number_write(out, value);
+        *out++ = ',';
+    }
+    for (size_t i = 0; entry && i <= layout->spread_count; i++) {
+        out += dea_number_write(out, i == 0 ? radius : entry[i - 1]);
         *out++ = ',';
     }
     sheet->used += (size_t)(out - start);
@@ -121,6 +126,11 @@ static void csv_header(csv *sheet)
     }
     for (size_t i = 0; i < sheet->layout.column_count; i++) {
         csv_put(sheet, sheet->layout.columns[i].name, strlen(sheet->layout.columns[i].name));
+        csv_put(sheet, ",", 1);
+    }
+    for (size_t i = 0; sheet->layout.spread_count > 0 && i <= sheet->layout.spread_count; i++) {
+        const char *name = i == 0 ? "radius_m" : sheet->layout.spread[i - 1].name;
+        csv_put(sheet, name, strlen(name));
         csv_put(sheet, ",", 1);
     }
     csv_put(sheet, "state\n", 6);
@@ -164,9 +174,12 @@ static dea_status csv_open(const dea_scene *scene, const char *engine, dea_atomi
 
 static dea_status csv_point(csv *sheet, const char *point, dea_error *error)
 {
-    const size_t lead = csv_lead(sheet);
-    for (size_t i = 0; i < sheet->layout.rows; i++) {
-        csv_row(sheet, lead, point + i * sheet->layout.row_size);
+    const dea_layout *layout = &sheet->layout;
+    const size_t lead = csv_lead(sheet), each = layout->spread_count > 0 ? layout->spread_points : 1;
+    for (size_t i = 0; i < layout->rows * each; i++) {
+        const bool spread = layout->spread_count > 0;
+        csv_row(sheet, lead, point + i / each * layout->row_size, spread ? dea_layout_radius(sheet->scene, layout, i % each) : 0.0,
+                spread ? dea_layout_entry(layout, point, i / each, i % each) : NULL);
         if (sheet->used >= CSV_BUFFER) {
             const dea_status status = csv_flush(sheet, error);
             if (status != DEA_OK) {

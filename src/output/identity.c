@@ -95,6 +95,8 @@ static void put_lists(FILE *out, const dea_scene *scene)
     put_numbers(out, "material.stretches", material->stretches, 2);
     fprintf(out, "material.moduli=%s\n", material->instantaneous ? "instantaneous" : "long-term");
     fprintf(out, "drive.waveform.kind=%d\n", (int)wave->kind);
+    fprintf(out, "drive.waveform.choice=%zu\n", wave->choice);
+    put_numbers(out, "drive.waveform.sines", &wave->sines[0].offset, wave->sine_count * sizeof wave->sines[0] / sizeof(double));
     put_numbers(out, "drive.waveform.times", wave->times, wave->point_count);
     put_numbers(out, "drive.waveform.voltages", wave->voltages, wave->point_count);
     if (dea_study_of(scene)->identify) {

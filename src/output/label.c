@@ -101,6 +101,7 @@ static void axis_names(const dea_axis *axis, char words[DEA_NAME_LENGTH], const 
         {"drive.waveform.sine.amplitude", "Amplitude", ""},
         {"drive.waveform.sine.frequency", "Frequency", "f"},
         {"study.ac.bias", "Bias voltage", "U"},
+        {"study.modes.bias", "Bias voltage", "U"},
         {"material.modulus", "Operating modulus", "Y"},
         {"material.permittivity", "Relative permittivity", "ε"},
     };

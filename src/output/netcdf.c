@@ -8,6 +8,7 @@
 
 #include "deaspice/measures.h"
 #include "deaspice/model.h"
+#include "drive/wave.h"
 #include "scene/keys.h"
 #include "study/study.h"
 
@@ -74,6 +75,8 @@ typedef struct grid {
     int columns[DEA_LAYOUT_COLUMNS]; /* variables of the rows; that of the first may be a coordinate */
     int state, model;
     int figures[FIGURES], averages[AVERAGES], window[2];
+    int radius, spread[DEA_SPREAD_COLUMNS]; /* what rows tell over the radius */
+    int *spread_dimensions;                 /* of those: of the rows, the radius, the points */
     int failed; /* first status of the library that is not 0 */
     char *held; /* points that wait, NULL in a sweep; owned */
     size_t held_first, held_count, held_room;
@@ -150,15 +153,14 @@ static bool begins_with(const char *path, const char *with)
 /* Does the scene use this scalar? Windows and branches are lists, which have places of their own. */
 static bool is_used(const dea_scene *scene, const dea_key *key)
 {
-    const dea_wave_kind wave = scene->drive.waveform.kind;
+    const dea_wave *wave = dea_wave_of(scene->drive.waveform.kind);
     const unsigned kind = scene->actuator.kind == DEA_DOT ? DEA_KEY_DOT : DEA_KEY_LENS;
     const struct {
         const char *path;
         bool used;
     } parts[] = {
-        {"drive.waveform.step.", wave == DEA_WAVE_STEP},
-        {"drive.waveform.sine.", wave == DEA_WAVE_SINE},
-        {"drive.waveform.", wave != DEA_WAVE_NONE},
+        {"drive.waveform.period", wave},
+        {"drive.waveform.", wave && begins_with(key->path, wave->path) && key->path[strlen(wave->path)] == '.'},
         {"study.transient.average.", false},
         {dea_study_of(scene)->path, true},
         {"study.", false},
@@ -169,7 +171,7 @@ static bool is_used(const dea_scene *scene, const dea_key *key)
     while (!begins_with(key->path, parts[part].path)) {
         part++;
     }
-    const bool listed = key->law && (key->law != scene->material.law || key->stride > 0);
+    const bool listed = (key->law && key->law != scene->material.law) || key->stride > 0;
     return parts[part].used && key->offset != DEA_KEY_NOWHERE && (key->kinds & kind) != 0 && !listed;
 }
 
@@ -272,9 +274,11 @@ static void put_provenance(grid *file, const char *engine)
     put_listed_law(file);
     put_prony(file);
     if (file->study->timed) {
-        static const char *const waves[] = {
-            [DEA_WAVE_NONE] = "none", [DEA_WAVE_STEP] = "step", [DEA_WAVE_POINTS] = "points", [DEA_WAVE_SINE] = "sine"};
-        put_text(file, NC_GLOBAL, "waveform", waves[scene->drive.waveform.kind]);
+        const dea_wave *wave = dea_wave_of(scene->drive.waveform.kind);
+        put_text(file, NC_GLOBAL, "waveform", wave ? dea_wave_name(wave) : "none");
+        if (wave && wave->word) {
+            put_text(file, NC_GLOBAL, wave->word, wave->words[scene->drive.waveform.choice]);
+        }
         put_text(file, NC_GLOBAL, "start", scene->transient.from_bias ? "bias" : "rest");
     }
 }
@@ -374,6 +378,25 @@ static void define_figures(grid *file)
     }
 }
 
+/* What rows tell over the radius, whose dimension stands behind that of the rows. */
+static void define_spread(grid *file)
+{
+    const dea_layout *layout = &file->layout;
+    int *own = file->spread_dimensions, *saved = file->dimensions;
+    memcpy(own, saved, file->lead * sizeof *own);
+    memcpy(own + file->lead + 1, saved + file->lead, file->point_rank * sizeof *own);
+    grid_keep(file, file->nc.nc_def_dim(file->file, "radius", layout->spread_points, &own[file->lead]));
+    grid_keep(file, file->nc.nc_def_var(file->file, "radius", NC_DOUBLE, 1, &own[file->lead], &file->radius));
+    put_text(file, file->radius, "units", "m");
+    put_text(file, file->radius, "long_name", "radius of the film at rest and 0 V");
+    file->dimensions = own;
+    for (size_t i = 0; i < layout->spread_count; i++) {
+        const dea_column *told = &layout->spread[i];
+        file->spread[i] = define_numbers(file, told->name, told->long_name, told->unit, 0, file->lead + 1 + file->point_rank);
+    }
+    file->dimensions = saved;
+}
+
 /* Averages of a transient over a dimension of windows. */
 static void define_averages(grid *file)
 {
@@ -406,6 +429,15 @@ static void put_rows_coordinate(grid *file)
     }
 }
 
+static void put_radii(grid *file)
+{
+    for (size_t i = 0; i < file->layout.spread_points; i++) {
+        const size_t one = 1;
+        const double radius = dea_layout_radius(file->scene, &file->layout, i);
+        grid_keep(file, file->nc.nc_put_vara_double(file->file, file->radius, &i, &one, &radius));
+    }
+}
+
 static void put_windows(grid *file)
 {
     const dea_transient *transient = &file->scene->transient;
@@ -431,6 +463,7 @@ static void put_coordinates(grid *file)
     if (has_coordinate(file)) {
         put_rows_coordinate(file);
     }
+    put_radii(file);
     if (file->study->timed) {
         put_windows(file);
     }
@@ -459,6 +492,9 @@ static void grid_define(grid *file, const char *path, const char *engine)
     }
     define_columns(file);
     define_figures(file);
+    if (file->layout.spread_count > 0) {
+        define_spread(file);
+    }
     if (file->study->timed) {
         define_averages(file);
     }
@@ -486,13 +522,14 @@ static dea_status grid_allocate(grid *file)
     file->point_rank = scene->axis_count + (scene->model_count > 1 ? 1 : 0);
     const size_t most = file->point_rank + 2;
     file->shape = calloc(3 * most, sizeof *file->shape);
-    file->dimensions = calloc(most + scene->axis_count, sizeof *file->dimensions);
+    file->dimensions = calloc(2 * most + scene->axis_count, sizeof *file->dimensions);
     if (!file->shape || !file->dimensions) {
         return DEA_ERROR_MEMORY;
     }
     file->start = file->shape + most;
     file->edge = file->start + most;
-    file->axes = file->dimensions + most;
+    file->spread_dimensions = file->dimensions + most;
+    file->axes = file->spread_dimensions + most;
     if (!has_coordinate(file)) {
         return DEA_OK;
     }
@@ -570,6 +607,31 @@ static void put_averages(grid *file, const char *summary, size_t count)
     }
 }
 
+/* What the rows of @p count points tell over the radius, the points side by side at each. */
+static void put_spread(grid *file, const char *point, size_t count)
+{
+    const dea_layout *layout = &file->layout;
+    size_t *start = calloc(2 * (file->point_rank + 2), sizeof *start), *edge = start + file->point_rank + 2;
+    if (!start) {
+        grid_keep(file, NC_ENOMEM);
+        return;
+    }
+    memcpy(start + 2, &file->start[file->lead], file->point_rank * sizeof *start);
+    memcpy(edge + 2, &file->edge[file->lead], file->point_rank * sizeof *edge);
+    edge[0] = edge[1] = 1;
+    for (size_t k = 0; k < layout->rows * layout->spread_points && !file->failed; k++) {
+        start[0] = k / layout->spread_points;
+        start[1] = k % layout->spread_points;
+        for (size_t i = 0; i < layout->spread_count; i++) {
+            for (size_t j = 0; j < count; j++) {
+                file->values[j] = dea_layout_entry(layout, point + j * layout->point_size, start[0], start[1])[i];
+            }
+            grid_keep(file, file->nc.nc_put_vara_double(file->file, file->spread[i], start, edge, file->values));
+        }
+    }
+    free(start);
+}
+
 /* Puts a slab of points: rows as many at a time as there is room for. */
 static void put_slab(grid *file, const char *point, size_t count)
 {
@@ -584,6 +646,9 @@ static void put_slab(grid *file, const char *point, size_t count)
     }
     const char *behind = point + rows * file->layout.row_size;
     put_figures(file, file->figures, file->study->figures, file->study->figure_count, behind, count);
+    if (file->layout.spread_count > 0) {
+        put_spread(file, point, count);
+    }
     if (file->study->timed) {
         put_averages(file, behind, count);
     }

@@ -36,10 +36,21 @@ typedef struct dea_thinning {
     size_t count, stride, kept;
 } dea_thinning;
 
+/* How a study is drawn: what it keeps, and the script from that. */
+typedef struct dea_drawer {
+    dea_status (*open)(dea_plot *plot, dea_error *error);
+    void (*take)(dea_plot *plot, size_t first, const void *points, size_t count);
+    dea_status (*draw)(dea_plot *plot, dea_error *error);
+} dea_drawer;
+
+extern const dea_drawer dea_drawer_points, dea_drawer_runs, dea_drawer_modes, dea_drawer_profiles;
+
 struct dea_plot {
     const dea_scene *scene;
+    const dea_drawer *drawer;
     dea_gnuplot picture;
-    dea_runs runs; /* of a transient or frequency response; what follows is of a sweep */
+    dea_runs runs; /* of runs along time, frequency or radius */
+    char *kept;    /* all points, of modes and profiles; what follows is of a sweep */
     bool map;      /* a map over two axes, else curves */
     size_t x, y;   /* numbers of the axis along x, and of the one along y of a map */
     dea_thinning across, up;
@@ -93,6 +104,10 @@ void dea_name_plain(double value, char text[DEA_LABEL_LENGTH]);
 void dea_name_prefixed(double value, char text[DEA_LABEL_LENGTH]);
 /* Positive values with a constant ratio over two decades or more ask for a logarithmic axis. */
 bool dea_axis_logarithmic(const dea_axis *axis);
+
+/* Room for all points of a study, and a drawer's take() that keeps them there. DEA_ERROR_MEMORY. */
+dea_status dea_plot_keep(dea_plot *plot, dea_error *error);
+void dea_plot_take(dea_plot *plot, size_t first, const void *points, size_t count);
 
 /* Write the script of a picture of that kind. */
 dea_status dea_plot_draw_curves(dea_plot *plot, dea_error *error);

@@ -415,9 +415,9 @@ static dea_status dots_open(dea_plot *plot, dea_error *error)
     return DEA_OK;
 }
 
-static bool is_sweep(const dea_plot *plot)
+static dea_status runs_open(dea_plot *plot, dea_error *error)
 {
-    return !dea_study_of(plot->scene)->along;
+    return dea_runs_open(plot->scene, &plot->runs, error);
 }
 
 dea_status dea_plot_begin(const dea_scene *scene, const char *path, const dea_plot_options *options, dea_plot **plot,
@@ -429,7 +429,8 @@ dea_status dea_plot_begin(const dea_scene *scene, const char *path, const dea_pl
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
     begun->scene = scene;
-    dea_status status = is_sweep(begun) ? dots_open(begun, error) : dea_runs_open(scene, &begun->runs, error);
+    begun->drawer = dea_study_of(scene)->drawer;
+    dea_status status = begun->drawer->open(begun, error);
     if (status == DEA_OK) {
         status = dea_gnuplot_begin(&begun->picture, path, options, error);
     }
@@ -463,8 +464,9 @@ static dea_dot *plot_dot(dea_plot *plot, size_t row)
     return place != SIZE_MAX && curve < plot->curves ? &plot->dots[curve * plot->across.kept + place] : NULL;
 }
 
-static void dots_take(dea_plot *plot, size_t first, const dea_row *rows, size_t count)
+static void dots_take(dea_plot *plot, size_t first, const void *points, size_t count)
 {
+    const dea_row *rows = points;
     for (size_t i = 0; i < count; i++) {
         dea_dot *dot = plot_dot(plot, first + i);
         if (dot) {
@@ -473,22 +475,15 @@ static void dots_take(dea_plot *plot, size_t first, const dea_row *rows, size_t 
     }
 }
 
-void dea_plot_points(dea_plot *plot, size_t first, const void *points, size_t count)
+static void runs_take(dea_plot *plot, size_t first, const void *points, size_t count)
 {
-    if (is_sweep(plot)) {
-        dots_take(plot, first, points, count);
-        return;
-    }
     for (size_t i = 0; i < count; i++) {
         dea_runs_take(&plot->runs, first + i, (const char *)points + i * plot->runs.layout.point_size);
     }
 }
 
-static dea_status plot_draw(dea_plot *plot, dea_error *error)
+static dea_status dots_draw(dea_plot *plot, dea_error *error)
 {
-    if (!is_sweep(plot)) {
-        return dea_plot_draw_runs(plot, error);
-    }
     for (size_t i = 0; i < plot->curves * plot->across.kept; i++) {
         if (isfinite(plot->dots[i].displacement)) {
             return plot->map ? dea_plot_draw_map(plot, error) : dea_plot_draw_curves(plot, error);
@@ -497,14 +492,35 @@ static dea_status plot_draw(dea_plot *plot, dea_error *error)
     return dea_fail(error, DEA_ERROR_USAGE, "nothing to draw: no point of the study has an equilibrium");
 }
 
+dea_status dea_plot_keep(dea_plot *plot, dea_error *error)
+{
+    plot->kept = malloc(dea_scene_point_count(plot->scene) * plot->scene->model_count * dea_layout_of(plot->scene).point_size);
+    return plot->kept ? DEA_OK : dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+}
+
+void dea_plot_take(dea_plot *plot, size_t first, const void *points, size_t count)
+{
+    const size_t size = dea_layout_of(plot->scene).point_size;
+    memcpy(plot->kept + first * size, points, count * size);
+}
+
+const dea_drawer dea_drawer_points = {dots_open, dots_take, dots_draw};
+const dea_drawer dea_drawer_runs = {runs_open, runs_take, dea_plot_draw_runs};
+
+void dea_plot_points(dea_plot *plot, size_t first, const void *points, size_t count)
+{
+    plot->drawer->take(plot, first, points, count);
+}
+
 dea_status dea_plot_finish(dea_plot *plot, bool keep, dea_error *error)
 {
     if (!plot) {
         return DEA_OK;
     }
-    const dea_status status = keep ? plot_draw(plot, error) : DEA_OK;
+    const dea_status status = keep ? plot->drawer->draw(plot, error) : DEA_OK;
     const dea_status finished = dea_gnuplot_finish(&plot->picture, keep && status == DEA_OK, error);
     dea_runs_close(&plot->runs);
+    free(plot->kept);
     free(plot->dots);
     free(plot);
     return status != DEA_OK ? status : finished;

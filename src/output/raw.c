@@ -124,7 +124,7 @@ static void traces_choose(raw *out)
         const bool scale = i == 0 && out->study->along;
         const bool polar = i + 1 < layout->column_count && strcmp(column[1].unit, "degree") == 0;
         const char *type = type_of(column->unit);
-        trace *added = trace_add(out, polar ? TRACE_POLAR : TRACE_COLUMN, scale ? type : column->name, type);
+        trace *added = trace_add(out, polar ? TRACE_POLAR : TRACE_COLUMN, scale && strcmp(type, "notype") != 0 ? type : column->name, type);
         added->offset = column->offset;
         if (polar) {
             added->phase = column[1].offset;

@@ -131,6 +131,17 @@ static bool same_place(const dea_spot *a, const dea_spot *b)
     return a->number == b->number && a->row == b->row;
 }
 
+/* Do rows tell how far the edge moves? */
+static bool tells_stroke(const dea_scene *scene)
+{
+    const dea_layout layout = dea_layout_of(scene);
+    bool told = false;
+    for (size_t i = 0; i < layout.column_count; i++) {
+        told = told || strcmp(layout.columns[i].name, "strain") == 0;
+    }
+    return told;
+}
+
 static void print_stroke(const dea_answer *answer, const dea_scene *scene)
 {
     char text[DEA_NUMBER_LENGTH];
@@ -217,9 +228,10 @@ static void print_rest(const dea_answer *answer, const dea_scene *scene, const d
     }
     fputs("at rest and 0 V: capacitance ", stderr);
     print_quantity(capacitance, "F", 4);
-    if (!isnan(here.drive.series_resistance)) {
+    const double series = dea_series_resistance(&here);
+    if (!isnan(series)) {
         fputs(", R_s C ", stderr);
-        print_quantity(here.drive.series_resistance * capacitance, "s", 4);
+        print_quantity(series * capacitance, "s", 4);
     }
     if (isfinite(swing.frequency) && !dea_study_of(scene)->timed) {
         fputs(", first resonance ", stderr);
@@ -287,10 +299,13 @@ static void print_nearness(const dea_scene *scene, const dea_model *model)
 
 void dea_answer_print(const dea_answer *answer, const dea_scene *scene, size_t model, bool truth)
 {
-    if (dea_study_of(scene)->phasors) {
+    if (!tells_stroke(scene)) {
         print_rest(answer, scene, scene->models[model]);
         if (truth) {
             print_nearness(scene, scene->models[model]);
+        }
+        if (dea_study_of(scene)->sign) {
+            print_states(answer, scene);
         }
         return;
     }

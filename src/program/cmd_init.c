@@ -61,7 +61,7 @@ static const start starts[] = {
      "#   deaspice run transient.yaml -o transient.csv --plot transient.svg\n"
      "title: switched on and off\n" ACTUATOR("dot                  # or lens", "electrode_radius") MOVING
      "drive:\n"
-     "  waveform:                  # in place of voltage; also points, sine, or file: drive.csv (time, voltage)\n"
+     "  waveform:                  # in place of voltage; also points, sine, pulse, square, triangle, chirp, burst, sines, file\n"
      "    step: {on: 0.1 s, off: 0.6 s, voltage: 4.5 kV, rise: 1 ms}\n"
      "  series_resistance: 1 MOhm  # of source and electrodes; optional\n"
      "model: ring                  # or lumped, coverage, lame\n"
@@ -84,6 +84,28 @@ static const start starts[] = {
      "    to: 10 kHz\n"
      "    points_per_decade: 50\n"
      "    bias: 4.5 kV\n"},
+    {"modes", "resonances of the membrane of a dot actuator against bias",
+     "# Frequency, damping ratio and share of the edge of the slowest modes, a run for each bias.\n"
+     "#   deaspice run modes.yaml -o modes.csv --plot modes.svg\n"
+     "title: modes against bias\n" ACTUATOR("dot                  # or lens", "electrode_radius") MOVING
+     "model: field                 # or one with one mode: lumped, coverage, lame, ring\n"
+     "study:\n"
+     "  modes:\n"
+     "    count: 3\n"
+     "    # points: 101            # shapes at so many radii\n"
+     "    over:\n"
+     "      bias: {from: 0 V, to: 4.5 kV, points: 19}   # or one: bias: 3 kV beside count\n"},
+    {"profile", "stretches, stresses and field of a dot actuator over its radius",
+     "# The static film from the centre to the frame: where it is nearest to breakdown and to slack.\n"
+     "#   deaspice run profile.yaml -o profile.csv --plot profile.svg\n"
+     "title: film along its radius\n" ACTUATOR("dot                  # or lens", "electrode_radius") MATERIAL
+     "drive:\n"
+     "  voltage: 4.5 kV\n"
+     "model: field                 # or ring, coverage; or a list of them\n"
+     "study:\n"
+     "  profile:\n"
+     "    points: 101\n"
+     "    # over: {voltage: [2 kV, 4 kV]}   # a run each\n"},
     {"sweep", "a map of a dot actuator over coverage and pre-stretch, models compared",
      "# Any scalar of the scene can be an axis; every combination is one point.\n"
      "#   deaspice run sweep.yaml -o sweep.csv --plot sweep.svg      (or -o sweep.nc, which opens in xarray)\n"
@@ -165,8 +187,8 @@ const dea_command dea_command_init = {
     .summary = "a commented scene to start from",
     .help = "Usage: deaspice init [OPTION]... [KIND]\n"
             "\n"
-            "Writes a commented scene that runs as it is: dot, lens, transient, ac or sweep.\n"
-            "Without KIND, lists them.\n"
+            "Writes a commented scene that runs as it is: dot, lens, transient, ac, modes,\n"
+            "profile or sweep. Without KIND, lists them.\n"
             "\n"
             "  -o, --output FILE     write it to FILE, - is standard output (default)\n"
             "      --force           overwrite FILE where it is there\n"

@@ -110,12 +110,19 @@ static void take_transient(dea_findings *findings, size_t number, const void *po
     print_averages(findings, number, &placed.transient);
 }
 
+static void take_resonance(dea_findings *findings, const void *frequency)
+{
+    double resonance;
+    memcpy(&resonance, frequency, sizeof resonance);
+    findings->resonance[0] = fmin(findings->resonance[0], resonance);
+    findings->resonance[1] = fmax(findings->resonance[1], resonance);
+}
+
 static void take_response(dea_findings *findings, const void *point)
 {
     const dea_layout *layout = &findings->layout;
     memcpy(&findings->band, (const char *)point + layout->rows * layout->row_size, sizeof findings->band);
-    findings->resonance[0] = fmin(findings->resonance[0], findings->band.resonance);
-    findings->resonance[1] = fmax(findings->resonance[1], findings->band.resonance);
+    take_resonance(findings, &findings->band.resonance);
 }
 
 void dea_findings_take(dea_findings *findings, size_t first, const void *points, size_t count)
@@ -134,6 +141,10 @@ void dea_findings_take(dea_findings *findings, size_t first, const void *points,
             take_transient(findings, first + i, point);
         } else if (study->phasors) {
             take_response(findings, point);
+        } else if (study->resonance > 0) {
+            take_resonance(findings, (const char *)point + study->resonance);
+        } else if (study->stations) {
+            memcpy(&findings->weakest, point + layout->rows * layout->row_size, sizeof findings->weakest);
         }
     }
     findings->points += count;
@@ -373,11 +384,25 @@ static void print_responses(const dea_findings *findings)
         }
         fputc('\n', stderr);
     }
-    if (findings->points == 1 && !isnan(findings->band.bandwidth)) {
+    if (dea_study_of(findings->scene)->phasors && findings->points == 1 && !isnan(findings->band.bandwidth)) {
         fputs("bandwidth (-3 dB) ", stderr);
         print_quantity(findings->band.bandwidth, "Hz");
         fputc('\n', stderr);
     }
+}
+
+/* Where a film is nearest to its limits. */
+static void print_weakest(const dea_weakest *weakest)
+{
+    fputs("largest true field ", stderr);
+    print_quantity(weakest->field, "V/m");
+    fputs(" at radius ", stderr);
+    print_quantity(weakest->field_radius, "m");
+    fputs(", least tension ", stderr);
+    print_quantity(weakest->tension, "Pa");
+    fputs(" at radius ", stderr);
+    print_quantity(weakest->tension_radius, "m");
+    fputc('\n', stderr);
 }
 
 void dea_findings_print(const dea_findings *findings, double seconds)
@@ -388,8 +413,10 @@ void dea_findings_print(const dea_findings *findings, double seconds)
     }
     if (study->timed) {
         print_motions(findings);
-    } else if (study->phasors) {
+    } else if (study->phasors || study->resonance > 0) {
         print_responses(findings);
+    } else if (study->stations && findings->points == 1 && isfinite(findings->weakest.tension)) {
+        print_weakest(&findings->weakest);
     }
     print_amount(findings);
     fprintf(stderr, " in %.3g s", seconds);

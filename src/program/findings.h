@@ -35,6 +35,7 @@ typedef struct dea_findings {
     dea_answer answers[DEA_SCENE_MODELS]; /**< of each model */
     dea_covered covered; /**< of stretches, against the data of the material */
     dea_band band; /**< of the last frequency response */
+    dea_weakest weakest; /**< of the last profile */
 } dea_findings;
 
 /** Findings of a study that has not begun; prints the head of the averages. The scene and the stream must outlive them. */

@@ -24,6 +24,28 @@ double dea_layout_place(const dea_scene *scene, size_t index)
     return study->place ? study->place(scene, index) : 0.0;
 }
 
+double dea_layout_radius(const dea_scene *scene, const dea_layout *layout, size_t index)
+{
+    return scene->actuator.frame_radius * (double)index / (double)(layout->spread_points - 1);
+}
+
+double *dea_layout_entry(const dea_layout *layout, const void *point, size_t row, size_t index)
+{
+    const size_t size = layout->spread_count * sizeof(double);
+    return (double *)(void *)((const char *)point + layout->spread_offset + (row * layout->spread_points + index) * size);
+}
+
+void dea_layout_spread(dea_layout *layout, const dea_column *columns, size_t count, size_t points)
+{
+    for (layout->spread_count = 0; layout->spread_count < count; layout->spread_count++) {
+        layout->spread[layout->spread_count] = columns[layout->spread_count];
+        layout->spread[layout->spread_count].offset = layout->spread_count * sizeof(double);
+    }
+    layout->spread_points = points;
+    layout->spread_offset = layout->point_size;
+    layout->point_size += layout->rows * points * count * sizeof(double);
+}
+
 dea_state dea_layout_state(const dea_layout *layout, const void *row)
 {
     dea_state state;
@@ -34,6 +56,11 @@ dea_state dea_layout_state(const dea_layout *layout, const void *row)
 dea_summary *dea_layout_summary(const dea_layout *layout, void *point)
 {
     return (dea_summary *)(void *)((char *)point + layout->rows * layout->row_size);
+}
+
+dea_weakest *dea_layout_weakest(const dea_layout *layout, void *point)
+{
+    return (dea_weakest *)(void *)((char *)point + layout->rows * layout->row_size);
 }
 
 dea_band *dea_layout_band(const dea_layout *layout, void *point)
@@ -65,5 +92,9 @@ void dea_layout_fail(const dea_scene *scene, const dea_layout *layout, void *poi
     }
     if (study->fail) {
         study->fail(layout, point);
+    }
+    const size_t entries = layout->rows * layout->spread_points * layout->spread_count;
+    for (size_t i = 0; i < entries; i++) {
+        dea_layout_entry(layout, point, 0, 0)[i] = (double)NAN;
     }
 }

@@ -52,8 +52,8 @@ static double answer_time(const dea_dynamics *d, const rest *film, bool *creep)
 static double change_within(const dea_signal *signal, const dea_segment *segment, double *width)
 {
     if (segment->sine) {
-        *width = 1.0 / (2.0 * DEA_PI * fabs(signal->sine.frequency));
-        return fabs(signal->sine.amplitude) / signal->largest;
+        *width = 1.0 / dea_segment_turn(signal, segment);
+        return (dea_curve_largest(&signal->curve) - fabs(signal->curve.offset)) / signal->largest;
     }
     *width = segment->to - segment->from;
     return fabs(segment->end - segment->start) / signal->largest;

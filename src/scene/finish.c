@@ -75,22 +75,70 @@ static size_t constant_offset(size_t index)
 }
 
 /* Every constant of the law is there, and they fit together: what is swept is judged point by point. */
-static dea_status law_check(dea_reader *reader)
+static dea_status law_check(dea_reader *reader, const dea_holder *holder)
 {
-    const dea_material *material = &reader->scene->material;
-    const dea_law *law = material->law;
+    const dea_law *law = *holder->law;
+    const size_t first = (size_t)((char *)holder->constants - (char *)reader->scene);
     char path[DEA_NAME_LENGTH];
     bool varies = false;
-    for (size_t i = 0; i < material->entry_count * law->constant_count; i++) {
-        varies = varies || swept(reader, constant_offset(i));
-        snprintf(path, sizeof path, "material.%s.%s", law->name, law->constants[i % law->constant_count].name);
-        if (isnan(material->constants[i])) {
-            return dea_reader_missing(reader, "material", path);
+    for (size_t i = 0; law && i < *holder->entry_count * law->constant_count; i++) {
+        varies = varies || swept(reader, first + i * sizeof(double));
+        snprintf(path, sizeof path, "%s.%s.%s", holder->name, law->name, law->constants[i % law->constant_count].name);
+        if (isnan(holder->constants[i])) {
+            return dea_reader_missing(reader, holder->name, path);
         }
     }
-    const char *fault = law->fault && !varies ? law->fault(material->constants) : NULL;
-    snprintf(path, sizeof path, "material.%s", law->name);
-    return fault ? dea_place_fail(dea_reader_place(reader, constant_offset(0), "material"), reader->error, path, "%s", fault) : DEA_OK;
+    const char *fault = law && law->fault && !varies ? law->fault(holder->constants) : NULL;
+    if (!fault) {
+        return DEA_OK;
+    }
+    snprintf(path, sizeof path, "%s.%s", holder->name, law->name);
+    return dea_place_fail(dea_reader_place(reader, first, holder->name), reader->error, path, "%s", fault);
+}
+
+/* One resistance stands for the sheets of a film whose electrode moves as one. */
+static dea_status sheet_check(dea_reader *reader)
+{
+    const dea_scene *scene = reader->scene;
+    const size_t sheet = offsetof(dea_scene, electrode.sheet_resistance);
+    for (size_t i = 0; i < scene->model_count && dea_study_of(scene)->moves; i++) {
+        if (scene->models[i]->membrane) {
+            return dea_place_fail(dea_reader_place(reader, sheet, "electrode"), reader->error, "electrode.sheet_resistance",
+                                  "is one resistance, which the model %s has no place for; accepted: models of one node, e.g. ring",
+                                  scene->models[i]->name);
+        }
+    }
+    return DEA_OK;
+}
+
+/* A skin is a thickness with a law; electrodes have mass by their density or per area, not both. */
+static dea_status electrode_check(dea_reader *reader)
+{
+    const dea_electrode *electrode = &reader->scene->electrode;
+    const size_t density = offsetof(dea_scene, electrode.density);
+    if (!dea_tree_child(reader->root, "electrode")) {
+        return DEA_OK;
+    }
+    if (!isnan(electrode->sheet_resistance)) {
+        const dea_status status = sheet_check(reader);
+        if (status || (isnan(electrode->thickness) && !electrode->law && isnan(electrode->density))) {
+            return status;
+        }
+    }
+    if (isnan(electrode->thickness)) {
+        return dea_reader_missing(reader, "electrode", "electrode.thickness");
+    }
+    if (!electrode->law) {
+        return dea_place_fail(dea_reader_place(reader, offsetof(dea_scene, electrode.thickness), "electrode"), reader->error, "electrode",
+                              "a skin without a law; accepted: one beside the thickness, e.g. neo_hookean: {mu: 20 kPa}");
+    }
+    if (!isnan(electrode->density) && !isnan(reader->scene->actuator.electrode_mass)) {
+        return dea_place_fail(dea_reader_place(reader, density, "electrode"), reader->error, "electrode.density",
+                              "contradicts actuator.electrode_mass, which is given too; give one of them");
+    }
+    const dea_key skin = {.within = "electrode"};
+    const dea_holder holder = dea_reader_holder(reader, &skin);
+    return law_check(reader, &holder);
 }
 
 /* Chains that are straight before the pre-stretch hold no film; the last constant of such a law says where. */
@@ -211,7 +259,10 @@ static dea_status optics_check(dea_reader *reader)
 dea_status dea_reader_finish(dea_reader *reader)
 {
     dea_status status = needs_check(reader);
-    status = status ? status : law_check(reader);
+    const dea_key film = {.within = NULL};
+    const dea_holder holder = dea_reader_holder(reader, &film);
+    status = status ? status : law_check(reader, &holder);
+    status = status ? status : electrode_check(reader);
     status = status ? status : locking_check(reader);
     status = status ? status : radius_check(reader);
     status = status ? status : thickness_check(reader);

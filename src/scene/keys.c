@@ -6,12 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "drive/wave.h"
 #include "scene/key_forms.h"
 #include "study/study.h"
 #include "support/text.h"
-
-#define STEP "drive.waveform.step"
-#define SINE "drive.waveform.sine"
 
 static const dea_key keys_before[] = {
     OTHER("title", dea_read_title, "one line of text, at most 1000 bytes"),
@@ -80,6 +78,12 @@ static const dea_key keys_behind[] = {
     SCALAR("material.modulus", material.modulus, "Pa", "_Pa", 0, INFINITY, true, DEA_KEY_BOTH, 1, "a modulus > 0, e.g. 1.2 MPa"),
     SCALAR("material.breakdown", material.breakdown, "V/m", "_V_per_m", 0, INFINITY, true, DEA_KEY_BOTH, 1,
            "a field > 0, e.g. 80 V/um"),
+    OTHER("electrode", dea_read_electrode, "a mapping with thickness, a law, density and sheet_resistance, e.g. {thickness: 25 um, neo_hookean: {mu: 20 kPa}}"),
+    PART("electrode.thickness", electrode.thickness, "m", "_m", 0, INFINITY, true, 2, "electrode", "a length > 0, e.g. 25 um"),
+    PART("electrode.density", electrode.density, "kg/m^3", "_kg_per_m3", 0, INFINITY, true, 2, "electrode",
+         "a density > 0, e.g. 1010 kg/m^3"),
+    PART("electrode.sheet_resistance", electrode.sheet_resistance, "ohm", "_Ohm", 0, INFINITY, true, 2, "electrode",
+         "a resistance per square > 0, e.g. 10 kOhm"),
     OTHER("drive", dea_read_mapping, "a mapping with voltage or waveform, ..."),
     {.path = "drive.voltage",
      .read = dea_read_scalar,
@@ -97,22 +101,12 @@ static const dea_key keys_behind[] = {
            "a resistance >= 0, e.g. 1 MOhm"),
     SCALAR("drive.leakage_resistance", drive.leakage_resistance, "ohm", "_Ohm", 0, INFINITY, true, DEA_KEY_BOTH, 1,
            "a resistance > 0, e.g. 100 GOhm"),
-    OTHER("drive.waveform", dea_read_waveform, "a mapping with step, points, sine or file"),
-    OTHER(STEP, dea_read_mapping, "a mapping with on, off, voltage and rise, e.g. {on: 5 s, off: 15 s, voltage: 4500 V}"),
-    PART(STEP ".on", drive.waveform.step.on, "s", "_s", 0, INFINITY, false, 2, STEP, "a time >= 0, e.g. 5 s"),
-    PART(STEP ".off", drive.waveform.step.off, "s", "_s", 0, INFINITY, true, 2, STEP, "a time >= on + rise, e.g. 15 s"),
-    PART(STEP ".voltage", drive.waveform.step.voltage, "V", "_V", -INFINITY, INFINITY, true, 2, STEP, "a voltage, e.g. 4500 V"),
-    PART(STEP ".rise", drive.waveform.step.rise, "s", "_s", 0, INFINITY, false, 2, STEP, "a time >= 0, e.g. 1 us"),
-    OTHER("drive.waveform.points", dea_read_points, "a list of [time, voltage], e.g. [[0 s, 0 V], [5 s, 4500 V]]"),
-    OTHER(SINE, dea_read_mapping,
-          "a mapping with amplitude, frequency, offset, phase and delay, e.g. {amplitude: 100 V, frequency: 50 Hz}"),
-    PART(SINE ".offset", drive.waveform.sine.offset, "V", "_V", -INFINITY, INFINITY, true, 2, SINE, "a voltage, e.g. 4000 V"),
-    PART(SINE ".amplitude", drive.waveform.sine.amplitude, "V", "_V", -INFINITY, INFINITY, true, 2, SINE,
-         "a voltage, e.g. 100 V"),
-    PART(SINE ".frequency", drive.waveform.sine.frequency, "Hz", "_Hz", 0, INFINITY, true, 2, SINE,
-         "a frequency > 0, e.g. 50 Hz"),
-    PART(SINE ".phase", drive.waveform.sine.phase, "rad", "_rad", -INFINITY, INFINITY, true, 2, SINE, "an angle, e.g. 90 deg"),
-    PART(SINE ".delay", drive.waveform.sine.delay, "s", "_s", 0, INFINITY, false, 2, SINE, "a time >= 0, e.g. 5 s"),
+    OTHER("drive.waveform", dea_read_waveform, "a mapping with step, points, sine, pulse, square, triangle, chirp, burst, sines or file"),
+};
+
+/* Here stand the keys of the forms of a waveform. */
+
+static const dea_key keys_further[] = {
     OTHER("drive.waveform.file", dea_read_wave_file, "the name of a table with columns of time and voltage"),
     PART("drive.waveform.period", drive.waveform.period, "s", "_s", 0, INFINITY, true, 1, "drive.waveform",
          "a time, at least the last one of the waveform, e.g. 20 s"),
@@ -133,13 +127,23 @@ static const dea_key keys_last[] = {
 
 #define COUNT(keys) (sizeof keys / sizeof *keys)
 
+/* What holds constants of a law. */
+typedef struct holder {
+    const char *name;
+    size_t offset;      /* of the constants */
+    const char *within; /* as of a key */
+} holder;
+
+static const holder holders[] = {{"material", AT(material.constants), NULL}, {"electrode", AT(electrode.constants), "electrode"}};
+enum { HOLDERS = sizeof holders / sizeof *holders };
+
 /* Key number @p index of a law: its mapping or list, what an entry of a list is, and its constants; false past the end. */
-static bool law_key(const dea_law *law, size_t index, dea_key *key)
+static bool law_key(const holder *of, const dea_law *law, size_t index, dea_key *key)
 {
     const bool list = law->entries > 1;
-    *key = (dea_key){.offset = DEA_KEY_NOWHERE, .kinds = DEA_KEY_BOTH, .accepted = law->accepted, .law = law};
+    *key = (dea_key){.offset = DEA_KEY_NOWHERE, .kinds = DEA_KEY_BOTH, .accepted = law->accepted, .law = law, .within = of->within};
     if (index <= list) {
-        snprintf(key->path, sizeof key->path, index ? "material.%s.#" : "material.%s", law->name);
+        snprintf(key->path, sizeof key->path, index ? "%s.%s.#" : "%s.%s", of->name, law->name);
         key->read = index ? dea_read_mapping : dea_read_law;
         return true;
     }
@@ -148,16 +152,16 @@ static bool law_key(const dea_law *law, size_t index, dea_key *key)
         return false;
     }
     const dea_constant *constant = &law->constants[index];
-    snprintf(key->path, sizeof key->path, list ? "material.%s.#.%s" : "material.%s.%s", law->name, constant->name);
+    snprintf(key->path, sizeof key->path, list ? "%s.%s.#.%s" : "%s.%s.%s", of->name, law->name, constant->name);
     key->read = dea_read_scalar;
-    key->offset = AT(material.constants) + index * sizeof(double);
+    key->offset = of->offset + index * sizeof(double);
     key->stride = list ? law->constant_count * sizeof(double) : 0;
     key->unit = constant->unit;
     key->suffix = constant->modulus ? "_Pa" : "";
     key->low = constant->low;
     key->high = INFINITY;
     key->open = true;
-    key->words = list ? 3 : 1;
+    key->words = list ? 3 : of->within ? 2 : 1;
     key->accepted = constant->accepted;
     return true;
 }
@@ -174,20 +178,80 @@ static bool listed_key(const dea_key *keys, size_t count, size_t *index, dea_key
     return found;
 }
 
+/* Ending of a result column of that unit. */
+static const char *suffix_of(const char *unit)
+{
+    static const char *const suffixes[][2] = {{"V", "_V"}, {"s", "_s"}, {"Hz", "_Hz"}, {"rad", "_rad"}};
+    for (size_t i = 0; i < sizeof suffixes / sizeof *suffixes; i++) {
+        if (strcmp(suffixes[i][0], unit) == 0) {
+            return suffixes[i][1];
+        }
+    }
+    return "";
+}
+
+static size_t wave_keys(const dea_wave *wave)
+{
+    return 1u + (wave->stride > 0 ? 1u : 0u) + wave->number_count + (wave->word ? 1u : 0u);
+}
+
+/* Key number @p index of a waveform: its mapping or list, what an entry of a list is, its numbers, its word. */
+static void wave_key(const dea_wave *wave, size_t index, dea_key *key)
+{
+    const bool list = wave->stride > 0;
+    *key = (dea_key){.offset = DEA_KEY_NOWHERE, .kinds = DEA_KEY_BOTH, .accepted = wave->accepted};
+    if (index <= list) {
+        snprintf(key->path, sizeof key->path, index ? "%s.#" : "%s", wave->path);
+        key->read = wave->number_count == 0 ? dea_read_points : list && index == 0 ? dea_read_sines : dea_read_mapping;
+        return;
+    }
+    index -= 1 + list;
+    if (index == wave->number_count) {
+        snprintf(key->path, sizeof key->path, "%s.%s", wave->path, wave->word);
+        key->read = dea_read_wave_word;
+        key->accepted = wave->choices;
+        return;
+    }
+    const dea_wave_number *number = &wave->numbers[index];
+    snprintf(key->path, sizeof key->path, list ? "%s.#.%s" : "%s.%s", wave->path, number->name);
+    key->read = dea_read_scalar;
+    key->offset = AT(drive.waveform) + number->offset;
+    key->stride = wave->stride;
+    key->unit = number->unit;
+    key->suffix = suffix_of(number->unit);
+    key->low = number->low;
+    key->high = number->high;
+    key->open = number->open;
+    key->words = list ? 3 : 2;
+    key->within = wave->path;
+    key->accepted = number->accepted;
+}
+
 bool dea_key_at(size_t index, dea_key *key)
 {
     if (listed_key(keys_before, COUNT(keys_before), &index, key)) {
         return true;
     }
-    for (size_t i = 0; dea_law_at(i); i++) {
-        const dea_law *law = dea_law_at(i);
+    for (size_t i = 0; i < (size_t)HOLDERS * dea_law_count(); i++) {
+        const dea_law *law = dea_law_at(i % dea_law_count());
         const size_t count = law->constant_count + (law->entries > 1 ? 2 : 1);
         if (index < count) {
-            return law_key(law, index, key);
+            return law_key(&holders[i / dea_law_count()], law, index, key);
         }
         index -= count;
     }
     if (listed_key(keys_behind, COUNT(keys_behind), &index, key)) {
+        return true;
+    }
+    for (dea_wave_kind kind = DEA_WAVE_STEP; dea_wave_of(kind); kind++) {
+        const size_t count = wave_keys(dea_wave_of(kind));
+        if (index < count) {
+            wave_key(dea_wave_of(kind), index, key);
+            return true;
+        }
+        index -= count;
+    }
+    if (listed_key(keys_further, COUNT(keys_further), &index, key)) {
         return true;
     }
     for (dea_study_kind kind = 0; kind < DEA_STUDIES; kind++) {
@@ -264,10 +328,10 @@ static bool ends_with(const char *path, const char *name)
     return part > 0 && part < whole && indexed && path[whole - part - 1] == '.' && strcmp(path + whole - part, name) == 0;
 }
 
-/* Law of the material in the tree, NULL where only a file, or nothing, tells. */
-static const dea_law *law_in(const dea_node *root)
+/* Law of the material, or of the skin, in the tree; NULL where only a file, or nothing, tells. */
+static const dea_law *law_in(const dea_node *root, const char *within)
 {
-    const dea_node *material = dea_tree_child(root, "material");
+    const dea_node *material = dea_tree_child(root, within ? within : "material");
     const dea_node *base = material && material->kind == DEA_NODE_MAPPING ? dea_tree_child(material, "base") : material;
     for (size_t i = 0; material && dea_law_at(i); i++) {
         if (dea_tree_child(material, dea_law_at(i)->name)) {
@@ -280,8 +344,9 @@ static const dea_law *law_in(const dea_node *root)
 
 bool dea_key_has_place(const dea_key *key, const dea_node *root)
 {
-    if (key->law) {
-        return law_in(root) == key->law;
+    if (key->law && (!key->within || dea_tree_find(root, key->within))) {
+        const dea_law *law = law_in(root, key->within);
+        return law == key->law || !law;
     }
     return (!key->within || dea_tree_find(root, key->within)) && !(key->instead && dea_tree_find(root, key->instead));
 }
@@ -372,14 +437,15 @@ static size_t depth_of(const char *path)
     return depth;
 }
 
-/* The key whose last component is @p name, the least deep of several; false where there is none, or that is not one alone. */
+/* The key whose last component is @p name, the least deep of several, one of an electrode only where no other is; false where there
+ * is none, or that is not one alone. */
 static bool namesake(const char *name, dea_key *found)
 {
     dea_key key;
     size_t least = SIZE_MAX;
     size_t count = 0;
     for (size_t i = 0; dea_key_at(i, &key); i++) {
-        const size_t depth = depth_of(key.path);
+        const size_t depth = depth_of(key.path) + (strncmp(key.path, "electrode.", 10) == 0 ? DEA_TREE_DEPTH : 0);
         if (is_anywhere(&key, NULL) && depth <= least && strcmp(last_component(key.path), name) == 0) {
             count = depth < least ? 1 : count + 1;
             least = depth;

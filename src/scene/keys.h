@@ -32,7 +32,7 @@ struct dea_key {
     const char *within;   /* key that the scene must give for this one to have a place (the inner `over`: itself), NULL: none */
     const char *instead;  /* key that takes the place of this one, NULL: none */
     const char *accepted; /* for messages: range and an example */
-    const dea_law *law;   /* whose constants it holds, or is one of, NULL: none */
+    const dea_law *law;   /* whose constants it holds, or is one of, NULL: none; of the skin where `within` is set */
 };
 
 /* One key with its index. */

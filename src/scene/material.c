@@ -19,8 +19,16 @@ static void laws_list(char out[DEA_KEY_ROOM])
     }
 }
 
-/* The law among the keys of a material, NULL where it has none; two are refused. */
-static dea_status law_find(dea_reader *reader, const dea_node *material, const dea_node **law)
+dea_holder dea_reader_holder(dea_reader *reader, const dea_key *key)
+{
+    dea_scene *scene = reader->scene;
+    const bool skin = key->within && strcmp(key->within, "electrode") == 0;
+    return skin ? (dea_holder){"electrode", &scene->electrode.law, scene->electrode.constants, &scene->electrode.entry_count}
+                : (dea_holder){"material", &scene->material.law, scene->material.constants, &scene->material.entry_count};
+}
+
+/* The law among the keys of a material or an electrode, NULL where it has none; two are refused. */
+static dea_status law_find(dea_reader *reader, const char *holder, const dea_node *material, const dea_node **law)
 {
     for (const dea_node *child = material->first; child; child = child->next) {
         if (!dea_law_find(child->key)) {
@@ -30,9 +38,9 @@ static dea_status law_find(dea_reader *reader, const dea_node *material, const d
             char path[DEA_NAME_LENGTH];
             char names[DEA_KEY_ROOM];
             laws_list(names);
-            snprintf(path, sizeof path, "material.%s", child->key);
-            return dea_place_fail(&child->key_at, reader->error, path,
-                                  "a second law: the material has %s already; accepted: one of %s", (*law)->key, names);
+            snprintf(path, sizeof path, "%s.%s", holder, child->key);
+            return dea_place_fail(&child->key_at, reader->error, path, "a second law: the %s has %s already; accepted: one of %s",
+                                  holder, (*law)->key, names);
         }
         *law = child;
     }
@@ -40,15 +48,14 @@ static dea_status law_find(dea_reader *reader, const dea_node *material, const d
 }
 
 /* Makes the constants those of another law, none of them given yet but by its defaults. */
-static void law_enter(dea_reader *reader, const dea_law *law)
+static void law_enter(dea_reader *reader, const dea_holder *holder, const dea_law *law)
 {
-    dea_material *material = &reader->scene->material;
-    material->law = law;
-    material->entry_count = 1;
+    *holder->law = law;
+    *holder->entry_count = 1;
     for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
         const bool used = i < law->constant_count;
-        material->constants[i] = used ? law->constants[i].standard : 0.0;
-        dea_reader_given(reader, offsetof(dea_scene, material.constants) + i * sizeof(double))->node = NULL;
+        holder->constants[i] = used ? law->constants[i].standard : 0.0;
+        dea_reader_given(reader, (size_t)((char *)&holder->constants[i] - (char *)reader->scene))->node = NULL;
     }
 }
 
@@ -56,21 +63,21 @@ static void law_enter(dea_reader *reader, const dea_law *law)
 static dea_status entries_read(dea_reader *reader, const dea_ref *ref, const dea_node *node)
 {
     const dea_law *law = ref->key.law;
-    dea_material *material = &reader->scene->material;
+    const dea_holder holder = dea_reader_holder(reader, &ref->key);
     size_t index = 0;
     if (node->kind != DEA_NODE_SEQUENCE || node->count == 0 || node->count > law->entries) {
         return dea_reader_refuse(reader, ref, node, node->kind != DEA_NODE_SEQUENCE ? "not a list" : node->count ? "too long" : "empty");
     }
-    law_enter(reader, law);
-    material->entry_count = node->count;
+    law_enter(reader, &holder, law);
+    *holder.entry_count = node->count;
     for (const dea_node *entry = node->first; entry; entry = entry->next, index++) {
-        double *constants = material->constants + index * law->constant_count;
+        double *constants = holder.constants + index * law->constant_count;
         char path[DEA_NAME_LENGTH];
         dea_ref own;
         for (size_t i = 0; i < law->constant_count; i++) {
             constants[i] = law->constants[i].standard;
         }
-        snprintf(path, sizeof path, "material.%s.%zu", law->name, index);
+        snprintf(path, sizeof path, "%s.%s.%zu", holder.name, law->name, index);
         const dea_status status = dea_key_find(path, &own) ? dea_read_mapping(reader, &own, entry) : dea_reader_memory(reader);
         for (size_t i = 0; i < law->constant_count && !status; i++) {
             if (isnan(constants[i])) {
@@ -96,8 +103,9 @@ dea_status dea_read_law(dea_reader *reader, const dea_ref *ref, const dea_node *
     if (node->kind != DEA_NODE_MAPPING) {
         return dea_reader_refuse(reader, ref, node, "not a mapping");
     }
-    if (reader->scene->material.law != law) {
-        law_enter(reader, law);
+    const dea_holder holder = dea_reader_holder(reader, &ref->key);
+    if (*holder.law != law) {
+        law_enter(reader, &holder, law);
     }
     return dea_reader_children(reader, ref->path, node);
 }
@@ -119,11 +127,21 @@ static dea_status mapping_read(dea_reader *reader, const dea_node *node)
     }
     snprintf(material->name, sizeof material->name, "%s", "scene");
     const dea_node *law = NULL;
-    const dea_status status = law_find(reader, node, &law);
+    const dea_status status = law_find(reader, "material", node, &law);
     if (law) { /* other constants than the base has data for */
         memset(material->stretches, 0, sizeof material->stretches);
     }
     return status ? status : dea_reader_children(reader, "material", node);
+}
+
+dea_status dea_read_electrode(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    const dea_node *law = NULL;
+    if (node->kind != DEA_NODE_MAPPING) {
+        return dea_reader_refuse(reader, ref, node, "not a mapping");
+    }
+    const dea_status status = law_find(reader, "electrode", node, &law);
+    return status ? status : dea_reader_children(reader, ref->path, node);
 }
 
 /* Does a line begin as a key of a material does, and hardly one of another file? */

@@ -53,18 +53,21 @@ const dea_place *dea_reader_place(dea_reader *reader, size_t offset, const char 
 
 dea_status dea_reader_index(dea_reader *reader, const dea_ref *ref, const dea_place *place)
 {
-    const dea_law *law = reader->scene->material.law;
+    const dea_holder holder = dea_reader_holder(reader, &ref->key);
+    const dea_law *law = *holder.law;
     if (ref->key.law && ref->key.law != law) {
         return dea_place_fail(place, reader->error, ref->path,
-                              "belongs to the law %s, but that of the material is %s; accepted: constants of material.%s, or all of "
-                              "material.%s as %s",
-                              ref->key.law->name, law->name, law->name, ref->key.law->name, ref->key.law->accepted);
+                              "belongs to the law %s, but that of the %s is %s; accepted: constants of %s.%s, or all of %s.%s as %s",
+                              ref->key.law->name, holder.name, law ? law->name : "not given", holder.name,
+                              law ? law->name : ref->key.law->name, holder.name, ref->key.law->name, ref->key.law->accepted);
     }
     const bool window = strncmp(ref->path, "study.transient.average.", 24) == 0;
     const bool listed = strchr(ref->key.path, '#') != NULL;
+    const bool sine = strncmp(ref->path, "drive.waveform.sines.", 21) == 0;
     const dea_material *material = &reader->scene->material;
-    const size_t count = window         ? reader->scene->transient.average_count
-                         : ref->key.law ? material->entry_count
+    const size_t count = sine             ? reader->scene->drive.waveform.sine_count
+                         : window         ? reader->scene->transient.average_count
+                         : ref->key.law ? *holder.entry_count
                                         : material->prony_count;
     if (window && !listed && count > 1) {
         return dea_place_fail(place, reader->error, ref->path,
@@ -73,8 +76,8 @@ dea_status dea_reader_index(dea_reader *reader, const dea_ref *ref, const dea_pl
     if (!listed || ref->index < count) {
         return DEA_OK;
     }
-    return dea_place_fail(place, reader->error, ref->path, "the %s has %zu %s, counted from 0", window ? "transient" : "material",
-                          count, window ? "windows" : ref->key.law ? "terms" : "branches");
+    return dea_place_fail(place, reader->error, ref->path, "the %s has %zu %s, counted from 0",
+                          sine ? "waveform" : window ? "transient" : holder.name, count, sine ? "sines" : window ? "windows" : ref->key.law ? "terms" : "branches");
 }
 
 static dea_status fail_unknown(dea_reader *reader, const char *path, const dea_node *node)
@@ -265,7 +268,8 @@ static const char automatic[] = "auto"; /* the name of no model: the cheapest th
 
 /* What a model must be able to do. */
 typedef struct ability {
-    bool lens, dynamic;
+    bool lens;
+    const dea_study *study; /* NULL: any */
 } ability;
 
 static void model_list(ability wanted, char *out, size_t room)
@@ -274,7 +278,7 @@ static void model_list(ability wanted, char *out, size_t room)
     out[0] = '\0';
     for (size_t i = 0; i < dea_model_count() && used < room; i++) {
         const dea_model *model = dea_model_at(i);
-        if ((!wanted.lens || model->lens) && (!wanted.dynamic || model->dynamic)) {
+        if ((!wanted.lens || model->lens) && (!wanted.study || dea_study_takes(wanted.study, model))) {
             used += (size_t)snprintf(out + used, room - used, "%s, ", model->name);
         }
     }
@@ -306,7 +310,7 @@ static dea_status model_fail(dea_reader *reader, const dea_node *node, const cha
     char names[DEA_KEY_ROOM];
     char meant[DEA_KEY_ROOM] = "";
     model_list(wanted, names, sizeof names);
-    const bool any = !wanted.lens && !wanted.dynamic;
+    const bool any = !wanted.lens && !wanted.study;
     if (node->kind == DEA_NODE_SCALAR && any) {
         char several[DEA_KEY_ROOM];
         model_split(node, several);
@@ -333,10 +337,10 @@ dea_status dea_models_finish(dea_reader *reader)
     if (scene->automatic) {
         scene->models[0] = dea_needs_truth(scene->study);
     }
-    for (size_t i = 0; i < scene->model_count && study->moves; i++) {
-        if (!scene->models[i]->dynamic) {
+    for (size_t i = 0; i < scene->model_count; i++) {
+        if (!dea_study_takes(study, scene->models[i])) {
             return model_fail(reader, reader->model_names[i], study->model_fails,
-                              (ability){.lens = scene->actuator.kind == DEA_LENS, .dynamic = true});
+                              (ability){.lens = scene->actuator.kind == DEA_LENS, .study = study});
         }
     }
     return DEA_OK;

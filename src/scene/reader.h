@@ -63,6 +63,16 @@ dea_status dea_reader_claim(dea_reader *reader, const dea_ref *ref, const dea_no
 /* Index of a scalar's word in @p words, a list that ends with NULL. */
 dea_status dea_reader_word(dea_reader *reader, const dea_ref *ref, const dea_node *node, const char *const *words, size_t *index);
 
+/* What holds the constants of a law: the material, or the skin of the electrode. */
+typedef struct dea_holder {
+    const char *name; /* of its mapping */
+    const dea_law **law;
+    double *constants;
+    size_t *entry_count;
+} dea_holder;
+
+dea_holder dea_reader_holder(dea_reader *reader, const dea_key *key);
+
 /* Kinds of keys, for the table. */
 dea_status dea_read_scalar(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_mapping(dea_reader *reader, const dea_ref *ref, const dea_node *node);
@@ -73,12 +83,15 @@ dea_status dea_read_engine(dea_reader *reader, const dea_ref *ref, const dea_nod
 dea_status dea_read_later(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_material(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_law(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_electrode(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_source(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_stretches(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_permittivity(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_prony(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_moduli(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_waveform(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_wave_word(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_sines(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_points(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_wave_file(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 
@@ -108,6 +121,10 @@ void dea_waveform_drop(dea_scene *scene);
 dea_status dea_waveform_finish(dea_reader *reader);
 /* Puts defaults into the study and checks it as a whole. */
 dea_status dea_study_finish(dea_reader *reader);
+/* Reads a number of radii, 2 ... DEA_RADII_MAX. */
+dea_status dea_reader_radii(dea_reader *reader, const dea_ref *ref, const dea_node *node, size_t *count);
+/* Refuses a sweep of the frame radius beside the key @p path, whose radii are the same of all points. */
+dea_status dea_reader_frame(dea_reader *reader, const char *path);
 /* Gives a bias that the study's own key has not set the static voltage of the drive; fails where there is none. */
 dea_status dea_reader_bias(dea_reader *reader, double *bias);
 /* Refuses models that cannot do the scene's study. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "deaspice/scene.h"
+#include "drive/wave.h"
 #include "support/file.h"
 #include "scene/reader.h"
 
@@ -22,15 +23,16 @@ static dea_status scene_clear(dea_scene *scene)
                      .electrode_mass = NAN,
                      .focal_length = NAN,
                      .refractive_index = NAN},
+        .electrode = {.thickness = NAN, .density = NAN, .sheet_resistance = NAN},
         .material = dea_material_default(),
         .drive = {.voltage = NAN,
-                  .waveform = {.step = {.on = NAN, .off = NAN, .voltage = NAN, .rise = NAN},
-                               .sine = {.offset = NAN, .amplitude = NAN, .frequency = NAN, .phase = NAN, .delay = NAN},
-                               .period = NAN},
+                  .waveform = dea_waveform_none(),
                   .series_resistance = NAN,
                   .leakage_resistance = NAN},
         .transient = {.until = NAN, .every = NAN},
         .ac = {.from = NAN, .to = NAN, .points_per_decade = 50, .bias = NAN},
+        .modes = {.bias = NAN},
+        .profile = {.points = 101},
         .model_error = 0.01,
         .accuracy = 1e-6,
         .files = scene->files,

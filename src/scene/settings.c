@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "drive/wave.h"
 #include "scene/reader.h"
 #include "study/study.h"
 
@@ -141,13 +142,16 @@ static size_t list_overs(const char *overs[DEA_STUDIES + 1])
 
 static void alternatives_remove(setting_reader *self, const char *path)
 {
-    static const char *const waves[] = {"drive.waveform.step", "drive.waveform.points", "drive.waveform.sine",
-                                        "drive.waveform.file"};
+    const char *waves[DEA_WAVE_SINES + 1] = {"drive.waveform.file"};
+    size_t count = 1;
+    for (dea_wave_kind kind = DEA_WAVE_STEP; dea_wave_of(kind); kind++) {
+        waves[count++] = dea_wave_of(kind)->path;
+    }
     const char *kinds[DEA_STUDIES], *overs[DEA_STUDIES + 1];
     for (dea_study_kind kind = 0; kind < DEA_STUDIES; kind++) {
         kinds[kind] = dea_study_at(kind)->path;
     }
-    group_settle(self, waves, sizeof waves / sizeof *waves, path);
+    group_settle(self, waves, count, path);
     group_settle(self, kinds, DEA_STUDIES, path);
     group_settle(self, overs, list_overs(overs), path);
 }
@@ -156,7 +160,8 @@ static void alternatives_remove(setting_reader *self, const char *path)
 static void laws_remove(setting_reader *self, const char *path)
 {
     const char *name = strrchr(path, '.');
-    dea_node *material = name && dea_law_find(name + 1) ? path_enter(self, "material") : NULL;
+    const bool skin = strncmp(path, "electrode.", 10) == 0;
+    dea_node *material = name && dea_law_find(name + 1) ? path_enter(self, skin ? "electrode" : "material") : NULL;
     for (size_t i = 0; material && dea_law_at(i); i++) {
         const char *other = dea_law_at(i)->name;
         const dea_node *node = dea_tree_child(material, other);

@@ -5,6 +5,7 @@
 
 #include "scene/reader.h"
 #include "study/study.h"
+#include "support/number.h"
 
 static dea_status kind_find(dea_reader *reader, const dea_node *study)
 {
@@ -55,8 +56,8 @@ static dea_status drive_settle(dea_reader *reader)
     if (transient && !waveform) {
         return dea_place_fail(
             dea_reader_place(reader, offsetof(dea_scene, drive.voltage), "drive"), reader->error, "drive.waveform",
-            "missing; a transient takes it in place of drive.voltage; accepted: a mapping with step, points, sine "
-            "or file, e.g. {step: {on: 5 s, off: 15 s, voltage: 4500 V}}");
+            "missing; a transient takes it in place of drive.voltage; accepted: a mapping with a form "
+            "such as step, sine or file, e.g. {step: {on: 5 s, off: 15 s, voltage: 4500 V}}");
     }
     if (!waveform || (transient && !voltage->node)) {
         return DEA_OK;
@@ -125,6 +126,21 @@ dea_status dea_reader_bias(dea_reader *reader, double *bias)
     *bias = isnan(*bias) ? reader->scene->drive.voltage : *bias;
     return isnan(*bias) ? dea_place_fail(&dea_tree_find(reader->root, study->path)->place, reader->error, study->bias,
                                          "missing; accepted: a voltage, e.g. 4500 V, here or as drive.voltage")
+                        : DEA_OK;
+}
+
+dea_status dea_reader_radii(dea_reader *reader, const dea_ref *ref, const dea_node *node, size_t *count)
+{
+    const bool read = node->kind == DEA_NODE_SCALAR && dea_count_read(node->text, DEA_RADII_MAX, count) && *count > 1;
+    return read ? DEA_OK : dea_reader_refuse(reader, ref, node, "out of range");
+}
+
+dea_status dea_reader_frame(dea_reader *reader, const char *path)
+{
+    const dea_given *frame = dea_reader_given(reader, offsetof(dea_scene, actuator.frame_radius));
+    return frame->swept ? dea_place_fail(&frame->node->key_at, reader->error, "actuator.frame_radius",
+                                         "is swept beside %s, whose radii are the same in all runs; accepted: the radius of an "
+                                         "electrode, or coverage", path)
                         : DEA_OK;
 }
 

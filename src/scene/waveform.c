@@ -1,34 +1,66 @@
 /* Reading of the waveform, and what only the whole of it shows. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "drive/wave.h"
 #include "scene/reader.h"
 
 #define AT(member) offsetof(dea_scene, drive.waveform.member)
 
+/* The kind that a key of the waveform says; DEA_WAVE_NONE: it is no form of one. */
+static dea_wave_kind kind_of(const char *key)
+{
+    dea_wave_kind kind = strcmp(key, "file") == 0 ? DEA_WAVE_POINTS : DEA_WAVE_NONE;
+    for (dea_wave_kind i = DEA_WAVE_STEP; dea_wave_of(i) && kind == DEA_WAVE_NONE; i++) {
+        kind = strcmp(key, dea_wave_name(dea_wave_of(i))) == 0 ? i : kind;
+    }
+    return kind;
+}
+
 dea_status dea_read_waveform(dea_reader *reader, const dea_ref *ref, const dea_node *node)
 {
-    static const struct {
-        const char *key;
-        dea_wave_kind kind;
-    } forms[] = {{"step", DEA_WAVE_STEP}, {"points", DEA_WAVE_POINTS}, {"sine", DEA_WAVE_SINE}, {"file", DEA_WAVE_POINTS}};
     const dea_node *form = NULL;
     for (const dea_node *child = node->kind == DEA_NODE_MAPPING ? node->first : NULL; child; child = child->next) {
-        for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
-            if (strcmp(child->key, forms[i].key) != 0) {
-                continue;
-            }
-            if (form) {
-                return dea_place_fail(&child->key_at, reader->error, ref->path, "gives both %s and %s; give one of them",
-                                      form->key, child->key);
-            }
+        const dea_wave_kind kind = kind_of(child->key);
+        if (kind != DEA_WAVE_NONE && form) {
+            return dea_place_fail(&child->key_at, reader->error, ref->path, "gives both %s and %s; give one of them", form->key,
+                                  child->key);
+        }
+        if (kind != DEA_WAVE_NONE) {
             form = child;
-            reader->scene->drive.waveform.kind = forms[i].kind;
+            reader->scene->drive.waveform.kind = kind;
         }
     }
     const dea_status status = dea_read_mapping(reader, ref, node);
     return status || form ? status : dea_reader_refuse(reader, ref, node, "says no voltage");
+}
+
+dea_status dea_read_wave_word(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    dea_waveform *waveform = &reader->scene->drive.waveform;
+    return dea_reader_word(reader, ref, node, dea_wave_of(waveform->kind)->words, &waveform->choice);
+}
+
+dea_status dea_read_sines(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    if (node->kind != DEA_NODE_SEQUENCE || node->count == 0 || node->count > DEA_SINES) {
+        return dea_reader_refuse(reader, ref, node, node->kind != DEA_NODE_SEQUENCE ? "not a list"
+                                                    : node->count == 0 ? "holds no sine" : "too many sines");
+    }
+    size_t i = 0;
+    reader->scene->drive.waveform.sine_count = node->count;
+    for (const dea_node *child = node->first; child; child = child->next, i++) {
+        char path[DEA_NAME_LENGTH];
+        dea_ref entry;
+        snprintf(path, sizeof path, "%.40s.%zu", ref->path, i);
+        const dea_status status = dea_key_find(path, &entry) ? dea_read_mapping(reader, &entry, child) : DEA_ERROR_USAGE;
+        if (status) {
+            return status;
+        }
+    }
+    return DEA_OK;
 }
 
 dea_status dea_points_new(dea_reader *reader, size_t count)
@@ -123,11 +155,9 @@ dea_status dea_read_points(dea_reader *reader, const dea_ref *ref, const dea_nod
 
 void dea_waveform_drop(dea_scene *scene)
 {
-    const double none = (double)NAN;
     free(scene->drive.waveform.times);
     free(scene->drive.waveform.voltages);
-    scene->drive.waveform =
-        (dea_waveform){.step = {none, none, none, none}, .sine = {none, none, none, none, none}, .period = none};
+    scene->drive.waveform = dea_waveform_none();
 }
 
 /* Least and largest value of a scalar over its axis. */
@@ -149,12 +179,6 @@ static span span_of(const dea_scene *scene, size_t offset)
     return range;
 }
 
-/* Edges may touch, which makes a corner, but two jumps at one time are none. */
-static bool apart(double gap, double rise)
-{
-    return gap >= DEA_EDGE_MIN || (gap == 0.0 && rise > 0.0);
-}
-
 static dea_status fail_at(dea_reader *reader, size_t offset, const char *path, const char *problem, const char *accepted)
 {
     const dea_node *node = dea_reader_given(reader, offset)->node;
@@ -166,79 +190,91 @@ static dea_status fail_at(dea_reader *reader, size_t offset, const char *path, c
                           problem, shown[0] ? " (" : "", shown, shown[0] ? ")" : "", accepted);
 }
 
-static dea_status step_finish(dea_reader *reader)
+/* Waveforms between which those of all runs lie. */
+static void bounds_of(const dea_scene *scene, const dea_wave *wave, dea_waveform *low, dea_waveform *high)
 {
-    const dea_scene *scene = reader->scene;
-    dea_step *step = &reader->scene->drive.waveform.step;
-    if (isnan(step->on) || isnan(step->voltage)) {
-        return dea_reader_missing(reader, "drive.waveform.step",
-                                  isnan(step->on) ? "drive.waveform.step.on" : "drive.waveform.step.voltage");
+    *low = *high = scene->drive.waveform;
+    const size_t entries = wave->stride ? scene->drive.waveform.sine_count : 1;
+    for (size_t i = 0; i < wave->number_count * entries; i++) {
+        double *first = dea_wave_at(wave, low, i % wave->number_count, i / wave->number_count);
+        const size_t offset = AT(kind) - offsetof(dea_waveform, kind) + (size_t)((char *)first - (char *)low);
+        const span range = span_of(scene, offset);
+        *first = range.low;
+        *dea_wave_at(wave, high, i % wave->number_count, i / wave->number_count) = range.high;
     }
-    step->rise = isnan(step->rise) ? 1e-6 : step->rise;
-    const span rise = span_of(scene, AT(step.rise));
-    if (!(rise.low == 0.0 || rise.low >= DEA_EDGE_MIN)) {
-        return fail_at(reader, AT(step.rise), "drive.waveform.step.rise", "two edges closer than 1e-12 s",
-                       "0 s, which is a jump, or at least 1e-12 s");
-    }
-    const double gap = span_of(scene, AT(step.off)).low - (span_of(scene, AT(step.on)).high + rise.high);
-    if (isnan(step->off) || apart(gap, rise.high)) {
-        return DEA_OK;
-    }
-    return fail_at(reader, AT(step.off), "drive.waveform.step.off", gap < 0.0 ? "out of range" : "two edges closer than 1e-12 s",
-                   "a time >= on + rise, where rise is 1 us unless given");
+    low->period = span_of(scene, AT(period)).low;
 }
 
-static dea_status sine_finish(dea_reader *reader)
+/* What was not given takes its preset, or is missing. */
+static dea_status numbers_finish(dea_reader *reader, const dea_wave *wave)
 {
-    dea_sine *sine = &reader->scene->drive.waveform.sine;
-    if (isnan(sine->amplitude) || isnan(sine->frequency)) {
-        return dea_reader_missing(reader, "drive.waveform.sine",
-                                  isnan(sine->amplitude) ? "drive.waveform.sine.amplitude" : "drive.waveform.sine.frequency");
+    dea_waveform *waveform = &reader->scene->drive.waveform;
+    const size_t entries = wave->stride ? waveform->sine_count : 1;
+    for (size_t i = 0; i < wave->number_count * entries; i++) {
+        const dea_wave_number *number = &wave->numbers[i % wave->number_count];
+        double *value = dea_wave_at(wave, waveform, i % wave->number_count, i / wave->number_count);
+        if (!isnan(*value)) {
+            continue;
+        }
+        if (number->needed) {
+            char parent[DEA_NAME_LENGTH], path[DEA_NAME_LENGTH];
+            snprintf(parent, sizeof parent, wave->stride ? "%s.%zu" : "%s", wave->path, i / wave->number_count);
+            snprintf(path, sizeof path, "%.40s.%.20s", parent, number->name);
+            return dea_reader_missing(reader, wave->stride ? wave->path : parent, path);
+        }
+        *value = number->preset;
     }
-    sine->offset = isnan(sine->offset) ? 0.0 : sine->offset;
-    sine->phase = isnan(sine->phase) ? 0.0 : sine->phase;
-    sine->delay = isnan(sine->delay) ? 0.0 : sine->delay;
-    if (isnan(reader->scene->drive.waveform.period)) {
-        return DEA_OK;
-    }
-    return fail_at(reader, AT(period), "drive.waveform.period", "contradicts sine, which has its frequency",
-                   "period with step, points or file");
+    return DEA_OK;
 }
 
 /* What repeats has come to its end before, and its next edge keeps its distance. */
-static dea_status period_finish(dea_reader *reader)
+static dea_status period_finish(dea_reader *reader, const dea_wave *wave, const dea_wave_bounds *bounds)
 {
-    const dea_scene *scene = reader->scene;
-    const dea_waveform *waveform = &scene->drive.waveform;
-    const bool step = waveform->kind == DEA_WAVE_STEP;
-    if (isnan(waveform->period)) {
+    const double period = bounds->low->period;
+    if (isnan(period)) {
         return DEA_OK;
     }
-    if (step && isnan(waveform->step.off)) {
-        return dea_place_fail(dea_reader_place(reader, AT(period), "drive.waveform"), reader->error, "drive.waveform.step.off",
-                              "missing; a step with a period goes off again; accepted: a time >= on + rise, e.g. 15 s");
+    if (wave->once) {
+        char problem[100];
+        snprintf(problem, sizeof problem, "contradicts %s, %s", dea_wave_name(wave), wave->once);
+        return fail_at(reader, AT(period), "drive.waveform.period", problem, "period with step, points, burst or file");
     }
-    const double period = span_of(scene, AT(period)).low;
-    const span rise = span_of(scene, AT(step.rise));
-    const double end = step ? span_of(scene, AT(step.off)).high + rise.high : waveform->times[waveform->point_count - 1];
-    const double next = step ? span_of(scene, AT(step.on)).low : 0.0;
-    const bool fits = period >= end && period >= DEA_EDGE_MIN && apart(period - end + next, step ? rise.high : 1.0);
-    return fits
-               ? DEA_OK
-               : fail_at(reader, AT(period), "drive.waveform.period",
-                         period < end ? "out of range" : "two edges closer than 1e-12 s",
-                         step ? "a time >= off + rise, where rise is 1 us unless given" : "at least the last time of the points");
+    double first, last, rise;
+    wave->extent(bounds, &first, &last, &rise);
+    if (period >= last && period >= DEA_EDGE_MIN && dea_wave_apart(period - last + first, rise, DEA_EDGE_MIN)) {
+        return DEA_OK;
+    }
+    return fail_at(reader, AT(period), "drive.waveform.period", period < last ? "out of range" : "two edges closer than 1e-12 s",
+                   wave->until);
 }
 
 dea_status dea_waveform_finish(dea_reader *reader)
 {
-    const dea_wave_kind kind = reader->scene->drive.waveform.kind;
-    if (kind == DEA_WAVE_NONE) {
+    const dea_scene *scene = reader->scene;
+    const dea_wave *wave = dea_wave_of(scene->drive.waveform.kind);
+    dea_waveform low, high;
+    dea_wave_fault fault = {0};
+    if (!wave) {
         return DEA_OK;
     }
-    if (kind == DEA_WAVE_SINE) {
-        return sine_finish(reader);
+    const dea_status status = numbers_finish(reader, wave);
+    if (status) {
+        return status;
     }
-    const dea_status status = kind == DEA_WAVE_STEP ? step_finish(reader) : DEA_OK;
-    return status ? status : period_finish(reader);
+    bounds_of(scene, wave, &low, &high);
+    const span every = span_of(scene, offsetof(dea_scene, transient.every));
+    const span until = span_of(scene, offsetof(dea_scene, transient.until));
+    const dea_wave_bounds bounds = {
+        .low = &low, .high = &high, .every = isnan(every.high) ? until.high / 1000.0 : every.high, .shortest = DEA_EDGE_MIN};
+    if (wave->fits && !wave->fits(&bounds, &fault)) {
+        char path[DEA_NAME_LENGTH];
+        snprintf(path, sizeof path, "%.40s.%.20s", wave->path, fault.number->name);
+        if (fault.period) {
+            return dea_place_fail(dea_reader_place(reader, AT(period), "drive.waveform"), reader->error, path, "%s; accepted: %s",
+                                  fault.problem, fault.accepted);
+        }
+        const size_t offset = AT(kind) - offsetof(dea_waveform, kind) + fault.number->offset;
+        return fail_at(reader, offset, path, fault.problem, fault.accepted);
+    }
+    return period_finish(reader, wave, &bounds);
 }

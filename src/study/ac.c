@@ -4,6 +4,7 @@
 
 #include "netlist/export.h"
 #include "scene/key_forms.h"
+#include "output/picture.h"
 #include "study/study.h"
 #include "support/number.h"
 
@@ -119,10 +120,10 @@ const dea_study dea_study_ac = {
     .points = {"run", "runs"},
     .rows = {"frequency", "frequencies"},
     .along = true,
-    .moves = true,
     .phasors = true,
     .bias = AC ".bias",
     .model_fails = "cannot do a frequency response",
+    .model_lacks = "the model is static",
     .engine_fails = "it has no frequency domain",
     .at = " at the bias",
     .plot_name = "AC Analysis",
@@ -134,8 +135,10 @@ const dea_study dea_study_ac = {
     .key_count = sizeof keys / sizeof *keys,
     .compared = compared,
     .compared_count = sizeof compared / sizeof *compared,
+    .drawer = &dea_drawer_runs,
     .drawn = drawn,
     .drawn_count = sizeof drawn / sizeof *drawn,
+    .takes = dea_study_moves,
     .finish = finish,
     .rest = rest,
     .identify = identify,

@@ -6,6 +6,7 @@
 #include "deaspice/engine.h"
 #include "result/compare.h"
 
+struct dea_drawer;
 struct dea_export;
 struct dea_key;
 struct dea_reader;
@@ -29,13 +30,14 @@ typedef struct dea_study {
 
     /* What its rows are. */
     bool along;    /* rows of a point lie along a coordinate, their first column; else a point is one row, a dea_row */
-    bool moves;    /* the film moves: models of statics alone cannot */
     bool timed;    /* rows are dea_sample, and a dea_summary stands behind them */
     bool phasors;  /* rows are dea_response, and a dea_band stands behind them */
+    bool stations; /* rows are dea_station, and a dea_weakest stands behind them */
     bool waveform; /* takes a waveform instead of drive.voltage */
     const char *bias;      /* key of the voltage that it has instead of drive.voltage, NULL: none */
     const char *sign;      /* of the coordinate in messages, e.g. "t"; NULL: places are not told */
-    const char *model_fails, *engine_fails; /* why a model of statics alone, or an engine without it, cannot do it */
+    const char *model_fails, *model_lacks; /* why a model cannot do it, in a sentence that begins with its name, and alone */
+    const char *engine_fails;              /* why an engine cannot */
     const char *at;        /* where a model is held against the membrane, e.g. " at the bias" */
     const char *plot_name; /* of a SPICE raw file */
 
@@ -54,6 +56,11 @@ typedef struct dea_study {
     const size_t *drawn; /* columns of a picture over the coordinate, the first in the largest panel, drawn_count of them */
     size_t drawn_count;
 
+    size_t resonance; /* column that is a resonance in the first row, 0: none */
+    const struct dea_drawer *drawer; /* of its pictures */
+
+    /* True where it can be asked of a model; NULL: of all. */
+    bool (*takes)(const dea_model *model);
     /* Puts defaults in and checks it as a whole; NULL: nothing to do. */
     dea_status (*finish)(struct dea_reader *reader);
     /* Puts the voltage at which models are held against the membrane into the drive; NULL: it is there. */
@@ -66,7 +73,7 @@ typedef struct dea_study {
     double (*place)(const dea_scene *scene, size_t index);
     /* Makes what stands behind the rows of a failed point; NULL: nothing stands there. */
     void (*fail)(const dea_layout *layout, void *point);
-    /* True where the engine has it; NULL: they all do. */
+    /* True where the engine has it; NULL: where it has one of its solves[]. */
     bool (*offered)(const dea_engine *engine);
     /* Solves one point, whose axes are at their place; NULL: many at once, by the engine's sweep(). */
     dea_status (*solve)(const dea_engine *engine, void *session, dea_scene *here, const dea_model *model, const dea_layout *layout,
@@ -77,6 +84,14 @@ typedef struct dea_study {
 
 /* Row of a kind. */
 const dea_study *dea_study_at(dea_study_kind kind);
+
+/* True where the study can be asked of a model. */
+bool dea_study_takes(const dea_study *study, const dea_model *model);
+/* For takes: it moves. */
+bool dea_study_moves(const dea_model *model);
+/* Solves one point by the engine's solves[]. */
+dea_status dea_study_solve(const dea_engine *engine, void *session, dea_scene *here, const dea_model *model, const dea_layout *layout,
+                           void *point, dea_error *error);
 
 /* Row of the scene's study. */
 static inline const dea_study *dea_study_of(const dea_scene *scene)

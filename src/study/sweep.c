@@ -4,6 +4,7 @@
 
 #include "netlist/export.h"
 #include "scene/key_forms.h"
+#include "output/picture.h"
 #include "study/study.h"
 
 static const dea_key keys[] = {
@@ -27,6 +28,12 @@ static void lay(const dea_scene *scene, dea_layout *layout)
     layout->column_count = isnan(scene->actuator.focal_length) ? DEA_ROW_COLUMNS - 1 : DEA_ROW_COLUMNS;
 }
 
+static bool offered(const dea_engine *engine)
+{
+    (void)engine;
+    return true;
+}
+
 const dea_study dea_study_sweep = {
     .name = "sweep",
     .path = "study.sweep",
@@ -44,6 +51,8 @@ const dea_study dea_study_sweep = {
     .key_count = sizeof keys / sizeof *keys,
     .compared = compared,
     .compared_count = sizeof compared / sizeof *compared,
+    .drawer = &dea_drawer_points,
     .lay = lay,
+    .offered = offered,
     .netlist = dea_export_sweep,
 };

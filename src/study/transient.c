@@ -2,12 +2,14 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "deaspice/model.h"
 #include "deaspice/needs.h"
 #include "drive/signal.h"
 #include "netlist/export.h"
 #include "network/swing.h"
 #include "result/scales.h"
 #include "scene/key_forms.h"
+#include "output/picture.h"
 #include "study/study.h"
 #include "support/number.h"
 
@@ -145,21 +147,21 @@ static void identify(FILE *out, const dea_scene *scene)
 
 static void lay(const dea_scene *scene, dea_layout *layout)
 {
-    const dea_drive *drive = &scene->drive;
+    const bool series = !isnan(dea_series_resistance(scene));
     dea_layout_add(layout, (dea_column){"time_s", "time", "s", offsetof(dea_sample, time)});
     dea_layout_add(layout, (dea_column){"voltage_V", "voltage of the source", "V", offsetof(dea_sample, voltage)});
     dea_layout_add(layout, (dea_column){"displacement_m", "radial displacement of the disc edge", "m", offsetof(dea_sample, displacement)});
     dea_layout_add(layout, (dea_column){"strain", "radial strain of the disc edge", "1", offsetof(dea_sample, strain)});
     dea_layout_add(layout, (dea_column){"velocity_m_per_s", "velocity of the disc edge", "m/s", offsetof(dea_sample, velocity)});
     dea_layout_add(layout, (dea_column){"force_N", "electrostatic force over the full circumference", "N", offsetof(dea_sample, force)});
-    if (!isnan(drive->series_resistance) || !isnan(drive->leakage_resistance)) {
+    if (series || !isnan(scene->drive.leakage_resistance)) {
         dea_layout_add(layout, (dea_column){"current_A", "current of the source", "A", offsetof(dea_sample, current)});
         dea_layout_add(layout, (dea_column){"charge_C", "charge of the film", "C", offsetof(dea_sample, charge)});
     }
     if (!isnan(scene->actuator.focal_length)) {
         dea_layout_add(layout, (dea_column){"focal_length_m", "focal length of the lens", "m", offsetof(dea_sample, focal_length)});
     }
-    if (!isnan(drive->series_resistance)) {
+    if (series) {
         dea_layout_add(layout, (dea_column){"film_voltage_V", "voltage across the film", "V", offsetof(dea_sample, film_voltage)});
     }
     layout->rows = (size_t)floor(scene->transient.until / scene->transient.every * (1.0 + 1e-12)) + 1;
@@ -297,11 +299,11 @@ const dea_study dea_study_transient = {
     .points = {"run", "runs"},
     .rows = {"sample", "samples"},
     .along = true,
-    .moves = true,
     .timed = true,
     .waveform = true,
     .sign = "t",
     .model_fails = "cannot do a transient",
+    .model_lacks = "the model is static",
     .engine_fails = "it has no time domain",
     .at = " at rest under the largest voltage",
     .plot_name = "Transient Analysis",
@@ -315,8 +317,10 @@ const dea_study dea_study_transient = {
     .compared_count = sizeof compared / sizeof *compared,
     .figures = figures,
     .figure_count = sizeof figures / sizeof *figures,
+    .drawer = &dea_drawer_runs,
     .drawn = drawn,
     .drawn_count = sizeof drawn / sizeof *drawn,
+    .takes = dea_study_moves,
     .finish = finish,
     .rest = rest,
     .identify = identify,

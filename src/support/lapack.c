@@ -5,7 +5,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-#define LAPACK_LIST(X) X(dgeev) X(dgels) X(dgesvd) X(dgetrf) X(dgetri) X(dposv) X(dsyev)
+#define LAPACK_LIST(X) X(dgeev) X(dgels) X(dgesvd) X(dgetrf) X(dgetri) X(dposv) X(dsyev) X(zgesv)
 
 typedef struct lapack {
 #define X(name) __typeof__(&LAPACKE_##name) name;
@@ -179,4 +179,11 @@ lapack_int dea_lapacke_dsyev(int layout, char jobz, char uplo, lapack_int n, dou
 {
     lapack l;
     return find(&l) ? l.dsyev(layout, jobz, uplo, n, a, lda, w) : DEA_LAPACK_MISSING;
+}
+
+lapack_int dea_lapacke_zgesv(int layout, lapack_int n, lapack_int nrhs, lapack_complex_double *a, lapack_int lda, lapack_int *ipiv,
+                             lapack_complex_double *b, lapack_int ldb)
+{
+    lapack l;
+    return find(&l) ? l.zgesv(layout, n, nrhs, a, lda, ipiv, b, ldb) : DEA_LAPACK_MISSING;
 }

@@ -24,5 +24,7 @@ lapack_int dea_lapacke_dgetrf(int layout, lapack_int m, lapack_int n, double *a,
 lapack_int dea_lapacke_dgetri(int layout, lapack_int n, double *a, lapack_int lda, const lapack_int *ipiv);
 lapack_int dea_lapacke_dposv(int layout, char uplo, lapack_int n, lapack_int nrhs, double *a, lapack_int lda, double *b, lapack_int ldb);
 lapack_int dea_lapacke_dsyev(int layout, char jobz, char uplo, lapack_int n, double *a, lapack_int lda, double *w);
+lapack_int dea_lapacke_zgesv(int layout, lapack_int n, lapack_int nrhs, lapack_complex_double *a, lapack_int lda, lapack_int *ipiv,
+                             lapack_complex_double *b, lapack_int ldb);
 
 #endif

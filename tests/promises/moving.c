@@ -187,10 +187,10 @@ static method radau_method(void)
 static long double source_at(const motion *m, long double time)
 {
     const dea_segment *s = m->segment;
-    const dea_sine *sine = &m->signal.sine;
+    const dea_tone *sine = &m->signal.curve.tones[0];
     if (s->sine) {
-        const long double turns = (long double)sine->frequency * (s->from + time - (long double)sine->delay);
-        return m->factor * (sine->offset + sine->amplitude * sinl(2.0L * pi * (turns - floorl(turns)) + sine->phase));
+        const long double turns = (long double)sine->frequency * (s->from + time - (long double)s->origin);
+        return m->factor * (m->signal.curve.offset + sine->amplitude * sinl(2.0L * pi * (turns - floorl(turns)) + sine->phase));
     }
     return m->factor * (s->start + ((long double)s->end - s->start) * (time / ((long double)s->to - s->from)));
 }
@@ -198,10 +198,10 @@ static long double source_at(const motion *m, long double time)
 static long double source_slope(const motion *m, long double time)
 {
     const dea_segment *s = m->segment;
-    const dea_sine *sine = &m->signal.sine;
+    const dea_tone *sine = &m->signal.curve.tones[0];
     if (s->sine) {
         const long double pace = 2.0L * pi * (long double)sine->frequency;
-        const long double turns = (long double)sine->frequency * (s->from + time - (long double)sine->delay);
+        const long double turns = (long double)sine->frequency * (s->from + time - (long double)s->origin);
         return m->factor * sine->amplitude * pace * cosl(2.0L * pi * (turns - floorl(turns)) + sine->phase);
     }
     return m->factor * ((long double)s->end - s->start) / ((long double)s->to - s->from);

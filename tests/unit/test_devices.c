@@ -1,4 +1,5 @@
-/* Films as they are built: stacks of layers. Judges are one film alone, figures from elsewhere, and other engines. */
+/* Films as they are built: stacks of layers, skins of electrodes. Judges are one film alone, figures from elsewhere, the energy in
+ * long double, and other engines. */
 #include "scenes.h"
 
 #include <stdlib.h>
@@ -149,6 +150,219 @@ static void a_stack_answers_with_a_fifth_of_the_impedance(void **state)
     }
 }
 
+#define SKIN "electrode: {thickness: 25 um, neo_hookean: {mu: 20 kPa}, density: 1010 kg/m^3}\n"
+
+static void a_skin_costs_the_printed_strain(void **state)
+{
+    (void)state;
+    static const char *const membranes[] = {"direct", "ida"};
+    for (size_t e = 0; e < 2; e++) {
+        assert_printed(row_of(FILM("dot", "") PAPER SKIN STILL, "field", membranes[e]).strain, 0.0442776413, 10);
+        assert_printed(row_of(FILM("lens", "") PAPER SKIN STILL, "field", membranes[e]).strain, -0.0370009643, 10);
+        assert_printed(row_of(FILM("dot", "") PAPER STILL, "field", membranes[e]).strain, 0.0450329722, 10);
+    }
+}
+
+static long double invariant(long double a, long double b)
+{
+    return a * a + b * b + 1.0L / (a * a * b * b) - 3.0L;
+}
+
+static long double yeoh(long double a, long double b)
+{
+    const long double j = invariant(a, b);
+    return j * (178426.0L + j * (-6023.0L + j * 4234.0L));
+}
+
+/* A film of one ring each for disc and annulus, by its energy alone: B = 0.5, r = 30 mm, H = 100 um, lambda_pre = 1.2. */
+typedef struct energy_film {
+    bool dot;
+    long double skin;    /* t mu [N/m] */
+    long double voltage; /* [V] */
+} energy_film;
+
+/* W and the skin's W_e over their volumes less U^2 C/2 [J]. */
+static long double energy_at(const energy_film *f, long double u)
+{
+    const long double pi = acosl(-1.0L), pre = 1.2L, r = 0.03L, a = 0.015L, h = 1e-4L, epsilon = 2.8L * 8.8541878128e-12L;
+    const long double disc = 1.0L + u / a, radial = 1.0L - u / (r - a), hoop = 1.0L + u / (r + a);
+    const long double inside = pi * a * a, outside = pi * (r * r - a * a); /* of pre-stretched film */
+    const long double elastic = (inside * yeoh(pre * disc, pre * disc) + outside * yeoh(pre * radial, pre * hoop)) * h / (pre * pre);
+    const long double skin = 0.5L * f->skin * (f->dot ? inside * invariant(disc, disc) : outside * invariant(radial, hoop));
+    const long double area = f->dot ? disc * disc : radial * hoop;
+    const long double capacitance = epsilon * pre * pre / h * (f->dot ? inside : outside) * area * area;
+    return elastic + skin - 0.5L * capacitance * f->voltage * f->voltage;
+}
+
+static long double force_at(const energy_film *f, long double u)
+{
+    const long double h = 1e-6L;
+    const long double near = energy_at(f, u + h) - energy_at(f, u - h), far = energy_at(f, u + 2.0L * h) - energy_at(f, u - 2.0L * h);
+    return (8.0L * near - far) / (12.0L * h);
+}
+
+/* Where the energy is least between two displacements. */
+static double rest_of(const energy_film *f, long double low, long double high)
+{
+    for (int i = 0; i < 80; i++) {
+        const long double middle = 0.5L * (low + high);
+        *(force_at(f, middle) < 0.0L ? &low : &high) = middle;
+    }
+    return (double)low;
+}
+
+static void a_skinned_film_of_rings_rests_where_its_energy_is_least(void **state)
+{
+    (void)state;
+    for (size_t e = 0; e < ENGINES; e++) {
+        const energy_film dot = {true, 25e-6L * 20e3L, 4500.0L}, lens = {false, 25e-6L * 20e3L, 4500.0L};
+        assert_relative(row_of(FILM("dot", "") PAPER SKIN STILL, "ring", engines[e]).displacement, rest_of(&dot, 0.0L, 2e-3L), 1e-9);
+        assert_relative(row_of(FILM("lens", "") PAPER SKIN STILL, "ring", engines[e]).displacement, rest_of(&lens, -2e-3L, 0.0L), 1e-9);
+    }
+}
+
+static void engines_agree_on_skins(void **state)
+{
+    (void)state;
+    for (size_t m = 0; m < dea_model_count(); m++) {
+        const dea_model *model = dea_model_at(m);
+        for (int lens = 0; lens <= (int)model->lens; lens++) {
+            const char *text = lens ? FILM("lens", ", layers: 2") PAPER SKIN STILL : FILM("dot", ", layers: 2") PAPER SKIN STILL;
+            const char *bare = lens ? FILM("lens", ", layers: 2") PAPER STILL : FILM("dot", ", layers: 2") PAPER STILL;
+            const dea_row wanted = row_of(text, model->name, "direct");
+            assert_true(fabs(wanted.strain) < 0.999 * fabs(row_of(bare, model->name, "direct").strain));
+            for (size_t e = 1; e < ENGINES; e++) {
+                if (can(text, model->name, engines[e])) {
+                    const dea_row row = row_of(text, model->name, engines[e]);
+                    assert_relative(row.strain, wanted.strain, 1e-7);
+                    assert_int_equal(row.state, wanted.state);
+                }
+            }
+        }
+    }
+}
+
+/* The skin moves with the film but neither damps nor relaxes. */
+static void engines_agree_on_moving_skins(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lumped", "lame", "coverage", "ring"};
+    static const char *const drives[] = {SWITCHED("1 MOhm"), "drive: {waveform: {step: {on: 0 s, voltage: 4 kV, rise: 0 s}}}\n"};
+    for (size_t m = 0; m < 4; m++) {
+        for (size_t d = 0; d < 2; d++) {
+            char text[1024];
+            snprintf(text, sizeof text, "%s%s", FILM("dot", "") LOSSY SKIN MOVED, drives[d]);
+            run(text, models[m], "ida", &one);
+            const dea_sample *wanted = (const dea_sample *)one.bytes;
+            for (size_t e = 0; e < ENGINES; e += 2) {
+                if (!can(text, models[m], engines[e])) {
+                    continue;
+                }
+                run(text, models[m], engines[e], &other);
+                const dea_sample *rows = (const dea_sample *)other.bytes;
+                for (size_t i = 0; i < one.rows; i++) {
+                    assert_near(rows[i].displacement, wanted[i].displacement, 2e-5 * wanted[40].displacement);
+                }
+            }
+        }
+        assert_true(m > 1 || can(FILM("dot", "") LOSSY SKIN MOVED "drive: {waveform: {points: [[0 s, 4 kV]]}}\n", models[m], "direct"));
+    }
+}
+
+static void engines_agree_on_shaken_skins(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lumped", "lame", "coverage", "ring"};
+    const char *text = FILM("dot", "") LOSSY SKIN "drive: {series_resistance: 1 MOhm}\n" SHAKEN;
+    for (size_t m = 0; m < 4; m++) {
+        run(text, models[m], "direct", &one);
+        run(text, models[m], "ngspice", &other);
+        const dea_response *wanted = (const dea_response *)one.bytes, *rows = (const dea_response *)other.bytes;
+        for (size_t i = 0; i < one.rows; i++) {
+            assert_relative(rows[i].displacement, wanted[i].displacement, 1e-6);
+            assert_relative(rows[i].impedance, wanted[i].impedance, 1e-6);
+        }
+    }
+}
+
+/* So slowly that the film follows, the membrane answers with the slope of its static displacement. */
+static void a_slow_membrane_moves_its_skin_along(void **state)
+{
+    (void)state;
+    static const char *const kinds[] = {FILM("dot", "") PAPER SKIN "drive: {voltage: 3 kV}\nstudy: {sweep: {}}\n",
+                                        FILM("lens", "") PAPER SKIN "drive: {voltage: 3 kV}\nstudy: {sweep: {}}\n"};
+    for (int k = 0; k < 2; k++) {
+        dea_scene scene;
+        dea_error error = {0};
+        dea_response row;
+        read_scene(kinds[k], "field", &scene);
+        scene.accuracy = 1e-9;
+        scene.drive.voltage = 3001.0;
+        const double above = solve_direct(&scene, "field").displacement;
+        scene.drive.voltage = 2999.0;
+        const double below = solve_direct(&scene, "field").displacement;
+        scene.study = DEA_STUDY_AC;
+        scene.ac = (dea_ac){.from = 1e-3, .to = 1e-3, .points_per_decade = 1, .bias = 3000.0};
+        assert_int_equal(dea_engine_find("direct")->ac(NULL, &scene, scene.models[0], &row, NULL, &error), DEA_OK);
+        assert_relative(row.displacement, fabs(0.5 * (above - below)), 1e-6);
+        dea_scene_free(&scene);
+    }
+}
+
+/* I^2 R = sum over electrodes of the integral of I(r)^2/(2 pi r), the charge going evenly into the film; inner electrodes feed two
+ * films. */
+static void sheets_are_one_resistance_of_the_same_loss(void **state)
+{
+    (void)state;
+    static const double coverages[] = {0.1, 0.5, 0.88, 0.9, 0.999};
+    for (size_t i = 0; i < sizeof coverages / sizeof *coverages; i++) {
+        for (int lens = 0; lens < 2; lens++) {
+            const int cuts = 20000, layers = 1 + (int)i;
+            const long double inner = lens ? (long double)coverages[i] : 0.0L, width = (1.0L - inner) / cuts;
+            long double loss = 0.0L, all = 0.0L;
+            for (int k = 0; k < cuts; k++) {
+                const long double r = inner + (k + 0.5L) * width;
+                const long double flow = (r - inner) * (r + inner) / ((1.0L - inner) * (1.0L + inner));
+                loss += flow * flow / (2.0L * acosl(-1.0L) * r) * width;
+            }
+            for (int sheet = 0; sheet <= layers; sheet++) {
+                const long double films = sheet == 0 || sheet == layers ? 1.0L : 2.0L;
+                all += loss * films * films / ((long double)layers * layers);
+            }
+            assert_relative(dea_sheet_share(lens ? DEA_LENS : DEA_DOT, coverages[i], layers), (double)all, 1e-7);
+        }
+    }
+}
+
+static void sheets_add_to_the_series_resistance(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        char sheets[1024], one_resistance[1024];
+        const double own = 50e6 * dea_sheet_share(k ? DEA_LENS : DEA_DOT, 0.5, 2.0);
+        const char *film = k ? FILM("lens", ", layers: 2") LOSSY MOVED : FILM("dot", ", layers: 2") LOSSY MOVED;
+        const char *step = "waveform: {step: {on: 0 s, voltage: 4 kV, rise: 0.1 ms}}, leakage_resistance: 1 GOhm";
+        snprintf(sheets, sizeof sheets, "%selectrode: {sheet_resistance: 50 MOhm}\ndrive: {%s, series_resistance: 100 kOhm}\n", film, step);
+        snprintf(one_resistance, sizeof one_resistance, "%sdrive: {%s, series_resistance: %.17g Ohm}\n", film, step, 1e5 + own);
+        run(sheets, "ring", "ida", &one);
+        run(one_resistance, "ring", "ida", &other);
+        const dea_sample *wanted = (const dea_sample *)other.bytes, *rows = (const dea_sample *)one.bytes;
+        for (size_t i = 0; i < one.rows; i++) {
+            assert_near(rows[i].displacement, wanted[i].displacement, 1e-9 * fabs(wanted[40].displacement));
+            assert_near(rows[i].current, wanted[i].current, 1e-9 * wanted[1].current);
+        }
+        snprintf(sheets, sizeof sheets, "%s" PAPER "electrode: {sheet_resistance: 5 GOhm}\ndrive: {voltage: 4 kV, leakage_resistance: 1 GOhm}\n"
+                 "study: {sweep: {coverage: [0.3, 0.6]}}\n", k ? FILM("lens", "") : FILM("dot", ""));
+        run(sheets, "ring", "direct", &other);
+        for (size_t e = 1; e < ENGINES; e++) {
+            run(sheets, "ring", engines[e], &one);
+            for (int i = 0; i < 2; i++) {
+                assert_relative(((const dea_row *)one.bytes)[i].charge, ((const dea_row *)other.bytes)[i].charge, 1e-8);
+            }
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -156,6 +370,14 @@ int main(void)
         cmocka_unit_test(charge_of_a_stack_is_the_printed_one),
         cmocka_unit_test(a_stack_moves_as_one_film),
         cmocka_unit_test(a_stack_answers_with_a_fifth_of_the_impedance),
+        cmocka_unit_test(a_skin_costs_the_printed_strain),
+        cmocka_unit_test(a_skinned_film_of_rings_rests_where_its_energy_is_least),
+        cmocka_unit_test(engines_agree_on_skins),
+        cmocka_unit_test(engines_agree_on_moving_skins),
+        cmocka_unit_test(engines_agree_on_shaken_skins),
+        cmocka_unit_test(a_slow_membrane_moves_its_skin_along),
+        cmocka_unit_test(sheets_are_one_resistance_of_the_same_loss),
+        cmocka_unit_test(sheets_add_to_the_series_resistance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

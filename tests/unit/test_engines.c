@@ -361,6 +361,7 @@ static void make_grid(grid *g, const char *model)
                 .voltages = {500.0, 4500.0, 2000.0, 3000.0},
                 .prestretches = {1.05, 1.1, 1.15, 1.2, 1.25}};
     dea_scene *scene = &g->scene;
+    scene->accuracy = 1e-8;
     scene->models[0] = dea_model_find(model);
     add_axis(scene, &g->axes[0], &scene->actuator.coverage, g->coverages, 3);
     add_axis(scene, &g->axes[1], &scene->drive.voltage, g->voltages, 4);

@@ -386,6 +386,83 @@ static void sample_data_gives_back_the_constants_it_was_made_from(void **state)
     assert_int_equal(unlink(path), 0);
 }
 
+/* Runs a moving or a local example by the program, with both pictures; calls @p take with the cells of each row. */
+static size_t run_rows(const char *name, void (*take)(char *const *cells, size_t count))
+{
+    char words[2 * PATH_LENGTH], path[PATH_LENGTH], line[LINE_LENGTH];
+    size_t rows = 0;
+    snprintf(path, sizeof path, "%s/rows.csv", folder);
+    for (int i = 0; i < 2; i++) {
+        const char *picture = i == 0 ? "picture.svg" : "picture.png";
+        snprintf(words, sizeof words, "run examples/%s.yaml --quiet -o %s --plot %s/%s", name, path, folder, picture);
+        run_program(words);
+        check_picture(picture);
+    }
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    assert_non_null(fgets(line, sizeof line, file));
+    for (; fgets(line, sizeof line, file); rows++) {
+        char *cells[32];
+        size_t count = 0;
+        for (char *cell = strtok(line, ",\n"); cell && count < 32; cell = strtok(NULL, ",\n")) {
+            cells[count++] = cell;
+        }
+        take(cells, count);
+    }
+    assert_int_equal(fclose(file), 0);
+    return rows;
+}
+
+/* bias_V, coverage, mode, frequency_Hz, damping_ratio, undamped_frequency_Hz, ...: frequencies of physics, section 7. */
+static void take_mode(char *const *cells, size_t count)
+{
+    static const double still[] = {619.836, 1134.877, 1645.71}, quarter[] = {587.717, 1088.681, 1612.00};
+    const double bias = strtod(cells[0], NULL), coverage = strtod(cells[1], NULL), undamped = strtod(cells[5], NULL);
+    const size_t mode = (size_t)strtod(cells[2], NULL) - 1;
+    assert_int_equal(count, 9);
+    assert_true(strtod(cells[3], NULL) < undamped && strtod(cells[4], NULL) > 0.0);
+    if (bias == 0.0) {
+        assert_printed(undamped, still[mode], mode < 2 ? 3 : 2);
+    } else if (bias == 4500.0 && coverage == 0.25) {
+        assert_printed(undamped, quarter[mode], mode < 2 ? 3 : 2);
+    }
+    if (mode == 0) {
+        assert_near(strtod(cells[6], NULL), coverage == 0.5 ? 0.77 : 0.38, 0.07);
+    }
+}
+
+static void modes_are_those_of_the_table(void **state)
+{
+    (void)state;
+    assert_int_equal(run_rows("modes", take_mode), 19 * 2 * 3);
+}
+
+/* voltage_V, radius_m, displacement_m, stretch_radial, stretch_hoop, thickness_m, stress_radial_Pa, stress_hoop_Pa, field: the disc
+ * of a lens shrinks evenly and has no field, the annulus has one. */
+static void take_station(char *const *cells, size_t count)
+{
+    const double voltage = strtod(cells[0], NULL), radius = strtod(cells[1], NULL), moved = strtod(cells[2], NULL);
+    const bool disc = radius <= 0.015 * (1.0 + 1e-12);
+    dea_scene scene = paper_scene(DEA_LENS, 1.2, 0.5, voltage);
+    const dea_row row = solve_direct(&scene, "field");
+    assert_int_equal(count, 10);
+    assert_true(disc == (strtod(cells[8], NULL) == 0.0));
+    if (disc) {
+        assert_near(moved, row.strain * radius, 1e-9 * radius);
+        assert_relative(strtod(cells[3], NULL), 1.2 * (1.0 + row.strain), 1e-8);
+    } else {
+        assert_relative(strtod(cells[4], NULL), 1.2 * (1.0 + moved / radius), 1e-8);
+        assert_relative(strtod(cells[8], NULL), voltage * strtod(cells[3], NULL) * strtod(cells[4], NULL) / 1e-4, 1e-12);
+    }
+    assert_string_equal(cells[9], "ok");
+}
+
+static void the_disc_of_a_lens_shrinks_evenly_and_the_annulus_fills_the_rest(void **state)
+{
+    (void)state;
+    assert_int_equal(run_rows("profile", take_station), 3 * 201);
+}
+
 /* Runs a command as the user would, beside a folder `examples`. */
 static void run_told(const char *command)
 {
@@ -539,6 +616,8 @@ int main(void)
         cmocka_unit_test(soft_film_without_pre_stretch_pulls_in_at_the_voltage_of_a_free_edge),
         cmocka_unit_test(vhb_follows_the_closed_form_of_a_neo_hookean),
         cmocka_unit_test(sample_data_gives_back_the_constants_it_was_made_from),
+        cmocka_unit_test(modes_are_those_of_the_table),
+        cmocka_unit_test(the_disc_of_a_lens_shrinks_evenly_and_the_annulus_fills_the_rest),
         cmocka_unit_test(every_example_opens_with_a_command_that_works),
         cmocka_unit_test(scenes_of_the_readme_run_as_written),
     };

@@ -560,9 +560,6 @@ static void what_no_netlist_can_hold_is_refused_with_a_way_out(void **state)
     read_example("figure10", NULL, 0, NULL, &scene);
     check_refused(&scene, "mobility", "--model lumped");
     dea_scene_free(&scene);
-    read_example("figure10", NULL, 0, "field", &scene);
-    check_refused(&scene, "mobility", "the model field is not a network");
-    dea_scene_free(&scene);
     read_example("figure9", NULL, 0, "pelrine", &scene);
     check_refused(&scene, "mobility", "the model pelrine is not a network");
     dea_scene_free(&scene);

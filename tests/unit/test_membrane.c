@@ -1,7 +1,9 @@
 /* The moving membrane on its network of rings: equilibria, modes and steps of physics.md, and its derivatives. */
-#include "scenes.h"
+#include "moving_membrane.h"
+#include "random_scenes.h"
 
 #include "network/membrane.h"
+#include "result/scales.h"
 
 static dea_membrane membrane_of(const dea_scene *scene, size_t disc, size_t annulus)
 {
@@ -230,6 +232,235 @@ static void its_force_is_the_slope_of_its_capacitance(void **state)
     }
 }
 
+/* ---- in time, by ida */
+
+enum { MOST_ROWS = 512, SCENES = 6 };
+
+typedef struct membrane_run {
+    dea_sample samples[MOST_ROWS];
+    dea_summary summary;
+    size_t rows;
+} membrane_run;
+
+static void run_field(const dea_scene *scene, membrane_run *run)
+{
+    const dea_engine *ida = dea_engine_find("ida");
+    const dea_layout layout = dea_layout_of(scene);
+    dea_error error = {0};
+    void *session = NULL;
+    run->rows = layout.rows;
+    assert_true(layout.rows <= MOST_ROWS);
+    assert_int_equal(ida->begin(&session, &error), DEA_OK);
+    assert_int_equal(ida->transient(session, scene, dea_model_find("field"), run->samples, &run->summary, &error), DEA_OK);
+    ida->end(session);
+    if (error.message[0]) {
+        print_error("%s\n", error.message);
+    }
+}
+
+static dea_scene step_scene(dea_kind kind, double prestretch, double coverage, double voltage, double rise)
+{
+    dea_scene scene = paper_scene(kind, prestretch, coverage, (double)NAN);
+    scene.material.density = 1080.0;
+    scene.study = DEA_STUDY_TRANSIENT;
+    scene.drive.waveform = (dea_waveform){.kind = DEA_WAVE_STEP,
+                                          .step = {.off = (double)NAN, .voltage = voltage, .rise = rise},
+                                          .period = (double)NAN};
+    scene.transient = (dea_transient){.until = 8e-3, .every = 2e-5};
+    return scene;
+}
+
+static void a_step_is_that_of_the_table(void **state)
+{
+    (void)state;
+    static const struct {
+        double coverage, peak, strain[4]; /* at 1, 2, 4, 8 ms */
+    } table[] = {
+        {0.25, 0.0756050, {0.0741705, 0.0518654, 0.0610839, 0.0613304}},
+        {0.50, 0.0678036, {0.0674155, 0.0333990, 0.0443810, 0.0456962}},
+        {0.75, 0.0305977, {0.0290929, 0.0200565, 0.0239188, 0.0234764}},
+    };
+    static membrane_run run;
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+        dea_scene scene = step_scene(DEA_DOT, 1.2, table[i].coverage, 4500.0, 1e-4);
+        double peak = 0.0;
+        scene.material.retardation = 5e-5;
+        run_field(&scene, &run);
+        for (size_t k = 0; k < 4; k++) {
+            assert_near(run.samples[50 << k].strain, table[i].strain[k], 0.6e-7);
+        }
+        for (size_t k = 0; k < run.rows; k++) {
+            peak = fmax(peak, run.samples[k].strain);
+        }
+        assert_near(peak, table[i].peak, 0.6e-7);
+        assert_true(run.summary.residual <= 10.0 * scene.accuracy);
+    }
+}
+
+/* A film without mass and damper that follows a slow ramp of the voltage. */
+static dea_scene slow_scene(dea_kind kind, double voltage)
+{
+    dea_scene scene = step_scene(kind, 1.2, 0.4, voltage, 1.0);
+    scene.material.density = (double)NAN;
+    scene.material.breakdown = 1.1e8;
+    scene.transient = (dea_transient){.until = 1.0, .every = 1.0 / 128.0};
+    scene.drive.leakage_resistance = 1e9;
+    return scene;
+}
+
+static void a_film_without_mass_follows_the_field_in_every_state(void **state)
+{
+    (void)state;
+    static membrane_run run;
+    size_t seen[DEA_STATE_COUNT] = {0};
+    for (int kind = DEA_DOT; kind <= DEA_LENS; kind++) {
+        dea_scene scene = slow_scene((dea_kind)kind, 7000.0);
+        run_field(&scene, &run);
+        scene.accuracy = 1e-9;
+        scene.drive.leakage_resistance = (double)NAN;
+        for (size_t i = 0; i < run.rows; i++) {
+            scene.drive.voltage = run.samples[i].voltage;
+            const dea_row row = solve_direct(&scene, "field");
+            seen[run.samples[i].state]++;
+            assert_int_equal(run.samples[i].state, row.state);
+            assert_near(run.samples[i].displacement, row.displacement, 1e-6 * 2e-3);
+            assert_near(run.samples[i].charge, row.charge, 1e-5 * 4e-6);
+            assert_near(run.samples[i].force, row.force, 1e-5 * 2.0);
+        }
+        assert_true(run.summary.residual <= 1e-5);
+    }
+    assert_true(seen[DEA_STATE_OK] > 0 && seen[DEA_STATE_SLACK] > 0 && seen[DEA_STATE_BREAKDOWN] > 0);
+}
+
+static void a_lens_that_pulls_in_ends_where_the_field_does(void **state)
+{
+    (void)state;
+    static membrane_run run;
+    dea_scene scene = slow_scene(DEA_LENS, 13000.0), still = neo_hookean_scene(DEA_LENS);
+    memcpy(scene.material.constants, still.material.constants, sizeof scene.material.constants);
+    scene.material.breakdown = (double)NAN;
+    scene.accuracy = 1e-4;
+    run_field(&scene, &run);
+    size_t last = 0;
+    while (last + 1 < run.rows && run.samples[last + 1].state != DEA_STATE_PULL_IN) {
+        last++;
+    }
+    assert_true(last + 1 < run.rows && isfinite(run.samples[last].displacement));
+    for (size_t i = last + 1; i < run.rows; i++) {
+        assert_int_equal(run.samples[i].state, DEA_STATE_PULL_IN);
+        assert_true(isnan(run.samples[i].displacement));
+    }
+    scene.drive.leakage_resistance = (double)NAN;
+    scene.drive.voltage = run.samples[last].voltage;
+    assert_int_not_equal(solve_direct(&scene, "field").state, DEA_STATE_PULL_IN);
+    scene.drive.voltage = run.samples[last + 1].voltage;
+    assert_state(solve_direct(&scene, "field"), DEA_STATE_PULL_IN);
+}
+
+static void a_film_at_its_bias_rests(void **state)
+{
+    (void)state;
+    static membrane_run run;
+    double times[] = {0.0, 1e-2}, voltages[] = {3000.0, 3000.0};
+    dea_scene scene = step_scene(DEA_DOT, 1.2, 0.5, 0.0, 0.0);
+    scene.drive.waveform = (dea_waveform){
+        .kind = DEA_WAVE_POINTS, .times = times, .voltages = voltages, .point_count = 2, .period = (double)NAN};
+    scene.material.retardation = 2e-5;
+    scene.material.prony_count = 1;
+    scene.material.prony[0] = (dea_prony){0.1, 1e-3};
+    scene.drive.series_resistance = 1e5;
+    scene.transient = (dea_transient){.until = 1e-2, .every = 1e-3, .from_bias = true};
+    run_field(&scene, &run);
+    const dea_row row = solve_paper("field", DEA_DOT, 1.2, 0.5, 3000.0);
+    for (size_t i = 0; i < run.rows; i++) {
+        assert_relative(run.samples[i].displacement, row.displacement, 1e-7);
+        assert_near(run.samples[i].velocity, 0.0, 1e-6);
+        assert_near(run.samples[i].current, 0.0, 1e-9);
+    }
+}
+
+/* A random film of moderate stiffness, which a step moves by some per cent. */
+static dea_scene random_step(uint64_t *seed)
+{
+    const dea_kind kind = random_chance(seed, 0.5) ? DEA_DOT : DEA_LENS;
+    dea_scene scene = step_scene(kind, random_between(seed, 1.05, 1.5), random_between(seed, 0.2, 0.8),
+                                 random_between(seed, 1500.0, 4500.0), random_between(seed, 2e-4, 5e-4));
+    scene.material.retardation = random_between(seed, 2e-5, 5e-5); /* the judge's elements see no sharper waves */
+    scene.transient = (dea_transient){.until = 1.5e-3, .every = 5e-5};
+    scene.accuracy = random_decades(seed, 1e-5, 1e-3);
+    if (random_chance(seed, 0.5)) {
+        scene.actuator.electrode_mass = random_between(seed, 0.0, 0.05);
+    }
+    scene.material.prony_count = random_chance(seed, 0.3) ? 0 : random_chance(seed, 0.5) ? 1 : 2;
+    scene.material.prony[0] = (dea_prony){random_between(seed, 0.05, 0.2), random_decades(seed, 1e-4, 1e-1)};
+    scene.material.prony[1] = (dea_prony){random_between(seed, 0.05, 0.2), random_decades(seed, 1e-3, 1.0)};
+    if (random_chance(seed, 0.5)) {
+        scene.drive.series_resistance = random_decades(seed, 1e5, 1e6);
+        scene.drive.leakage_resistance = random_chance(seed, 0.5) ? random_decades(seed, 1e7, 1e9) : (double)NAN;
+    }
+    return scene;
+}
+
+/* Steps of the judge between two samples: as many as its fastest mode and its damper take. */
+static int judge_steps(const dea_scene *scene)
+{
+    const dea_film film = dea_law_film(scene->material.law, scene->material.constants, scene->actuator.prestretch);
+    const double shortest = 0.02 * fmin(scene->actuator.coverage, 1.0 - scene->actuator.coverage) * scene->actuator.frame_radius;
+    const double omega = 3.0 * scene->actuator.prestretch * sqrt(film.w11 / scene->material.density) / shortest;
+    return 1 + (int)(scene->transient.every * fmax(omega, 2.0 * scene->material.retardation * omega * omega) / 2.0);
+}
+
+/* Largest differences of displacement, velocity, film voltage and charge over what the columns promise. */
+static double broken_by(const dea_scene *scene, const membrane_run *run)
+{
+    static fe_film film;
+    static fe_state s;
+    const dea_scales scales = dea_scales_open(scene, dea_model_find("field"));
+    const dea_sample size = dea_scales_of(&scales, run->samples, run->rows);
+    const int steps = judge_steps(scene);
+    const double h = scene->transient.every / steps;
+    double worst = 0.0;
+    fe_open(scene, &film);
+    fe_rest(&film, &s);
+    for (size_t i = 0; i < run->rows && run->samples[i].state != DEA_STATE_PULL_IN; i++) {
+        const dea_sample *row = &run->samples[i];
+        const double voltage = fe_voltage(&film, row->time, &s);
+        worst = fmax(worst, fabs(row->displacement - s.u[fe_edge(&film)]) / size.displacement);
+        worst = fmax(worst, 0.1 * fabs(row->velocity - s.v[fe_edge(&film)]) / size.velocity);
+        worst = fmax(worst, 0.1 * fabs(row->film_voltage - voltage) / size.film_voltage);
+        if (!isnan(row->charge)) {
+            worst = fmax(worst, 0.1 * fabs(row->charge - fe_capacitance(&film, s.u) * voltage) / size.charge);
+        }
+        for (int k = 0; k < steps; k++) {
+            const double time = row->time + k * h; /* the rise ends within a step, which is cut there */
+            const double cut = film.rise - time;
+            const double first = cut > 0.0 && cut < h ? cut : h;
+            fe_step(&film, time, first, &s);
+            if (first < h) {
+                fe_step(&film, film.rise, h - first, &s);
+            }
+        }
+    }
+    return worst / scene->accuracy;
+}
+
+static void random_steps_keep_their_promises(void **state)
+{
+    (void)state;
+    static membrane_run run;
+    uint64_t seed = UINT64_C(20250713);
+    for (int i = 0; i < SCENES; i++) {
+        const dea_scene scene = random_step(&seed);
+        run_field(&scene, &run);
+        assert_int_not_equal(run.samples[run.rows - 1].state, DEA_STATE_FAILED);
+        const double broken = broken_by(&scene, &run);
+        if (!(broken <= 1.0)) {
+            fail_msg("scene %d: %.3g times the accuracy", i, broken);
+        }
+        assert_true(run.summary.residual <= 10.0 * scene.accuracy);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -240,6 +471,11 @@ int main(void)
         cmocka_unit_test(its_modes_are_those_of_the_table),
         cmocka_unit_test(its_stiffness_is_the_slope_of_its_force),
         cmocka_unit_test(its_force_is_the_slope_of_its_capacitance),
+        cmocka_unit_test(a_step_is_that_of_the_table),
+        cmocka_unit_test(a_film_without_mass_follows_the_field_in_every_state),
+        cmocka_unit_test(a_lens_that_pulls_in_ends_where_the_field_does),
+        cmocka_unit_test(a_film_at_its_bias_rests),
+        cmocka_unit_test(random_steps_keep_their_promises),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -271,7 +271,7 @@ static void bash_completes(void **state)
 
 static void every_scene_to_start_from_runs(void **state)
 {
-    static const char *const kinds[] = {"dot", "lens", "transient", "ac", "sweep"};
+    static const char *const kinds[] = {"dot", "lens", "transient", "ac", "modes", "profile", "sweep"};
     (void)state;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         static char straight[TEXT_LENGTH];
@@ -302,7 +302,7 @@ static void every_scene_to_start_from_runs(void **state)
     }
     RUN("init");
     assert_int_equal(last.status, 0);
-    assert_int_equal(lines_of(last.out), 5);
+    assert_int_equal(lines_of(last.out), 7);
     RUN("init", "lense");
     check_wrong("did you mean \"lens\"");
 }
@@ -633,8 +633,8 @@ static void full_device_is_told(void **state)
 static void unsupported_engine_names_one_that_can(void **state)
 {
     (void)state;
-    RUN("run", "dot.yaml", "--engine", "ngspice", "--model", "field");
-    check_wrong("cannot do model field");
+    RUN("run", "dot.yaml", "--engine", "ngspice", "--model", "pelrine");
+    check_wrong("cannot do model pelrine");
     assert_non_null(strstr(last.err, "--engine direct"));
 }
 

@@ -967,7 +967,7 @@ static void voltage_is_that_of_the_step_where_a_scene_has_one(void **state)
            "--set drive.voltage=3 kV: drive.voltage: contradicts drive.waveform, which is given too");
     refuse(
         FILM "drive: {waveform: {sine: {amplitude: 1 V, frequency: 1 Hz}}}\n" TRANSIENT, "rise=1 s",
-        "--set rise=1 s: drive.waveform.step.rise: the scene has no drive.waveform.step; accepted for that: a mapping with on");
+        "--set rise=1 s: rise: could mean several keys; accepted: one of drive.waveform.step.rise, drive.waveform.pulse.rise");
 }
 
 static void settings_change_a_transient(void **state)

@@ -11,5 +11,10 @@ dea_status dea_direct_transient(void *session, const dea_scene *scene, const dea
                                 dea_summary *summary, dea_error *error);
 dea_status dea_direct_ac(void *session, const dea_scene *scene, const dea_model *model, dea_response *rows, dea_band *band,
                          dea_error *error);
+/* As the engine's solves[] of modes and profiles. */
+dea_status dea_direct_modes(void *session, const dea_scene *scene, const dea_model *model, const dea_layout *layout, void *point,
+                            dea_error *error);
+dea_status dea_direct_profile(void *session, const dea_scene *scene, const dea_model *model, const dea_layout *layout, void *point,
+                              dea_error *error);
 
 #endif

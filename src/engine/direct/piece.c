@@ -9,8 +9,8 @@ static double complex harmonic(const dea_piece *piece, int number)
 /* U^2 of o + A sin(x): o^2 + A^2/2 + Re(-2 i o A e^{ix} - A^2/2 e^{2ix}). */
 static void set_sine(dea_piece *piece, const dea_modes *modes)
 {
-    const dea_sine *sine = &piece->signal->sine;
-    const double o = sine->offset;
+    const dea_tone *sine = &piece->signal->curve.tones[0];
+    const double o = piece->signal->curve.offset;
     const double a = sine->amplitude;
     piece->omega = 2.0 * DEA_PI * sine->frequency;
     piece->force = (dea_forcing){piece->per_square * (o * o + 0.5 * a * a), 0.0, 0.0};
@@ -48,8 +48,8 @@ dea_forcing dea_piece_force(const dea_piece *piece, double t)
 
 double complex dea_piece_turn(const dea_piece *piece, double t)
 {
-    const dea_sine *sine = &piece->signal->sine;
-    const double turns = sine->frequency * (piece->segment->from + t - sine->delay);
+    const dea_tone *sine = &piece->signal->curve.tones[0];
+    const double turns = sine->frequency * (piece->segment->from + t - piece->segment->origin);
     const double angle = 2.0 * DEA_PI * (turns - floor(turns)) + sine->phase;
     return dea_complex(cos(angle), sin(angle));
 }
@@ -57,7 +57,7 @@ double complex dea_piece_turn(const dea_piece *piece, double t)
 /* e^{i omega t}. */
 static double complex advance_turn(const dea_piece *piece, double t)
 {
-    const double turns = piece->signal->sine.frequency * t;
+    const double turns = piece->signal->curve.tones[0].frequency * t;
     const double angle = 2.0 * DEA_PI * (turns - floor(turns));
     return dea_complex(cos(angle), sin(angle));
 }
@@ -391,9 +391,8 @@ static double squared_voltage(const dea_piece *piece)
         const double sum = segment->start * (segment->start + segment->end) + segment->end * segment->end;
         return piece->length * sum / 3.0;
     }
-    const dea_sine *sine = &piece->signal->sine;
-    const double o = sine->offset;
-    const double a = sine->amplitude;
+    const double o = piece->signal->curve.offset;
+    const double a = piece->signal->curve.tones[0].amplitude;
     const double complex turn = dea_piece_turn(piece, 0.0);
     return piece->length * (o * o + 0.5 * a * a) +
            creal(-2.0 * I * o * a * turn * integral(I * piece->omega, piece->length) -

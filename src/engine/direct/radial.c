@@ -12,6 +12,7 @@
 #include <stdlib.h>
 
 #include "model/field.h"
+#include "model/models.h"
 #include "support/gauss.h"
 
 enum { STAGES = DEA_GAUSS_POINTS, UNKNOWNS = 2 * STAGES };
@@ -28,7 +29,7 @@ typedef struct station {
     double xi;
     double w11, w12, w22; /* tangent moduli */
     double t1, t2;        /* P_a/l_a */
-    double k11, k12, k22; /* what the voltage takes off them */
+    double k11, k12, k22; /* what the voltage takes off them, less those of the skin */
     double c1, c2;        /* dC_1, dC_2 */
 } station;
 
@@ -69,9 +70,21 @@ static collocation make_collocation(void)
     return rule;
 }
 
-/* Material and voltage at stretches l1, l2 where the film has the Maxwell pressure k. */
-static station station_at(const dea_film *film, double xi, double l1, double l2, double k)
+/* Moduli of the skin where the film has one, which is elastic, else 0. */
+static dea_biaxial skin_at(const dea_point *point, bool electroded, double l1, double l2)
 {
+    dea_biaxial skin = {0};
+    if (electroded && point->skin_share > 0.0) {
+        dea_point_coat(point, l1 / point->film.prestretch - 1.0, l2 / point->film.prestretch - 1.0, &skin);
+    }
+    return skin;
+}
+
+/* Material and voltage at stretches l1, l2 where the film has the Maxwell pressure k, 0 where bare. */
+static station station_at(const dea_point *point, bool electroded, double xi, double l1, double l2, double k)
+{
+    const dea_film *film = &point->film;
+    const dea_biaxial skin = skin_at(point, electroded, l1, l2);
     const dea_stress s = film->law->stress(film->constants, l1, l2);
     const double over = 1.0 / film->w11;
     return (station){.xi = xi,
@@ -80,9 +93,9 @@ static station station_at(const dea_film *film, double xi, double l1, double l2,
                      .w22 = s.w22 * over,
                      .t1 = s.p1 / l1 * over,
                      .t2 = s.p2 / l2 * over,
-                     .k11 = k * l2 * l2 * over,
-                     .k12 = 2.0 * k * l1 * l2 * over,
-                     .k22 = k * l1 * l1 * over,
+                     .k11 = (k * l2 * l2 - skin.w11) * over,
+                     .k12 = (2.0 * k * l1 * l2 - skin.w12) * over,
+                     .k22 = (k * l1 * l1 - skin.w22) * over,
                      .c1 = l1 * l2 * l2,
                      .c2 = l1 * l1 * l2};
 }
@@ -147,7 +160,7 @@ static bool set_stations(const dea_radial *m, mesh *grid)
     for (size_t i = 0; done && i < count; i++) {
         const size_t element = i / STAGES, stage = STAGES - 1 - i % STAGES; /* stages count from the outer end */
         grid->stations[element * STAGES + stage] =
-            station_at(&point->film, exp(x[i]), stretches[i].radial, stretches[i].hoop, maxwell(m, !is_dot(m)));
+            station_at(point, !is_dot(m), exp(x[i]), stretches[i].radial, stretches[i].hoop, maxwell(m, !is_dot(m)));
     }
     free(x);
     free(stretches);
@@ -363,7 +376,7 @@ static dea_per_volt answer_on(const dea_radial *m, const mesh *grid, double omeg
                           .slope = dot ? 0.0 : slope,
                           .inertia = {m->mass[0] * square / (1.0 + v), m->mass[1] * square / (1.0 + v)}};
     const double l = point->film.prestretch * (1.0 + m->rest.strain);
-    const station disc = station_at(&point->film, 1.0, l, l, maxwell(m, dot));
+    const station disc = station_at(point, dot, 1.0, l, l, maxwell(m, dot));
     wave free_one, driven;
     integrate(grid, &e, &free_one, &driven);
     /* disc: T = d u + f; annulus: (u, T) = driven + share free */
@@ -380,7 +393,7 @@ void dea_radial_open(const dea_dynamics *d, const dea_scene *scene, dea_radial *
 {
     const dea_point *point = &d->point;
     const double radius = d->radius / point->film.prestretch;
-    const double coat = isnan(scene->actuator.electrode_mass) ? 0.0 : scene->actuator.electrode_mass;
+    const double coat = dea_electrode_mass(scene);
     const double unit = d->mass > 0.0 ? radius * radius / point->film.w11 : 0.0;
     const double film = d->mass > 0.0 ? scene->material.density * unit : 0.0;
     const double electrode = coat * point->film.square / point->film_thickness * unit;

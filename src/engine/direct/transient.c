@@ -27,9 +27,31 @@ typedef struct run {
     double turns; /* of the pair and of the sine, which round [rad] */
 } run;
 
+static bool is_constant(const dea_segment *segment, const dea_signal *signal)
+{
+    return segment->sine ? dea_curve_largest(&signal->curve) == fabs(signal->curve.offset) : segment->start == segment->end;
+}
+
+/* What a waveform asks of a closed form. */
+typedef struct course {
+    bool varies; /* it changes, not by jumps alone */
+    bool plain;  /* straight lines and a sine */
+} wave_course;
+
+static wave_course course_of(const dea_scene *scene)
+{
+    dea_signal signal;
+    const bool known = dea_signal_open(scene, &signal, NULL) == DEA_OK;
+    wave_course c = {.varies = !known, .plain = !known || signal.curve.count == 0 || dea_curve_is_plain(&signal.curve)};
+    for (size_t i = 0; known && i < signal.count; i++) {
+        c.varies = c.varies || !is_constant(&signal.segments[i], &signal);
+    }
+    dea_signal_close(&signal);
+    return c;
+}
+
 const char *dea_direct_refuses_transient(const dea_scene *scene, const dea_model *model)
 {
-    const dea_waveform *wave = &scene->drive.waveform;
     dea_point point;
     dea_linear linear;
     if (model->membrane) {
@@ -38,23 +60,17 @@ const char *dea_direct_refuses_transient(const dea_scene *scene, const dea_model
     if (!model->linear) {
         return "its springs are not linear, so that a transient has no closed form";
     }
-    if (scene->drive.series_resistance > 0.0 && !scene->reduction.series) {
+    if (dea_series_resistance(scene) > 0.0 && !scene->reduction.series) {
         return "the charging of the film through a series resistance is not linear";
     }
     dea_film_prepare(scene, &point.film);
     dea_point_place(scene, &point);
     model->linear(&point, &linear);
-    bool ramps = wave->kind == DEA_WAVE_SINE && wave->sine.amplitude != 0.0;
-    ramps = ramps || (wave->kind == DEA_WAVE_STEP && wave->step.rise > 0.0 && wave->step.voltage != 0.0);
-    for (size_t i = 1; wave->kind == DEA_WAVE_POINTS && i < wave->point_count; i++) {
-        ramps = ramps || (wave->voltages[i] != wave->voltages[i - 1] && wave->times[i] > wave->times[i - 1]);
+    const wave_course c = course_of(scene);
+    if (!c.plain) {
+        return "chirps and sums of sines have no closed form here";
     }
-    return ramps && linear.softening != 0.0 && !scene->reduction.softening ? varies : NULL;
-}
-
-static bool is_constant(const dea_segment *segment, const dea_signal *signal)
-{
-    return segment->sine ? signal->sine.amplitude == 0.0 : segment->start == segment->end;
+    return linear.softening != 0.0 && !scene->reduction.softening && c.varies ? varies : NULL;
 }
 
 static dea_status check_segments(const run *r, dea_error *error)
@@ -81,6 +97,7 @@ static dea_status open_run(run *r, const dea_model *model, dea_error *error)
                          .every = r->scene->transient.every,
                          .from_bias = r->scene->transient.from_bias};
     r->walk.chain = dea_walk_chain(&r->dynamics, r->walk.linear.stiffness);
+    r->walk.chain.stiffness += r->walk.linear.beside;
     r->rows = dea_layout_of(r->scene).rows;
     r->known = dea_peak_is_known(r->scene, &r->dynamics, &r->signal);
     return check_segments(r, error);

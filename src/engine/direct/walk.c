@@ -68,16 +68,9 @@ static void cross_edge(dea_walk *w, const dea_walk_modes *next, double force)
     w->force = force;
 }
 
-/* Largest voltage of a segment. */
-static double largest_of(const dea_walk *w, const dea_segment *segment)
-{
-    const dea_sine *sine = &w->signal->sine;
-    return segment->sine ? fabs(sine->offset) + fabs(sine->amplitude) : fmax(fabs(segment->start), fabs(segment->end));
-}
-
 dea_status dea_walk_enter(dea_walk *w, const dea_segment *segment, dea_error *error)
 {
-    const double largest = largest_of(w, segment);
+    const double largest = dea_segment_largest(w->signal, segment);
     const double softened = w->linear.softening == 0.0 ? 0.0 : w->linear.softening * largest * largest;
     const double force = w->linear.force * segment->start * segment->start;
     const dea_walk_modes *next;

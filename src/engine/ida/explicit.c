@@ -20,6 +20,7 @@ typedef struct explicit_run {
     int integrated;     /* and the integral of u omega, in units of u */
     double integral;    /* of that up to the last stop */
     long before;        /* steps of the run before this one */
+    size_t line;        /* of a run of lines: that of the last stop */
     N_Vector w;         /* owned, as all below: unknowns, then energies */
     N_Vector tolerance, between;
     void *ark;
@@ -67,7 +68,9 @@ static double longest_step(const dea_flight *flight)
 {
     const dea_ring *ring = flight->ring;
     const double tolerance = flight->tolerance;
-    const double sampled = flight->scene->transient.every * pow(tolerance / flight->loosest, 1.0 / 7.0);
+    const double lines = flight->motion.segment->step;
+    double sampled = flight->scene->transient.every * pow(tolerance / flight->loosest, 1.0 / 7.0);
+    sampled = lines > 0.0 ? fmin(sampled, lines) : sampled;
     return ring->turns ? sampled : fmin(sampled, fmin(1.2, 6.0 * pow(tolerance, 1.0 / 7.0)) / ring->omega);
 }
 
@@ -129,6 +132,22 @@ static double next_end(const dea_flight *flight, double time, double to)
     return to;
 }
 
+/* The first corner of a run of lines behind a time of the segment, at the most @p to. */
+static double next_corner(explicit_run *run, double time, double to)
+{
+    const dea_segment *segment = run->flight->motion.segment;
+    for (; run->line < segment->line_count; run->line++) {
+        const double at = segment->lines[run->line].to - segment->from;
+        if (at > time && segment->lines[run->line].corner) {
+            return fmin(at, to);
+        }
+        if (at >= to) {
+            return to;
+        }
+    }
+    return to;
+}
+
 /* Adds what a stretch between two stops does to the windows: but for rounding it lies inside of each, or outside. */
 static void integrate(explicit_run *run, double before, double time)
 {
@@ -175,7 +194,8 @@ static dea_state advance(explicit_run *run, double to, double *time)
     dea_flight *flight = run->flight;
     const dea_sundials *sun = flight->integrator.sun;
     const dea_segment *segment = flight->motion.segment;
-    const double next = dea_flight_next_sample(flight), before = *time, end = next_end(flight, before, to);
+    const double next = dea_flight_next_sample(flight), before = *time;
+    const double end = next_corner(run, before, next_end(flight, before, to));
     const bool sampled = next <= segment->to && next - segment->from <= end;
     const double stop = sampled ? fmax(before, next - segment->from) : end;
     for (int code = ARK_SUCCESS; *time < stop && code != ARK_TSTOP_RETURN;) {

@@ -157,6 +157,26 @@ static bool jump(dea_flight *flight)
     return true;
 }
 
+static bool suits(const dea_flight *flight)
+{
+    const dea_ring *ring = flight->ring;
+    const bool linear = flight->motion.dynamics->linear && flight->motion.q < 0;
+    return ring->light && !(linear && ring->turns) && ring->fastest <= 5.0 * ring->omega;
+}
+
+bool dea_flight_swings(dea_flight *flight)
+{
+    const dea_segment *first = flight->motion.segment;
+    const dea_segment whole = {.to = flight->scene->transient.until, .start = first->start, .end = first->start, .sine = true};
+    if (!dea_motion_start(&flight->motion, flight->scene->transient.from_bias, flight->y)) {
+        return false;
+    }
+    flight->motion.segment = &whole;
+    dea_ring_find(&flight->motion, flight->ring);
+    flight->motion.segment = first;
+    return suits(flight);
+}
+
 /* How long a ring is worth an explicit method in the segment [s]: until it is smaller than what the tolerance sees, if its
  * periods are no more than a run can take and nothing else is much faster. */
 static double explicit_time(const dea_flight *flight)
@@ -164,9 +184,11 @@ static double explicit_time(const dea_flight *flight)
     const dea_ring *ring = flight->ring;
     const dea_segment *segment = flight->motion.segment;
     const double width = segment->to - segment->from;
-    const bool linear = flight->motion.dynamics->linear && flight->motion.q < 0;
-    if (!ring->light || (linear && ring->turns) || ring->fastest > 5.0 * ring->omega) {
+    if (!suits(flight)) {
         return 0.0;
+    }
+    if (segment->lines) {
+        return width; /* its corners never let the ring die */
     }
     const double life = fmin(width, log(10.0 / flight->tolerance) / ring->decay);
     return ring->turns || ring->omega * life < 1e6 ? life : 0.0;

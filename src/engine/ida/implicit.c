@@ -312,6 +312,7 @@ static bool begin(dea_flight *flight, double from)
     return sun->IDAReInit(m->ida, from, m->y, m->yp) == IDA_SUCCESS &&
            sun->IDASetMaxOrd(m->ida, best_order(flight, from)) == IDA_SUCCESS &&
            sun->IDASStolerances(m->ida, flight->tolerance, flight->tolerance) == IDA_SUCCESS &&
+           sun->IDASetMaxStep(m->ida, flight->motion.segment->step) == IDA_SUCCESS && /* 0: as long as it likes */
            sun->IDASetStopTime(m->ida, flight->motion.segment->to - flight->motion.segment->from) == IDA_SUCCESS;
 }
 

@@ -75,7 +75,7 @@ bool dea_rings_record(dea_rings_flight *f, double time, const double *y, const d
     dea_rings_trace *trace = f->trace;
     const dea_dynamics *film = &f->membrane.film;
     static const double still[DEA_RINGS_NODES] = {0.0};
-    if (!dea_rings_look(&f->motion, time, y, NULL, &f->state)) {
+    if (!dea_rings_glance(&f->motion, time, y, &f->state)) {
         return false;
     }
     dea_moment moment = moment_at(f, time, y, rates, charging);
@@ -85,7 +85,7 @@ bool dea_rings_record(dea_rings_flight *f, double time, const double *y, const d
         moment.charge_slope = 0.0;
     }
     const double *v = start && film->clamped ? still : velocity_of(f, y, rates);
-    if (!dea_membrane_sample(&f->membrane, &moment, y, v, &trace->samples[trace->count])) {
+    if (!dea_membrane_sample(&f->membrane, &f->state.look, &moment, y, v, &trace->samples[trace->count])) {
         return false;
     }
     trace->count++;
@@ -94,7 +94,7 @@ bool dea_rings_record(dea_rings_flight *f, double time, const double *y, const d
 
 double dea_rings_current(dea_rings_flight *f, double time, const double *y, const double *rates, bool charging)
 {
-    if (!dea_rings_look(&f->motion, time, y, NULL, &f->state)) {
+    if (!dea_rings_glance(&f->motion, time, y, &f->state)) {
         return 0.0;
     }
     const dea_moment moment = moment_at(f, time, y, rates, charging);
@@ -103,7 +103,7 @@ double dea_rings_current(dea_rings_flight *f, double time, const double *y, cons
 
 void dea_rings_audit(dea_rings_flight *f, double time, const double *y, const double *rates, bool charging, double weight)
 {
-    if (dea_rings_look(&f->motion, time, y, NULL, &f->state)) {
+    if (dea_rings_glance(&f->motion, time, y, &f->state)) {
         const dea_moment moment = moment_at(f, time, y, rates, charging);
         dea_membrane_audit_add(f->audit, &f->membrane, &f->state.look, &moment, velocity_of(f, y, rates), y + f->motion.z, weight);
     }
@@ -169,13 +169,16 @@ static bool jump(dea_rings_flight *f)
     return true;
 }
 
-/* How long the segment is worth an explicit method [s]. */
+/* How long the segment is worth an explicit method [s]: while the slowest mode lives, where nothing relaxes faster than the fastest
+ * one swings. Once a damper holds the fast modes, BDF has no trouble with them. */
 static double explicit_time(const dea_rings_flight *f)
 {
     const dea_rings_motion *m = &f->motion;
     const double width = m->segment->to - m->segment->from;
-    static const double worth = 100.0; /* of the slowest frequency: what it may have to resolve */
-    return m->heavy && dea_rings_stiffest(m) <= worth * m->rest.slowest ? width : 0.0;
+    if (!m->heavy || dea_rings_stiffest(m) > m->rest.fastest) {
+        return 0.0;
+    }
+    return fmin(width, log(10.0 / f->tolerance) / dea_rings_decay(m));
 }
 
 static dea_state fly_segment(dea_rings_flight *f)
@@ -200,7 +203,7 @@ static dea_membrane_energy energy_of(dea_rings_flight *f, double time)
 {
     const dea_rings_motion *m = &f->motion;
     const double *y = NV_DATA_S(f->y);
-    const bool seen = dea_rings_look(m, time, y, NULL, &f->state);
+    const bool seen = dea_rings_glance(m, time, y, &f->state);
     return dea_membrane_energy_of(&f->membrane, seen ? f->state.voltage : (double)NAN, y, y + m->nodes, y + m->z);
 }
 

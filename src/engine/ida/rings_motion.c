@@ -50,13 +50,21 @@ bool dea_rings_motion_open(const dea_membrane *membrane, const dea_signal *signa
     return set_sizes(m);
 }
 
-bool dea_rings_look(const dea_rings_motion *m, double time, const double *y, const double *v, dea_rings_state *state)
+bool dea_rings_glance(const dea_rings_motion *m, double time, const double *y, dea_rings_state *state)
 {
     if (!dea_membrane_look_at(m->membrane, y, &state->look)) {
         return false;
     }
     state->source = dea_segment_voltage_since(m->signal, m->segment, time);
     state->voltage = m->charged ? y[m->q] / state->look.capacitance : state->source;
+    return true;
+}
+
+bool dea_rings_look(const dea_rings_motion *m, double time, const double *y, const double *v, dea_rings_state *state)
+{
+    if (!dea_rings_glance(m, time, y, state)) {
+        return false;
+    }
     dea_membrane_viscous(m->membrane, &state->look, v, y + m->z, state->x);
     dea_membrane_force(m->membrane, &state->look, state->voltage, state->x, state->force);
     return isfinite(state->force[m->membrane->rings.edge]);
@@ -306,6 +314,18 @@ double dea_rings_stiffest(const dea_rings_motion *m)
     }
     const double charging = m->charged ? (1.0 / d->series + d->conductance) * m->signal->largest / m->charge : 0.0;
     return fmax(largest, charging);
+}
+
+double dea_rings_decay(const dea_rings_motion *m)
+{
+    const dea_dynamics *d = &m->membrane->film;
+    const double square = m->rest.slowest * m->rest.slowest;
+    double sum = d->retardation;
+    for (size_t i = 0; i < d->branch_count; i++) {
+        const double tau = d->branches[i].tau;
+        sum += d->branches[i].share / (1.0 + d->total_share) * tau / (1.0 + square * tau * tau);
+    }
+    return 0.5 * square * sum;
 }
 
 dea_moment dea_rings_moment(const dea_rings_motion *m, double time, const dea_rings_state *state)

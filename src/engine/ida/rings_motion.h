@@ -40,6 +40,8 @@ static inline bool dea_rings_algebraic(const dea_rings_motion *motion)
     return !motion->heavy && !motion->damped;
 }
 
+/* Looks at y, without forces; false where the film cannot be. */
+bool dea_rings_glance(const dea_rings_motion *motion, double time, const double *y, dea_rings_state *state);
 /* Looks at y; @p v: the velocities, NULL: 0. False where the film cannot be. */
 bool dea_rings_look(const dea_rings_motion *motion, double time, const double *y, const double *v, dea_rings_state *state);
 /* Rates of z and q in a vector of all unknowns. */
@@ -72,6 +74,9 @@ bool dea_rings_start(const dea_rings_motion *motion, bool from_bias, double *y);
 double dea_rings_firmness(const dea_rings_motion *motion, double time, const double *y);
 /* Largest magnitude of the eigenvalues at rest: what an explicit method must resolve [1/s]. */
 double dea_rings_stiffest(const dea_rings_motion *motion);
+
+/* How fast the slowest mode dies away at least, 0: not at all [1/s]. */
+double dea_rings_decay(const dea_rings_motion *motion);
 
 /* The moment of a state. */
 dea_moment dea_rings_moment(const dea_rings_motion *motion, double time, const dea_rings_state *state);

@@ -10,9 +10,12 @@
 
 enum { MOST_RUNS = 6 };
 
-static const double first_share = 0.1; /* from one tolerance to the next */
-static const double doubt = 1.5;       /* most that the error of the better of two runs is taken for, over their difference */
-static const double least_tolerance = 1e-13;
+static const double first_tolerance = 0.05; /* of the accuracy */
+static const double first_share = 0.2;      /* from one tolerance to the next */
+static const double doubt = 1.5;            /* most that the error of the better of two runs is taken for, over their difference */
+static const double smooth_enough = 1.0;    /* of smoothness over the spacing of the nodes */
+static const double gains_nothing = 0.5;    /* a difference that falls by less than that stays too large */
+static const double least_tolerance = 3e-12; /* what rounding of the stiffest nodes leaves */
 static const double certain = 1e-7; /* an end of the motion counts from this tolerance on */
 
 /* A study of one scene. */
@@ -25,7 +28,7 @@ typedef struct search {
     dea_rings_trace traces[2]; /* owned samples: of the run before, and of the last */
     dea_rings_flight *flight;  /* owned: of the last */
     size_t rows;
-    double loosest;
+    double loosest, coverage;
 } search;
 
 /* What two runs differ by. */
@@ -90,20 +93,39 @@ static gap difference(const search *s)
     return g;
 }
 
-/* Degrees of the elements for a first run: the decay of the coefficients of a film that an edge has set in motion. */
-static dea_rings_mesh first_mesh(const dea_scene *scene)
+/* ---- meshes. Every kink of the voltage sends a wave out. Where damper and charging smooth it over more than the time that it takes
+ * between two nodes, every node more cuts the error of the mesh by one factor; else it falls with a power of their number. */
+
+/* Coverage below which the annulus, much longer than its inner radius, has its nodes even in ln R. */
+static const double small_disc = 0.1;
+
+/* Time over which all waves are smooth, over the time that one takes from centre to frame [1]. */
+static double smoothness(const search *s)
 {
-    const double digits = -log10(scene->accuracy);
-    const size_t degree = (size_t)fmax(4.0, ceil(digits));
-    return (dea_rings_mesh){degree, degree, false};
+    const dea_membrane *m = &s->flight->membrane;
+    const dea_dynamics *d = &m->film;
+    const double crossing = 3.83 / s->flight->motion.rest.slowest; /* J1(3.83) = 0 at the frame */
+    const double charging = d->series * s->flight->motion.rest.capacitance;
+    return m->heavy ? fmax(2.0 * DEA_PI * d->retardation, charging) / crossing : INFINITY;
 }
 
-static bool refine_mesh(dea_rings_mesh *mesh)
+/* Share of the nodes that an element takes that is so long, of two. */
+static size_t degree_of(double nodes, double length, double least)
 {
-    const bool room = mesh->disc + 2 <= DEA_RINGS_DEGREE && mesh->annulus + 2 <= DEA_RINGS_DEGREE;
-    mesh->disc += room ? 2 : 0;
-    mesh->annulus += room ? 2 : 0;
-    return room;
+    return (size_t)fmin(DEA_RINGS_DEGREE, fmax(least, ceil(nodes * (0.4 + 1.2 * length))));
+}
+
+static dea_rings_mesh mesh_of(const search *s, double nodes)
+{
+    const double coverage = s->coverage;
+    return (dea_rings_mesh){degree_of(nodes, coverage, 3.0), degree_of(nodes, 1.0 - coverage, 3.0), coverage < small_disc};
+}
+
+/* Nodes of an element for a first run. */
+static double first_nodes(const search *s)
+{
+    const double digits = -log10(s->scene->accuracy);
+    return 2.5 + 1.45 * digits;
 }
 
 /* One run on a mesh of its own, which takes the place of the last. */
@@ -125,29 +147,47 @@ static dea_status run_on(search *s, dea_rings_mesh mesh, double tolerance, dea_s
     return DEA_OK;
 }
 
+/* What the error of the better of two runs is taken for, over their difference, and by how much more nodes it has: where the film is
+ * not smooth the errors of both are alike. */
+static double trust_of(const search *s, double nodes)
+{
+    return smoothness(s) * nodes > smooth_enough ? 0.75 : doubt;
+}
+
+static double finer(const search *s, double nodes)
+{
+    return smoothness(s) * nodes > smooth_enough ? nodes + 2.0 : 1.5 * nodes;
+}
+
 /* Leaves the better run of the last two in traces[1]; *good false where the accuracy was not reached. */
 static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates, bool *good, dea_error *error)
 {
     const double accuracy = s->scene->accuracy;
-    double tolerance = s->loosest = 0.1 * accuracy;
-    dea_rings_mesh mesh = first_mesh(s->scene);
+    double tolerance = s->loosest = first_tolerance * accuracy, nodes = first_nodes(s), last = INFINITY;
     *good = false;
-    dea_status status = run_on(s, mesh, tolerance, NULL, error);
-    for (int i = 0; i < MOST_RUNS && status == DEA_OK && tolerance > 1.5 * least_tolerance && refine_mesh(&mesh); i++) {
+    dea_status status = run_on(s, mesh_of(s, nodes), tolerance, NULL, error);
+    for (int i = 0; i < MOST_RUNS && status == DEA_OK; i++) {
+        const dea_rings_mesh before = mesh_of(s, nodes);
+        nodes = finer(s, nodes);
         tolerance = fmax(first_share * tolerance, least_tolerance);
         *summary = dea_summary_failed();
-        status = run_on(s, mesh, tolerance, summary, error);
+        status = run_on(s, mesh_of(s, nodes), tolerance, summary, error);
         if (status != DEA_OK) {
             return status;
         }
         const gap apart = difference(s);
+        const double trust = trust_of(s, nodes);
         const bool doubtful = s->traces[1].end == DEA_STATE_PULL_IN && tolerance > certain;
-        summary->error = fmax(apart.displacement * doubt, fmax(10.0 * tolerance, 0.1 * accuracy));
-        *rates = (dea_rate_errors){apart.rates.velocity * doubt, apart.rates.current * doubt};
-        *good = apart.answer * doubt <= accuracy && s->traces[0].count == s->traces[1].count && !doubtful;
-        if (*good || s->traces[1].end == DEA_STATE_FAILED) {
+        const bool comparable = s->traces[0].count == s->traces[1].count;
+        summary->error = fmax(apart.displacement * trust, fmax(10.0 * tolerance, 0.1 * accuracy));
+        *rates = (dea_rate_errors){apart.rates.velocity * trust, apart.rates.current * trust};
+        *good = fmax(apart.answer * trust, 10.0 * tolerance) <= accuracy && comparable && !doubtful;
+        const bool hopeless = comparable && !(apart.answer < gains_nothing * last);
+        const bool finest = mesh_of(s, nodes).disc == before.disc && mesh_of(s, nodes).annulus == before.annulus;
+        if (*good || s->traces[1].end == DEA_STATE_FAILED || hopeless || finest) {
             return status;
         }
+        last = comparable ? apart.answer : INFINITY;
     }
     return status;
 }
@@ -194,8 +234,8 @@ static void explain(const search *s, const dea_summary *summary, dea_error *erro
         dea_fail(error, DEA_ERROR_ENGINE, "%s", f->why.message);
     } else {
         dea_fail(error, DEA_ERROR_ENGINE,
-                 "%zu nodes and %ld steps of SUNDIALS at a tolerance of %.1g leave an error of %.1g, the scene wants %g; an edge "
-                 "of the voltage with a rise, or a damper, takes fewer nodes",
+                 "%zu nodes and %ld steps of SUNDIALS at a tolerance of %.1g leave an error of %.1g, the scene wants %g: waves of a "
+                 "film without much damping get steep; a rise of the voltage and a damper (material.retardation) smooth them",
                  f->membrane.rings.node_count, f->steps, f->tolerance, summary->error, s->scene->accuracy);
     }
 }
@@ -220,7 +260,9 @@ static dea_status fly(search *s, dea_sample *samples, dea_summary *summary, dea_
 
 static dea_status search_open(search *s, dea_error *error)
 {
+    const dea_actuator *actuator = &s->scene->actuator;
     s->rows = dea_layout_of(s->scene).rows;
+    s->coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
     s->scales = dea_scales_open(s->scene, s->model);
     s->flight = calloc(1, sizeof *s->flight);
     for (int i = 0; i < 2; i++) {

@@ -63,15 +63,26 @@ struct dea_shooting {
     double charge;       /* int (lambda_1 lambda_2)^2 exp(2 x) dx up to there [1] */
 };
 
-/* p1(l + d1, l + d2) - p1(l, l) with l = lambda_pre. */
-static double stress_change(const dea_film *film, double d1, double d2)
+/* Regions of the film: the disc of a dot and the annulus of a lens carry the skin. */
+typedef enum region { DISC, ANNULUS } region;
+
+static bool is_coated(const dea_shooting *s, region where)
 {
-    return film->law->rise(film->constants, film->prestretch, d1, d2);
+    return s->point->skin_share > 0.0 && (where == DISC) == (s->point->kind == DEA_DOT);
 }
 
-static dea_stress stress_at(const dea_film *film, double l1, double l2)
+/* p1(l + d1, l + d2) - p1(l, l) with l = lambda_pre. */
+static double stress_change(const dea_shooting *s, region where, double d1, double d2)
 {
-    return film->law->stress(film->constants, l1, l2);
+    const dea_film *film = &s->point->film;
+    const double change = film->law->rise(film->constants, film->prestretch, d1, d2);
+    return is_coated(s, where) ? change + dea_point_skin_rise(s->point, d1, d2) : change;
+}
+
+static dea_stress stress_at(const dea_shooting *s, region where, double l1, double l2)
+{
+    const dea_film *film = &s->point->film;
+    return is_coated(s, where) ? dea_point_coated_stress(s->point, l1, l2) : film->law->stress(film->constants, l1, l2);
 }
 
 static int residual(sunrealtype x, N_Vector y, N_Vector yp, N_Vector r, void *user)
@@ -86,13 +97,14 @@ static int residual(sunrealtype x, N_Vector y, N_Vector yp, N_Vector r, void *us
     const double d2 = s->strain * v[HOOP];
     const double l1 = film->prestretch + d1;
     const double l2 = film->prestretch + d2;
-    if (!(l1 > 0.0 && l2 > 0.0)) {
-        return 1; /* a trial step too far: IDA takes a shorter one */
+    const double shear = l1 > 0.0 && l2 > 0.0 ? stress_at(s, ANNULUS, l1, l2).shear : NAN;
+    if (isnan(shear)) {
+        return 1; /* a trial step too far, or past the end of the energy: IDA takes a shorter one */
     }
-    const double difference = (d1 - d2) * (stress_at(film, l1, l2).shear + s->annulus_k * l1 * l2); /* s1 - s2 */
+    const double difference = (d1 - d2) * (shear + s->annulus_k * l1 * l2); /* s1 - s2 */
     out[SIGMA] = slope[SIGMA] + difference / s->stress;
     out[HOOP] = slope[HOOP] - (v[RADIAL] - v[HOOP]);
-    out[RADIAL] = (stress_change(film, d1, d2) - s->annulus_k * l1 * l2 * l2) / s->stress - v[SIGMA];
+    out[RADIAL] = (stress_change(s, ANNULUS, d1, d2) - s->annulus_k * l1 * l2 * l2) / s->stress - v[SIGMA];
     return 0;
 }
 
@@ -118,7 +130,7 @@ static limits limits_at(const dea_shooting *s, double x)
     const double l1 = s->point->film.prestretch + s->strain * v[RADIAL], l1_slope = s->strain * slope[RADIAL];
     const double l2 = s->point->film.prestretch + s->strain * v[HOOP], l2_slope = s->strain * slope[HOOP];
     const double k = s->annulus_k;
-    const dea_stress stress = stress_at(&s->point->film, l1, l2);
+    const dea_stress stress = stress_at(s, ANNULUS, l1, l2);
     const double hoop = stress.p2 - k * l2 * l1 * l1;
     return (limits){.x = x,
                     .stress = fmin(stress.p1 - k * l1 * l2 * l2, hoop),
@@ -178,16 +190,24 @@ static void add_charge(dea_shooting *s, double x)
 /* Jump of lambda_1 at the edge by its own Newton steps, only to start IDA's search near its goal. */
 static double jump_guess(const dea_shooting *s, double l)
 {
-    const dea_film *film = &s->point->film;
-    const double edge = l - film->prestretch;
+    const double edge = l - s->point->film.prestretch;
     const double load = (s->disc_k - s->annulus_k) * l * l * l;
-    const double at_edge = stress_change(film, edge, edge);
+    const double at_edge = stress_change(s, DISC, edge, edge);
     double jump = 0.0;
-    for (int i = 0; i < 12; i++) {
-        const double slope = stress_at(film, l - jump, l).w11 - s->annulus_k * l * l;
-        const double excess = stress_change(film, edge - jump, edge) - at_edge + load + s->annulus_k * jump * l * l;
+    double sound = 0.0; /* last place within the energy */
+    for (int i = 0; i < 60; i++) {
+        const double slope = stress_at(s, ANNULUS, l - jump, l).w11 - s->annulus_k * l * l;
+        if (isnan(slope) && jump != sound) { /* a step went past the end of the energy */
+            jump = 0.5 * (sound + jump);
+            continue;
+        }
+        sound = jump;
+        const double excess = stress_change(s, ANNULUS, edge - jump, edge) - at_edge + load + s->annulus_k * jump * l * l;
         const double most = 0.25 * (l - jump); /* lambda_1 moves by a quarter at most: the first root is meant */
         jump += slope > 0.0 ? fmax(-most, fmin(most, excess / slope)) : copysign(most, excess);
+        if (fabs(jump - sound) <= 1e-9 * fabs(jump)) {
+            break;
+        }
     }
     return jump;
 }
@@ -198,7 +218,7 @@ static bool start(dea_shooting *s, double edge)
     dea_integrator *m = &s->integrator;
     const dea_sundials *sun = m->sun;
     const double l = s->point->film.prestretch + edge;
-    const double sigma = stress_change(&s->point->film, edge, edge) - s->disc_k * l * l * l;
+    const double sigma = stress_change(s, DISC, edge, edge) - s->disc_k * l * l * l;
     sunrealtype *v = NV_DATA_S(m->y);
     v[SIGMA] = sigma / s->stress;
     v[HOOP] = edge / s->strain;
@@ -212,7 +232,7 @@ static bool start(dea_shooting *s, double edge)
     }
     const double l1 = s->point->film.prestretch + s->strain * v[RADIAL];
     const bool lens = s->point->kind == DEA_LENS;
-    s->least_stress = stress_at(&s->point->film, l, l).p1 - s->disc_k * l * l * l;
+    s->least_stress = stress_at(s, DISC, l, l).p1 - s->disc_k * l * l * l;
     s->largest_area = lens ? l1 * l : l * l;
     s->radial = l1;
     s->edge_force = lens ? l1 * l * l : l * l * l;
@@ -368,7 +388,7 @@ static double least_s11(const dea_shooting *s, place a, place b)
         const double l2 = s->point->film.prestretch + a.edge + weight * (b.edge - a.edge);
         const double l1 = a.radial + weight * (b.radial - a.radial);
         const double k = lens ? s->pressure * (a.share + weight * (b.share - a.share)) : 0.0;
-        least = fmin(least, stress_at(&s->point->film, l1, l2).w11 - k * l2 * l2);
+        least = fmin(least, stress_at(s, ANNULUS, l1, l2).w11 - k * l2 * l2);
     }
     return least;
 }
@@ -432,8 +452,9 @@ static double follow(dea_shooting *s, double linear, double end, bool *lost)
     double edge = NAN;
     bool torn = false;               /* the last step went past the end of the film */
     s->tolerance = fmax(fine, 1e-9); /* enough to find the neighbourhood */
-    double step = 0.03;
-    while (fabs(last.edge) < end && step > 1e-5) {
+    const double longest = 0.03 * fmin(1.0, s->point->film.grows); /* a film near the end of its energy has no longer way */
+    double step = longest;
+    while (fabs(last.edge) < end && step > 3e-4 * longest) {
         const double at = sign * fmin(end, fabs(last.edge) + step * (pre + fmax(0.0, last.edge)));
         const double guess = last.share > 0.0 ? fmin(1.5, last.share * at / last.edge) : at / linear;
         const double share = share_at(s, at, guess);
@@ -458,7 +479,7 @@ static double follow(dea_shooting *s, double linear, double end, bool *lost)
         }
         before = last;
         last = here;
-        step = fmin(0.03, 1.5 * step);
+        step = fmin(longest, 1.5 * step);
     }
     s->tolerance = fine;
     *lost = *lost || (isnan(edge) && (torn || least_s11(s, last, last) < nearly * s->point->film.w11));

@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 
+#include "drive/soften.h"
 #include "engine/ida/flight.h"
 #include "result/scales.h"
 #include "support/lapack.h"
@@ -255,6 +256,10 @@ static dea_status fly_signal(const dea_sundials *sun, const dea_scene *scene, de
     dea_status status = dea_signal_open(scene, &signal, error);
     if (status == DEA_OK) {
         status = dea_flight_open(sun, scene, dynamics, &signal, &flight, error);
+        if (status == DEA_OK && !(flight.peaks && dynamics->series == 0.0)) { /* the current C U' has its peaks at corners */
+            status = dea_signal_soften(&signal, scene->accuracy, dea_flight_swings(&flight), error);
+            flight.motion.segment = signal.segments;
+        }
         if (status == DEA_OK) {
             status = fly(&flight, samples, summary, error);
         }

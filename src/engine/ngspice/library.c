@@ -316,6 +316,9 @@ dea_status dea_ngspice_run_all(dea_ngspice *library, const char *netlist, const 
 {
     char before[64];
     *table = (dea_ngspice_table){0};
+    if (name_count > DEA_NGSPICE_COLUMNS) {
+        return dea_fail(error, DEA_ERROR_ENGINE, "%zu vectors, at most %d are read of a run", name_count, (int)DEA_NGSPICE_COLUMNS);
+    }
     const size_t limit = library->limit;
     library->limit = 0;
     clear_log(library);

@@ -7,7 +7,8 @@
 
 typedef struct dea_ngspice dea_ngspice;
 
-enum { DEA_NGSPICE_COLUMNS = 72 };
+/* Three stresses with the most branches, and room. */
+enum { DEA_NGSPICE_COLUMNS = 256 };
 
 /* What came of a circuit: vectors of its plot, each with a value per point, or with real and imaginary part where it is complex.
  */

@@ -14,5 +14,8 @@ dea_status dea_ngspice_transient(dea_ngspice *library, const dea_scene *scene, c
 /* One frequency response, as dea_engine says. */
 dea_status dea_ngspice_ac(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_response *rows,
                           dea_band *band, dea_error *error);
+/* The same of the membrane. */
+dea_status dea_ngspice_ac_rings(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_response *rows,
+                                dea_band *band, dea_error *error);
 
 #endif

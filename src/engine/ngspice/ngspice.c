@@ -41,6 +41,9 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
     if (!model->network && !model->membrane) {
         return "it has no network form that ngspice could solve";
     }
+    if (model->membrane && dea_study_of(scene)->timed) {
+        return "it does not step the membrane in time";
+    }
     if (dea_study_of(scene)->timed && scene->accuracy < 1e-6) {
         return "its trapezoidal rule is good to 1e-6 in a transient, the scene wants more";
     }
@@ -217,7 +220,7 @@ static dea_status transient(void *session, const dea_scene *scene, const dea_mod
 static dea_status ac(void *session, const dea_scene *scene, const dea_model *model, dea_response *rows, dea_band *band,
                      dea_error *error)
 {
-    return dea_ngspice_ac(session, scene, model, rows, band, error);
+    return (model->membrane ? dea_ngspice_ac_rings : dea_ngspice_ac)(session, scene, model, rows, band, error);
 }
 
 const dea_engine dea_engine_ngspice = {

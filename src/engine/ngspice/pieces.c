@@ -202,7 +202,7 @@ static void cut_segment(cutter *c, size_t index, bool quiet)
     const dea_segment *segment = &c->signal->segments[index];
     const double length = segment->to - segment->from;
     const bool still = !segment->sine && segment->start == segment->end;
-    const double turn = 2.0 * DEA_PI * c->signal->sine.frequency;
+    const double turn = dea_segment_turn(c->signal, segment);
     const double limit = still ? length : segment->sine ? fmin(0.5 / turn, 0.25 * length) : 0.25 * length;
     const bool brief = c->many && !segment->sine && length <= short_edge * c->pace->fastest;
     const bool jump = index > 0 && c->signal->segments[index - 1].end != segment->start;

@@ -34,6 +34,7 @@ typedef struct line_job {
     bool prepared;   /* it has a film */
     bool valid;      /* its numbers are in their ranges */
     dea_rings_mesh mesh;
+    double error; /* of the line, expected of the mesh [1] */
     dea_still coarse, fine; /* of that point */
     double cut[4];          /* what the rings were cut for */
     double transfer[DEA_RINGS_NODES * DEA_RINGS_NODES];
@@ -202,6 +203,7 @@ static dea_status sweep(void *user, size_t from, size_t count, size_t *good, dea
                                  .from = uniform ? 0 : first,
                                  .to = uniform && l->axis ? l->axis->count : first + count,
                                  .mesh = job->mesh,
+                                 .error = job->error,
                                  .number = 1};
     dea_ngspice_table table = {0};
     const dea_status status = run(job, &line, first, first + count - 1, strain, &table, error);
@@ -246,10 +248,10 @@ static dea_status climb(line_job *job, size_t i, size_t steps, bool *accepted, d
     return status;
 }
 
-static dea_status alone(void *user, size_t i, dea_error *error)
+static dea_status alone(void *user, size_t i, dea_error *failure)
 {
     line_job *job = user;
-    double u[DEA_RINGS_NODES];
+    double u[DEA_RINGS_NODES], error;
     *row_at(job, i) = dea_row_failed();
     place(job, i);
     if (!job->valid || (job->point.voltage == 0.0 && accept(job, i, NULL, 0))) {
@@ -260,33 +262,23 @@ static dea_status alone(void *user, size_t i, dea_error *error)
         row_at(job, i)->state = DEA_STATE_PULL_IN;
         return DEA_OK;
     }
-    const dea_rings_mesh usual = job->mesh, own = dea_still_mesh(&job->point, mesh_share * job->accuracy, NULL);
+    const dea_rings_mesh usual = job->mesh, own = dea_still_mesh(&job->point, mesh_share * job->accuracy, &error);
     bool accepted = false;
     dea_status status = DEA_OK;
-    if (own.annulus > 0) {
+    if (own.annulus == 0) { /* no mesh is fine enough: the finest one tells whether the film ends before */
+        set_mesh(job, (dea_rings_mesh){1, DEA_RINGS_DEGREE - 2, true});
+        cut(job);
+        row_at(job, i)->state = dea_still_climb(&job->fine, u) == DEA_STATE_OK ? DEA_STATE_FAILED : DEA_STATE_PULL_IN;
+        set_mesh(job, usual);
+    } else {
         set_mesh(job, own);
         cut(job);
         for (size_t steps = RAMP_STEPS; status == DEA_OK && !accepted && steps <= RAMP_MOST; steps *= RAMP_REFINED) {
-            status = climb(job, i, steps, &accepted, error);
+            status = climb(job, i, steps, &accepted, failure);
         }
         set_mesh(job, usual);
     }
     return status;
-}
-
-/* The finest mesh that one of some points of the line wants; coarse where none of them has an equilibrium. */
-static void choose_mesh(line_job *job)
-{
-    enum { PROBES = 5 };
-    dea_rings_mesh most = {1, 3, true};
-    for (size_t probe = 0; probe < PROBES; probe++) {
-        place(job, probe * (job->line->count - 1) / (PROBES - 1));
-        if (job->valid && job->point.voltage != 0.0) {
-            const dea_rings_mesh mesh = dea_still_mesh(&job->point, mesh_share * job->accuracy, NULL);
-            most = mesh.annulus > most.annulus ? mesh : most;
-        }
-    }
-    set_mesh(job, most);
 }
 
 dea_status dea_ngspice_still(dea_ngspice *library, const dea_scene *scene, const dea_model *model, const dea_line *line,
@@ -302,7 +294,10 @@ dea_status dea_ngspice_still(dea_ngspice *library, const dea_scene *scene, const
     job->accuracy = scene->accuracy;
     job->scene = *scene;
     job->scene.models[0] = model;
-    choose_mesh(job);
+    dea_rings_line whole = {.scene = scene, .axis = line->axis, .from = line->from, .to = line->from + line->count};
+    dea_rings_line_choose(&whole);
+    job->error = whole.error;
+    set_mesh(job, whole.mesh);
     const dea_stretch stretch = {.user = job,
                                  .count = line->count,
                                  .longest = line->axis && !line->axis->uniform ? LONGEST_LIST : LONGEST_SWEEP,

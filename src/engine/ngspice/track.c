@@ -638,6 +638,8 @@ static size_t most_points(const runner *r, const dea_mobility_piece *piece)
     return (size_t)(first_points + corner_points * corners + collapse * (piece->to - piece->from) / piece->step);
 }
 
+_Static_assert((int)DEA_MOBILITY_VECTORS <= (int)DEA_NGSPICE_COLUMNS, "a table holds all vectors of a piece");
+
 /* Runs a netlist; true in *collapsed where it was ended since its steps had collapsed. */
 static dea_status run_once(const runner *r, const dea_mobility_piece *piece, dea_ngspice_table *table, bool *collapsed,
                            dea_error *error)

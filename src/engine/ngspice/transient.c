@@ -288,7 +288,11 @@ static void explain_length(const dea_route *route, char *why, size_t size)
 {
     const dea_signal *signal = route->signal;
     const double periods = route->omega * dea_pieces_ringing(route->pieces) / (2.0 * DEA_PI);
-    const double turns = signal->segments[signal->count - 1].sine ? signal->sine.frequency * route->scene->transient.until : 0.0;
+    double turns = 0.0;
+    for (size_t i = 0; i < signal->count; i++) {
+        const dea_segment *s = &signal->segments[i];
+        turns += dea_segment_turn(signal, s) * (s->to - s->from) / (2.0 * DEA_PI);
+    }
     if (periods > 1000.0) {
         snprintf(why, size, "the film rings for %.2g periods", periods);
     } else if (turns > 1000.0) {
@@ -512,7 +516,7 @@ static double film_voltage(dea_dynamics *d, const dea_transient *transient, cons
     const double first = transient->from_bias ? fabs(signal->segments[0].start) : 0.0;
     for (size_t i = 0; i < signal->count; i++) {
         const dea_segment *s = &signal->segments[i];
-        area += (s->to - s->from) * (s->sine ? signal->largest : fmax(fabs(s->start), fabs(s->end)));
+        area += (s->to - s->from) * dea_segment_largest(signal, s);
     }
     return fmin(signal->largest, first + area / (d->series * dea_dynamics_edge(d, 0.0).capacitance));
 }

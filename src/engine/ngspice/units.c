@@ -2,6 +2,9 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "drive/wave.h"
 
 /* The power of two that takes a size to [1, 2). */
 static double unit_for(double size)
@@ -45,11 +48,16 @@ static double resistance(const dea_units *u)
     return u->voltage * u->time / charge(u);
 }
 
+static void enter_law(const dea_units *u, const dea_law *law, double constants[DEA_LAW_CONSTANTS])
+{
+    for (size_t i = 0; law && i < DEA_LAW_CONSTANTS; i++) {
+        constants[i] *= law->constants[i % law->constant_count].modulus ? u->stress : 1.0;
+    }
+}
+
 static void enter_material(const dea_units *u, dea_material *material)
 {
-    for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
-        material->constants[i] *= material->law->constants[i % material->law->constant_count].modulus ? u->stress : 1.0;
-    }
+    enter_law(u, material->law, material->constants);
     material->modulus *= u->stress;
     material->permittivity *= permittivity(u);
     material->permittivity_per_stretch *= permittivity(u);
@@ -79,14 +87,19 @@ static dea_status enter_points(const dea_units *u, dea_waveform *wave, dea_error
 
 static void enter_wave(const dea_units *u, dea_waveform *wave)
 {
-    wave->step.on *= u->time;
-    wave->step.off *= u->time;
-    wave->step.rise *= u->time;
-    wave->step.voltage *= u->voltage;
-    wave->sine.offset *= u->voltage;
-    wave->sine.amplitude *= u->voltage;
-    wave->sine.frequency /= u->time;
-    wave->sine.delay *= u->time;
+    const dea_wave *kind = dea_wave_of(wave->kind);
+    const struct {
+        const char *unit;
+        double factor;
+    } factors[] = {{"V", u->voltage}, {"s", u->time}, {"Hz", 1.0 / u->time}};
+    const size_t entries = kind && kind->stride ? wave->sine_count : 1;
+    for (size_t i = 0; kind && i < kind->number_count * entries; i++) {
+        const size_t number = i % kind->number_count;
+        for (size_t k = 0; k < sizeof factors / sizeof *factors; k++) {
+            const bool fits = strcmp(kind->numbers[number].unit, factors[k].unit) == 0;
+            *dea_wave_at(kind, wave, number, i / kind->number_count) *= fits ? factors[k].factor : 1.0;
+        }
+    }
     wave->period *= u->time;
 }
 
@@ -99,6 +112,10 @@ dea_status dea_units_enter(const dea_units *units, const dea_scene *scene, dea_s
     actuator->focal_length *= units->length;
     actuator->film_thickness *= units->thickness;
     actuator->electrode_mass *= density(units) * units->thickness;
+    inside->electrode.thickness *= units->thickness;
+    inside->electrode.density *= density(units);
+    inside->electrode.sheet_resistance *= resistance(units);
+    enter_law(units, inside->electrode.law, inside->electrode.constants);
     enter_material(units, &inside->material);
     inside->drive.series_resistance *= resistance(units);
     inside->drive.leakage_resistance *= resistance(units);

@@ -1,0 +1,175 @@
+#include "netlist/rings_small.h"
+
+#include "netlist/export.h"
+
+/* Changes of the nominal stresses of a ring over its strains e_a from the bias [Pa]: with the voltage, and those that damper and
+ * branches scale, (1/lambda_a) dS_a/de_b. Both are symmetric. */
+typedef struct moduli {
+    double film[3], viscous[3]; /* 11, 12, 22 */
+} moduli;
+
+static moduli moduli_of(const dea_rings_small *s, size_t ring, const dea_membrane_look *look)
+{
+    const dea_dynamics *film = &s->membrane->film;
+    const dea_ring_look *at = &look->rings[ring];
+    const double field = s->voltage / film->point.film_thickness, l0 = film->point.film.prestretch;
+    const double k = s->membrane->rings.rings[ring].electroded ? film->point.film.permittivity * field * field : 0.0;
+    const double *l = at->stretch;
+    return (moduli){{l0 * (at->tangent[0][0] - k * l[1] * l[1]), l0 * (at->tangent[0][1] - 2.0 * k * l[0] * l[1]),
+                     l0 * (at->tangent[1][1] - k * l[0] * l[0])},
+                    {l0 * at->slope[0][0] / l[0], l0 * at->slope[0][1] / l[0], l0 * at->slope[1][1] / l[1]}};
+}
+
+/* A transconductance from node <name><control> into node @p into, number @p number. */
+static void lever(FILE *out, const char *element, const char *into, size_t number, const char *control, size_t of, double value)
+{
+    if (value != 0.0) {
+        fprintf(out, "G%s%zu_%zu 0 %s%zu %s%zu 0 ", element, number, of, into, number, control, of);
+        dea_export_number(out, value);
+        fputc('\n', out);
+    }
+}
+
+static void unit_resistor(FILE *out, const char *node, size_t number)
+{
+    fprintf(out, "R%s%zu %s%zu 0 1\n", node, number, node, number);
+}
+
+/* Strains over displacements, or their rates over velocities: nodes a, b of u, c, d of v. */
+static void write_strains(FILE *out, const dea_ring *ring, size_t number, const char names[2][2], const char *of)
+{
+    for (int a = 0; a < 2; a++) {
+        for (size_t i = 0; i < ring->count; i++) {
+            lever(out, names[a], names[a], number, of, ring->first + i + 1, a == 0 ? ring->radial[i] : ring->hoop[i]);
+        }
+        unit_resistor(out, names[a], number);
+    }
+}
+
+/* A symmetric pair of stresses of two strains times a factor. */
+static void write_pair(FILE *out, const char *tag, const char into[2][2], const char from[2][2], size_t number, const double w[3],
+                       double factor)
+{
+    for (int a = 0; a < 2; a++) {
+        for (int b = 0; b < 2; b++) {
+            fprintf(out, "G%s%s%s%zu 0 %s%zu %s%zu 0 ", tag, into[a], from[b], number, into[a], number, from[b], number);
+            dea_export_number(out, factor * w[a + b]);
+            fputc('\n', out);
+        }
+    }
+}
+
+static const char strain_names[2][2] = {"a", "b"}, rate_names[2][2] = {"c", "d"}, stress_names[2][2] = {"s", "t"},
+                  viscous_names[2][2] = {"x", "y"};
+
+/* Branches follow the stress y that scales them: tau z' = y - z, c (y - z) acts. */
+static void write_branches(FILE *out, const dea_dynamics *film, size_t number)
+{
+    for (int a = 0; a < 2; a++) {
+        const char *stress = stress_names[a], *viscous = viscous_names[a];
+        for (size_t i = 0; i < film->branch_count; i++) {
+            fprintf(out, "Gz%s%zu_%zu 0 z%s%zu_%zu %s%zu z%s%zu_%zu 1\n", viscous, number, i + 1, viscous, number, i + 1, viscous,
+                    number, viscous, number, i + 1);
+            fprintf(out, "Cz%s%zu_%zu z%s%zu_%zu 0 {tau%zu}\n", viscous, number, i + 1, viscous, number, i + 1, i + 1);
+            fprintf(out, "Gr%s%zu_%zu 0 %s%zu %s%zu z%s%zu_%zu {share%zu}\n", viscous, number, i + 1, stress, number, viscous,
+                    number, viscous, number, i + 1, i + 1);
+        }
+    }
+}
+
+static void write_ring(FILE *out, const dea_rings_small *s, size_t index, const dea_membrane_look *look)
+{
+    const dea_dynamics *film = &s->membrane->film;
+    const dea_ring *ring = &s->membrane->rings.rings[index];
+    const moduli w = moduli_of(s, index, look);
+    const size_t number = index + 1;
+    const double lever_size = ring->volume * film->point.film.prestretch;
+    fprintf(out, "* ring %zu at R = %.6g m: strains a, b, stresses s, t [Pa]\n", number, ring->radius);
+    write_strains(out, ring, number, strain_names, "u");
+    write_pair(out, "w", stress_names, strain_names, number, w.film, 1.0);
+    if (film->retardation > 0.0) {
+        write_strains(out, ring, number, rate_names, "v");
+        write_pair(out, "k", stress_names, rate_names, number, w.viscous, film->retardation);
+    }
+    if (film->branch_count > 0) {
+        write_pair(out, "y", viscous_names, strain_names, number, w.viscous, 1.0);
+        unit_resistor(out, "x", number);
+        unit_resistor(out, "y", number);
+        write_branches(out, film, number);
+    }
+    for (int a = 0; a < 2; a++) {
+        unit_resistor(out, stress_names[a], number);
+        for (size_t i = 0; i < ring->count; i++) {
+            const double slope = a == 0 ? ring->radial[i] : ring->hoop[i];
+            const size_t node = ring->first + i + 1;
+            if (slope != 0.0) {
+                fprintf(out, "Gf%s%zu_%zu v%zu 0 %s%zu 0 ", stress_names[a], number, node, node, stress_names[a], number);
+                dea_export_number(out, lever_size * slope);
+                fputc('\n', out);
+            }
+        }
+    }
+}
+
+static void write_node(FILE *out, const dea_rings_small *s, size_t index, double transduction)
+{
+    const size_t n = index + 1;
+    fprintf(out, "* node %zu at R = %.6g m: mass [kg], displacement, transduction 2 phi U [N/V]\n", n,
+            s->membrane->rings.radii[index]);
+    if (s->membrane->masses[index] > 0.0) {
+        fprintf(out, "Cm%zu v%zu 0 ", n, n);
+        dea_export_number(out, s->membrane->masses[index]);
+        fputc('\n', out);
+    }
+    fprintf(out, "Gu%zu 0 u%zu v%zu 0 1\nCu%zu u%zu 0 1\n", n, n, n, n, n);
+    fprintf(out, "Gp%zu 0 v%zu film 0 ", n, n);
+    dea_export_number(out, transduction);
+    fprintf(out, "\nGi%zu film 0 v%zu 0 ", n, n);
+    dea_export_number(out, transduction);
+    fprintf(out, "\nGq%zu 0 motion u%zu 0 ", n, n);
+    dea_export_number(out, transduction);
+    fputc('\n', out);
+}
+
+static void write_port(FILE *out, const dea_dynamics *film, double capacitance)
+{
+    fputs("* source of 1 V, resistances [Ohm], capacitance of the film at the bias [F]\n", out);
+    fputs(film->series > 0.0 ? "Vsource source 0 dc 0 ac 1\n" : "Vsource film 0 dc 0 ac 1\n", out);
+    if (film->series > 0.0) {
+        dea_export_parameter(out, "r_series", film->series);
+        fputs("Rseries source film {r_series}\n", out);
+    }
+    if (film->conductance > 0.0) {
+        dea_export_parameter(out, "r_leak", 1.0 / film->conductance);
+        fputs("Rleak film 0 {r_leak}\n", out);
+    }
+    dea_export_parameter(out, "c_film", capacitance);
+    fputs("Cfilm film 0 {c_film}\nRmotion motion 0 1\n", out);
+}
+
+void dea_rings_small_write(const dea_rings_small *small, FILE *out)
+{
+    const dea_membrane *m = small->membrane;
+    double push[DEA_RINGS_NODES];
+    dea_membrane_look look;
+    if (!dea_membrane_look_at(m, small->u, &look)) {
+        return; /* an equilibrium has one */
+    }
+    dea_membrane_push(m, &look, push);
+    fprintf(out, "* membrane as %zu moving nodes (degrees of disc and annulus: %zu, %zu) about its bias; the edge at r_a is node %zu\n",
+            m->rings.node_count, m->rings.mesh.disc, m->rings.mesh.annulus, m->rings.edge + 1);
+    for (size_t i = 0; i < m->film.branch_count; i++) {
+        fprintf(out, ".param tau%zu=", i + 1);
+        dea_export_number(out, m->film.branches[i].tau);
+        fprintf(out, "\n.param share%zu=", i + 1);
+        dea_export_number(out, m->film.branches[i].share);
+        fputc('\n', out);
+    }
+    write_port(out, &m->film, look.capacitance);
+    for (size_t n = 0; n < m->rings.node_count; n++) {
+        write_node(out, small, n, 2.0 * push[n] * small->voltage);
+    }
+    for (size_t q = 0; q < m->rings.ring_count; q++) {
+        write_ring(out, small, q, &look);
+    }
+}

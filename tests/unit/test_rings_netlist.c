@@ -1,0 +1,223 @@
+/* The membrane as cards of a netlist: numbers against physics and against the engine that integrates along the radius; the engine's
+ * text against the export's. */
+#include <stdlib.h>
+#include <time.h>
+
+#include "netlist/export.h"
+#include "netlist/rings_line.h"
+#include "random_scenes.h"
+
+enum { MOST_ROWS = 64, FILMS = 12, POINTS = 6 };
+
+typedef struct row_list {
+    dea_row rows[MOST_ROWS];
+    size_t count;
+} row_list;
+
+static dea_status take_rows(void *user, size_t first, const void *points, size_t count, dea_error *error)
+{
+    row_list *list = user;
+    (void)error;
+    assert_true(first + count <= MOST_ROWS);
+    memcpy(&list->rows[first], points, count * sizeof *list->rows);
+    list->count += count;
+    return DEA_OK;
+}
+
+static row_list run(const dea_scene *scene)
+{
+    row_list list = {.count = 0};
+    dea_error error = {0};
+    const dea_run_options options = {.jobs = 1, .points = take_rows, .user = &list};
+    if (dea_study_run(scene, dea_engine_find("ngspice"), &options, &error) != DEA_OK) {
+        fail_msg("%s", error.message);
+    }
+    return list;
+}
+
+static void strains_at_4500_volts_are_those_of_the_membrane(void **state)
+{
+    static const struct {
+        double prestretch, coverage, dot, lens;
+    } films[] = {{1.1, 0.10, 0.03762647, -0.02932674},
+                 {1.1, 0.50, 0.02651626, -0.02338631},
+                 {1.2, 0.25, 0.06092621, -0.04432166},
+                 {1.2, 0.50, 0.04503297, -0.03741631},
+                 {1.3, 0.75, 0.03289753, -0.03263280}};
+    (void)state;
+    for (size_t i = 0; i < 2 * sizeof films / sizeof *films; i++) {
+        const dea_kind kind = i % 2 == 0 ? DEA_DOT : DEA_LENS;
+        dea_scene scene = paper_scene(kind, films[i / 2].prestretch, films[i / 2].coverage, 4500.0);
+        scene.models[0] = dea_model_find("field");
+        scene.accuracy = 1e-9;
+        const row_list list = run(&scene);
+        assert_int_equal(list.count, 1);
+        assert_int_equal(list.rows[0].state, DEA_STATE_OK);
+        assert_true(is_close(list.rows[0].strain, kind == DEA_DOT ? films[i / 2].dot : films[i / 2].lens, 0.0, 5.1e-9));
+    }
+}
+
+/* Random films and axes: the integration along the radius knows no rings. */
+static void random_films_are_those_of_the_integration_along_the_radius(void **state)
+{
+    uint64_t seed = (uint64_t)time(NULL);
+    const uint64_t first = seed;
+    (void)state;
+    for (int i = 0; i < FILMS; i++) {
+        double values[POINTS];
+        dea_axis axis;
+        dea_scene scene = random_scene(&seed);
+        scene.models[0] = dea_model_find("field");
+        scene.accuracy = 1e-8;
+        scene.actuator.coverage = random_between(&seed, 0.08, 0.92);
+        scene.drive.voltage = pull_in_voltage(&scene, "field") * random_between(&seed, 0.2, 0.75);
+        double *field = swept_field(&scene, i % SWEPT_FIELDS);
+        for (int k = 0; k < POINTS; k++) {
+            values[k] = *field * (1.0 + 0.02 * k);
+        }
+        add_axis(&scene, &axis, field, values, POINTS);
+        const row_list list = run(&scene);
+        assert_int_equal(list.count, POINTS);
+        for (int k = 0; k < POINTS; k++) {
+            *field = values[k];
+            const dea_row wanted = solve_direct(&scene, "field"), got = list.rows[k];
+            if (wanted.state != DEA_STATE_OK) {
+                continue; /* slack films may be refused: their rings end sooner than the integration does */
+            }
+            const bool close = got.state == wanted.state &&
+                               (isnan(wanted.strain) || (is_close(got.strain, wanted.strain, 1e-8, 0.0) &&
+                                                         is_close(got.force, wanted.force, 1e-8, 0.0) &&
+                                                         is_close(got.capacitance, wanted.capacitance, 1e-8, 0.0)));
+            if (!close) {
+                fail_msg("seed %llu, film %d, point %d: strain %.12g (%s), wanted %.12g (%s), force %.12g, wanted %.12g",
+                         (unsigned long long)first, i, k, got.strain, dea_state_name(got.state), wanted.strain,
+                         dea_state_name(wanted.state), got.force, wanted.force);
+            }
+        }
+    }
+}
+
+static void a_sweep_goes_on_behind_points_without_equilibrium(void **state)
+{
+    double values[] = {1000.0, 4000.0, 20000.0, 4500.0};
+    dea_axis axis;
+    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, 500.0);
+    (void)state;
+    scene.models[0] = dea_model_find("field");
+    scene.accuracy = 1e-9;
+    add_axis(&scene, &axis, &scene.drive.voltage, values, 4);
+    const row_list list = run(&scene);
+    assert_int_equal(list.rows[0].state, DEA_STATE_OK);
+    assert_int_equal(list.rows[2].state, DEA_STATE_PULL_IN);
+    assert_true(isnan(list.rows[2].strain));
+    assert_true(is_close(list.rows[3].strain, 0.0450329722, 0.0, 1e-9));
+}
+
+static dea_status take_responses(void *user, size_t first, const void *points, size_t count, dea_error *error)
+{
+    (void)error;
+    assert_true(first + count <= MOST_ROWS);
+    memcpy((dea_response *)user + first, points, count * sizeof(dea_response));
+    return DEA_OK;
+}
+
+static void small_motion_about_a_bias_is_that_of_the_membrane(void **state)
+{
+    static const dea_response known[] = {
+        {1.0, 1.958684830e-07, -0.061248, 5.081569720e8, -89.991833, DEA_STATE_OK},
+        {600.0, 8.019089950e-07, -44.117392, 6.441899044e5, -73.197756, DEA_STATE_OK},
+        {1200.0, 2.869630393e-08, -93.249076, 4.891210525e5, -88.709063, DEA_STATE_OK},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        dea_response rows[MOST_ROWS];
+        dea_error error = {0};
+        dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, 3000.0);
+        scene.models[0] = dea_model_find("field");
+        scene.accuracy = 1e-9;
+        scene.study = DEA_STUDY_AC;
+        scene.material.density = 1080.0;
+        scene.material.retardation = 20e-6;
+        scene.material.prony[0] = (dea_prony){0.1 / 1.1, 1e-3};
+        scene.material.prony_count = 1;
+        scene.ac = (dea_ac){.from = known[i].frequency, .to = known[i].frequency * 1.001, .points_per_decade = 1, .bias = 3000.0};
+        const dea_run_options options = {.jobs = 1, .points = take_responses, .user = rows};
+        if (dea_study_run(&scene, dea_engine_find("ngspice"), &options, &error) != DEA_OK) {
+            fail_msg("%s", error.message);
+        }
+        assert_true(is_close(rows[0].displacement, known[i].displacement, 5.1e-10, 0.0));
+        assert_true(is_close(rows[0].displacement_phase, known[i].displacement_phase, 0.0, 5.1e-7));
+        assert_true(is_close(rows[0].impedance, known[i].impedance, 1.1e-9, 0.0));
+        assert_true(is_close(rows[0].impedance_phase, known[i].impedance_phase, 0.0, 5.1e-7));
+    }
+}
+
+static char *export_of(const dea_scene *scene, const char *dialect)
+{
+    char *text = NULL;
+    size_t length = 0;
+    dea_error error = {0};
+    FILE *out = open_memstream(&text, &length);
+    dea_export export = {.scene = scene, .dialect = dea_dialect_find(dialect), .analogy = dea_analogy_at(0), .out = out};
+    if (dea_export_netlist(&export, &error) != DEA_OK) {
+        fail_msg("%s: %s", dialect, error.message);
+    }
+    fclose(out);
+    return text;
+}
+
+/* The cards of the film, from `.subckt` to the instance. */
+static void what_is_exported_is_the_text_that_the_engine_runs(void **state)
+{
+    double values[] = {500.0, 1500.0, 2500.0, 3500.0, 4500.0};
+    dea_axis axis;
+    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, 500.0);
+    (void)state;
+    scene.models[0] = dea_model_find("field");
+    add_axis(&scene, &axis, &scene.drive.voltage, values, 5);
+    char *whole = export_of(&scene, "ngspice");
+    dea_rings_line line = {.scene = &scene, .axis = &axis, .to = 5, .number = 1};
+    char *own = NULL;
+    size_t length = 0;
+    FILE *out = open_memstream(&own, &length);
+    dea_rings_line_choose(&line);
+    assert_int_equal(dea_rings_line_write(&line, dea_dialect_at(0), out, NULL), DEA_OK);
+    fclose(out);
+    assert_true(length > 4000);
+    assert_non_null(strstr(whole, own));
+    free(own);
+    free(whole);
+}
+
+static void every_dialect_says_how_many_nodes_and_how_good(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < dea_dialect_count(); i++) {
+        dea_scene scene = paper_scene(DEA_LENS, 1.2, 0.5, 3000.0);
+        scene.models[0] = dea_model_find("field");
+        char *text = export_of(&scene, dea_dialect_at(i)->name);
+        size_t cards = 0;
+        for (const char *line = text; line && *line; line = strchr(line, '\n') ? strchr(line, '\n') + 1 : NULL) {
+            cards += *line == 'G';
+            assert_true(*line != ' ');
+        }
+        assert_true(cards > 40);
+        assert_non_null(strstr(text, "expected error"));
+        assert_non_null(strstr(text, "moving nodes"));
+        free(text);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    cmocka_set_test_filter(argc > 1 ? argv[1] : NULL);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(strains_at_4500_volts_are_those_of_the_membrane),
+        cmocka_unit_test(random_films_are_those_of_the_integration_along_the_radius),
+        cmocka_unit_test(a_sweep_goes_on_behind_points_without_equilibrium),
+        cmocka_unit_test(small_motion_about_a_bias_is_that_of_the_membrane),
+        cmocka_unit_test(what_is_exported_is_the_text_that_the_engine_runs),
+        cmocka_unit_test(every_dialect_says_how_many_nodes_and_how_good),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

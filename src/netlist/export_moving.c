@@ -375,6 +375,9 @@ static void write_band(const writer *w)
 
 dea_status dea_export_ac(dea_export *export, dea_error *error)
 {
+    if (export->scene->models[0]->membrane) {
+        return dea_export_ac_rings(export, error);
+    }
     writer w = writer_of(export);
     const dea_cards_form form = {export->dialect, export->analogy, false};
     char meaning[256];

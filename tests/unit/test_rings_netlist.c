@@ -128,6 +128,21 @@ static dea_status take_responses(void *user, size_t first, const void *points, s
     return DEA_OK;
 }
 
+/* The scene of the table of frequency responses. */
+static dea_scene swinging_scene(double frequency)
+{
+    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, 3000.0);
+    scene.models[0] = dea_model_find("field");
+    scene.accuracy = 1e-9;
+    scene.study = DEA_STUDY_AC;
+    scene.material.density = 1080.0;
+    scene.material.retardation = 20e-6;
+    scene.material.prony[0] = (dea_prony){0.1 / 1.1, 1e-3};
+    scene.material.prony_count = 1;
+    scene.ac = (dea_ac){.from = frequency, .to = frequency * 1.001, .points_per_decade = 1, .bias = 3000.0};
+    return scene;
+}
+
 static void small_motion_about_a_bias_is_that_of_the_membrane(void **state)
 {
     static const dea_response known[] = {
@@ -139,15 +154,7 @@ static void small_motion_about_a_bias_is_that_of_the_membrane(void **state)
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         dea_response rows[MOST_ROWS];
         dea_error error = {0};
-        dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, 3000.0);
-        scene.models[0] = dea_model_find("field");
-        scene.accuracy = 1e-9;
-        scene.study = DEA_STUDY_AC;
-        scene.material.density = 1080.0;
-        scene.material.retardation = 20e-6;
-        scene.material.prony[0] = (dea_prony){0.1 / 1.1, 1e-3};
-        scene.material.prony_count = 1;
-        scene.ac = (dea_ac){.from = known[i].frequency, .to = known[i].frequency * 1.001, .points_per_decade = 1, .bias = 3000.0};
+        const dea_scene scene = swinging_scene(known[i].frequency);
         const dea_run_options options = {.jobs = 1, .points = take_responses, .user = rows};
         if (dea_study_run(&scene, dea_engine_find("ngspice"), &options, &error) != DEA_OK) {
             fail_msg("%s", error.message);
@@ -281,6 +288,29 @@ static void parts_swing_as_the_membrane_does(void **state)
     child_end(&run);
 }
 
+/* The netlist as a user runs it. */
+static void exported_small_motion_runs_by_itself(void **state)
+{
+    (void)state;
+    dea_scene scene = swinging_scene(600.0);
+    scene.ac.to = 6000.0;
+    scene.accuracy = 1e-6;
+    child_run run;
+    char *text = export_of(&scene, "ngspice");
+    const char *results = strstr(text, "results: displacement v(u");
+    char name[32];
+    assert_non_null(results);
+    assert_non_null(strstr(text, "expected error"));
+    snprintf(name, sizeof name, "v(u%d)", atoi(results + strlen("results: displacement v(u")));
+    FILE *file = child_open("study.cir", "w");
+    fputs(text, file);
+    fclose(file);
+    free(text);
+    child_must_run("study.cir", &run);
+    assert_true(is_close(hypot(child_value(&run, name, 0), child_imaginary(&run, name, 0)), 8.019089950e-07, 1e-6, 0.0));
+    child_end(&run);
+}
+
 int main(int argc, char **argv)
 {
     cmocka_set_test_filter(argc > 1 ? argv[1] : NULL);
@@ -293,6 +323,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(every_dialect_says_how_many_nodes_and_how_good),
         cmocka_unit_test(parts_stand_where_the_membrane_does),
         cmocka_unit_test(parts_swing_as_the_membrane_does),
+        cmocka_unit_test(exported_small_motion_runs_by_itself),
     };
     return cmocka_run_group_tests(tests, child_setup, child_teardown);
 }

@@ -16,7 +16,7 @@ static dea_status refuse_models(const dea_scene *scene, dea_error *error)
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "a netlist holds one model, the scene has %zu: choose one, --model %s",
                         scene->model_count, scene->models[0]->name);
     }
-    if (scene->models[0]->membrane && scene->study == DEA_STUDY_TRANSIENT) {
+    if (scene->models[0]->membrane && dea_study_of(scene)->timed) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the motion of the model %s is no netlist: --as subckt is its part",
                         scene->models[0]->name);
     }

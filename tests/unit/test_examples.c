@@ -386,8 +386,8 @@ static void sample_data_gives_back_the_constants_it_was_made_from(void **state)
     assert_int_equal(unlink(path), 0);
 }
 
-/* Runs a moving or a local example by the program, with both pictures; calls @p take with the cells of each row. */
-static size_t run_rows(const char *name, void (*take)(char *const *cells, size_t count))
+/* Runs a moving or a local example by the program, with both pictures; calls @p row with the cells of each. */
+static size_t run_rows(const char *name, void (*row)(char *const *cells, size_t count))
 {
     char words[2 * PATH_LENGTH], path[PATH_LENGTH], line[LINE_LENGTH];
     size_t rows = 0;
@@ -407,7 +407,7 @@ static size_t run_rows(const char *name, void (*take)(char *const *cells, size_t
         for (char *cell = strtok(line, ",\n"); cell && count < 32; cell = strtok(NULL, ",\n")) {
             cells[count++] = cell;
         }
-        take(cells, count);
+        row(cells, count);
     }
     assert_int_equal(fclose(file), 0);
     return rows;

@@ -259,6 +259,9 @@ static void build(const dea_symbols *symbols, dea_network *network)
     const dea_expr one = NUM(1.0);
     const ring_strains e = strains_of(symbols, network->strain);
     const ring_levers lever = levers_of(symbols, &e);
+    dea_network_call(network, ADD(one, e.disc), "stretch_disc", "stretch of the disc over the pre-stretch [1]");
+    dea_network_call(network, ADD(one, e.radial), "stretch_radial", "radial stretch of the annulus over the pre-stretch [1]");
+    dea_network_call(network, ADD(one, e.hoop), "stretch_hoop", "hoop stretch of the annulus over the pre-stretch [1]");
     dea_network_add_stress(network, "n_disc", "disc, sigma - sigma_pre [Pa] on 2 pi A H/lambda",
                            dea_hyperelastic_change(symbols, e.disc), lever.disc);
     dea_network_add_stress(network, "n_radial", "annulus, radial sigma_pre - sigma [Pa] on pi H (F + A)/lambda",

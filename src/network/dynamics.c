@@ -469,6 +469,20 @@ static void sample_uncharged(dea_dynamics *dynamics, const dea_moment *moment, d
     sample->current = moment->source / series;
 }
 
+bool dea_dynamics_is_free(const dea_dynamics *d)
+{
+    return !(d->mass > 0.0) && !(d->retardation > 0.0);
+}
+
+void dea_dynamics_lighten(dea_dynamics *d, double accuracy)
+{
+    const dea_edge e = dea_dynamics_edge(d, 0.0);
+    const double resistance = d->retardation * dea_edge_viscous(d, &e);
+    if (d->mass * dea_dynamics_stiffness(d, 0.0, 0.0, false) <= 1e-3 * accuracy * resistance * resistance) {
+        d->mass = 0.0;
+    }
+}
+
 bool dea_dynamics_inside(dea_dynamics *dynamics, double u)
 {
     const bool framed = u > -dynamics->radius && u < dynamics->point.frame_radius - dynamics->radius;

@@ -105,6 +105,11 @@ double dea_dynamics_velocity_charged(dea_dynamics *dynamics, double u, double vo
  * zero before the electrode is gone, and what charges it ends there. */
 bool dea_dynamics_inside(dea_dynamics *dynamics, double u);
 
+/* True without mass and damper. */
+bool dea_dynamics_is_free(const dea_dynamics *dynamics);
+/* Drops a mass that a damper outweighs: it only matters for a moment m/r behind an edge, and then to m K/r^2 of the displacement. */
+void dea_dynamics_lighten(dea_dynamics *dynamics, double accuracy);
+
 /* State of the moving network at one time. */
 typedef struct dea_moment {
     double time;

@@ -8,6 +8,9 @@
 /* Error test failures of one step after which a run is given up: a step that outgrew its stability is far too long. */
 enum { MOST_FAILS = 30 };
 
+/* Steps that tell how many more will be. */
+static const double enough = 5000.0;
+
 enum { WORK, DISSIPATED, BRANCH, ENERGIES };
 
 typedef struct explicit_run {
@@ -16,6 +19,8 @@ typedef struct explicit_run {
     size_t audited;           /* unknowns behind those of the motion: energies */
     size_t integrated;        /* and the integral of u omega */
     double integral;          /* of that up to the last stop */
+    double to;                /* its end [s] */
+    long before;              /* steps of the run before this one */
     N_Vector w, tolerances, between, slope; /* owned, as all below: unknowns, then energies */
     void *ark;
 } explicit_run;
@@ -139,6 +144,15 @@ static double current_at(void *user, double time)
     return dea_rings_current(f, at, NV_DATA_S(run->between), NV_DATA_S(run->slope), false);
 }
 
+/* True where the swing will take more steps than there are, told from those so far; they get longer as it decays. */
+static bool endless(const explicit_run *run, double time)
+{
+    dea_rings_flight *f = run->flight;
+    const double steps = (double)(f->steps - run->before), decay = dea_rings_decay(&f->motion);
+    const double rest = decay > 0.0 ? fmin(run->to - time, 3.0 / decay) : run->to - time;
+    return steps >= enough && !dea_rings_affords(f, 0.7 * steps * rest / time);
+}
+
 /* Steps to a time of the segment. */
 static dea_state step_to(explicit_run *run, double stop, double *time)
 {
@@ -154,8 +168,8 @@ static dea_state step_to(explicit_run *run, double stop, double *time)
             return gone ? DEA_STATE_PULL_IN : dea_rings_broke(f, "ARKODE", code, *time);
         }
         const dea_state state = dea_rings_step(f, *time, NV_DATA_S(run->w));
-        if (state != DEA_STATE_OK) {
-            return state;
+        if (state != DEA_STATE_OK || endless(run, *time)) {
+            return state != DEA_STATE_OK ? state : DEA_STATE_FAILED;
         }
         if (f->peaks && *time > last) {
             dea_peak_search(&f->trace->peak, start + last, start + *time, current_at, run);
@@ -208,7 +222,8 @@ static void end(explicit_run *run)
 dea_state dea_rings_explicit(dea_rings_flight *f, double to)
 {
     const double length = f->motion.length;
-    explicit_run run = {.flight = f, .energy = length * length * f->motion.rest.capacitance_slope / f->motion.rest.compliance};
+    const double stiffness = f->motion.rest.capacitance_slope / f->motion.rest.compliance; /* of a size that counts: F = K u */
+    explicit_run run = {.flight = f, .to = to, .before = f->steps, .energy = length * length * stiffness};
     run.audited = f->audit ? ENERGIES : 0;
     run.integrated = f->scene->transient.average_count > 0 ? 1 : 0;
     dea_state state = begin(&run) ? DEA_STATE_OK : DEA_STATE_FAILED;

@@ -5,7 +5,10 @@
 #include <string.h>
 
 /* Steps of one run after which it is given up. */
-enum { MOST_STEPS = 2000000 };
+enum { MOST_STEPS = 500000 };
+
+/* Radians of the fastest mode in a step of an explicit method, at the most. */
+static const double longest_turn = 3.0;
 
 /* Share of its size below which an unknown needs a smaller one. */
 static const double small = 0.03;
@@ -181,6 +184,19 @@ static double explicit_time(const dea_rings_flight *f)
     return fmin(width, log(10.0 / f->tolerance) / dea_rings_decay(m));
 }
 
+bool dea_rings_affords(dea_rings_flight *f, double steps)
+{
+    const double left = (double)(MOST_STEPS - f->steps);
+    if (steps <= left) {
+        return true;
+    }
+    dea_fail(&f->why, DEA_ERROR_ENGINE,
+             "the swing of its %zu nodes takes %.2g more steps of SUNDIALS at a tolerance of %.1g, %.2g are left: a damper "
+             "(material.retardation) ends it",
+             f->motion.nodes, steps, f->tolerance, left);
+    return false;
+}
+
 static dea_state fly_segment(dea_rings_flight *f)
 {
     const dea_segment *segment = f->motion.segment;
@@ -191,7 +207,7 @@ static dea_state fly_segment(dea_rings_flight *f)
     }
     const double turning = explicit_time(f);
     if (turning > 0.0) {
-        const dea_state state = dea_rings_explicit(f, turning);
+        const dea_state state = dea_rings_affords(f, turning * f->motion.rest.fastest / longest_turn) ? dea_rings_explicit(f, turning) : DEA_STATE_FAILED;
         if (state != DEA_STATE_OK || turning >= segment->to - segment->from) {
             return state;
         }

@@ -68,6 +68,8 @@ double dea_rings_current(dea_rings_flight *flight, double time, const double *y,
 void dea_rings_audit(dea_rings_flight *flight, double time, const double *y, const double *rates, bool charging, double weight);
 /* Counts a step that ended at y: `failed` past the most steps, `pull_in` where the film has no stable state left. */
 dea_state dea_rings_step(dea_rings_flight *flight, double time, const double *y);
+/* True where so many steps are left. */
+bool dea_rings_affords(dea_rings_flight *flight, double steps);
 /* `failed`, because a solver ended with an error code at a time of the segment. */
 dea_state dea_rings_broke(dea_rings_flight *flight, const char *solver, int code, double time);
 

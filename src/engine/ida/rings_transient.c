@@ -166,7 +166,7 @@ static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates
     double tolerance = s->loosest = first_tolerance * accuracy, nodes = first_nodes(s), last = INFINITY;
     *good = false;
     dea_status status = run_on(s, mesh_of(s, nodes), tolerance, NULL, error);
-    for (int i = 0; i < MOST_RUNS && status == DEA_OK; i++) {
+    for (int i = 0; i < MOST_RUNS && status == DEA_OK && s->traces[1].end != DEA_STATE_FAILED; i++) {
         const dea_rings_mesh before = mesh_of(s, nodes);
         nodes = finer(s, nodes);
         tolerance = fmax(first_share * tolerance, least_tolerance);
@@ -253,7 +253,7 @@ static dea_status fly(search *s, dea_sample *samples, dea_summary *summary, dea_
     }
     fill(s, &s->traces[1], good, samples);
     tell_averages(s, &s->traces[1], summary);
-    dea_scales_tell(&s->scales, samples, s->rows, rates, summary);
+    dea_scales_tell(&s->scales, s->traces[1].samples, s->traces[1].count, rates, summary);
     tell_peak(s, summary);
     return DEA_OK;
 }

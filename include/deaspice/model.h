@@ -24,6 +24,7 @@ typedef struct dea_point {
     double voltage;        /**< U across the film [V] */
     double focal_length;   /**< of a lens at rest [m], NAN: no optics */
     double refractive_index; /**< of its liquid [1] */
+    double load;             /**< stiffness of a spring between edge and frame [N/m], 0: none */
     double skin_share;       /**< t/H of the electrodes' skin [1], 0: there is none */
     dea_film skin;           /**< the skin at rest, not pre-stretched; set where there is one */
 } dea_point;
@@ -59,6 +60,7 @@ typedef struct dea_model {
     const char *equation;   /**< e.g. "Eqs. 19-23" */
     const char *leaves_out; /**< what it neglects */
     bool lens;              /**< can do a lens too */
+    bool edge;              /**< its film has an edge at r_a, onto which loads act */
     /** The model's own equations (engine `direct`); fills every field of @p row. @p accuracy is what the user wants. */
     void (*solve)(const dea_point *point, double accuracy, dea_row *row);
     /** The same for @p count points of one film, sooner: each row has the digits of solve(). NULL: one after the other. */
@@ -105,7 +107,7 @@ DEA_API double dea_series_resistance(const dea_scene *scene);
 DEA_API double dea_sheet_share(dea_kind kind, double coverage, double layers);
 /** Mass of the electrodes per area of pre-stretched film [kg/m^2], 0: none. */
 DEA_API double dea_electrode_mass(const dea_scene *scene);
-/** Mass of film and electrodes that moves with the disc edge [kg], 0 without density: Rayleigh with the shape of Lame's solution,
+/** Mass of film, electrodes and load that moves with the disc edge [kg], 0 without density: Rayleigh with the shape of Lame's solution,
  * the electrodes' mass per area counted over the pre-stretched film (physics: section 5). */
 DEA_API double dea_point_mass(const dea_scene *scene, const dea_point *point);
 

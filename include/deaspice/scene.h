@@ -54,6 +54,12 @@ typedef struct dea_electrode {
     double sheet_resistance;             /**< of one electrode [Ohm per square], > 0, NAN: none */
 } dea_electrode;
 
+/** What is fixed to the edge at r_a, all round: beside the film, and at rest where that is. */
+typedef struct dea_edge_load {
+    double mass;      /**< [kg], > 0, NAN: none */
+    double stiffness; /**< of a spring to the frame, against the radial displacement of the edge [N/m], > 0, NAN: none */
+} dea_edge_load;
+
 /** Kinds of waveform, in the order of the table src/drive/waves.c. A file and a list of points are both points. */
 typedef enum dea_wave_kind {
     DEA_WAVE_NONE,
@@ -206,6 +212,7 @@ typedef struct dea_scene {
     char *title; /**< may be empty, never NULL */
     dea_actuator actuator;
     dea_electrode electrode;
+    dea_edge_load load;
     dea_material material;
     dea_drive drive;
     const struct dea_model *models[DEA_SCENE_MODELS]; /**< models to run one after the other, model_count of them */

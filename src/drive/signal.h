@@ -12,7 +12,7 @@ typedef struct dea_segment {
     const struct dea_segment *lines; /* of a curve that is a run of lines: these, line_count of them; else NULL */
     size_t line_count;
     double step; /* longest step through such a run [s]; 0: any */
-    bool corner; /* of a line of a run: at its end is a corner that no step may pass */
+    bool corner; /* of a line of a run: at its end is a corner that no step may pass; of the run: it may have such lines */
 } dea_segment;
 
 /* amplitude sin(2 pi n + phase), whose turns n at age t are f t + rate t^2/2, or f (e^(growth t) - 1)/growth of a chirp whose

@@ -33,15 +33,18 @@ static void mark(dea_segment *line, const dea_segment *next, double limit, doubl
     }
 }
 
-/* Lines from number @p first on that make one run, and the longest step through it. */
-static size_t run_of(dea_segment *s, size_t all, size_t first, double limit, bool corners, double *step)
+/* Lines from number @p first on that make one run, and the longest step through it: lines that are short, whatever their
+ * corners, or others with small corners alone. */
+static size_t run_of(dea_segment *s, size_t all, size_t first, double limit, double shorter, double *step)
 {
+    const bool corners = s[first].to - s[first].from <= shorter;
     size_t count = 1;
     *step = 0.0;
     while (first + count < all) {
         dea_segment *last = &s[first + count - 1];
         const dea_segment *next = last + 1;
-        if (last->sine || next->sine || last->end != next->start) {
+        const bool alike_long = (next->to - next->from <= shorter) == corners;
+        if (last->sine || next->sine || last->end != next->start || !alike_long) {
             break;
         }
         mark(last, next, limit, step);
@@ -53,7 +56,7 @@ static size_t run_of(dea_segment *s, size_t all, size_t first, double limit, boo
     return count;
 }
 
-dea_status dea_signal_soften(dea_signal *signal, double accuracy, bool corners, dea_error *error)
+dea_status dea_signal_soften(dea_signal *signal, double accuracy, double shorter, dea_error *error)
 {
     dea_segment *lines = malloc(signal->count * sizeof *lines);
     const size_t all = signal->count;
@@ -66,7 +69,7 @@ dea_status dea_signal_soften(dea_signal *signal, double accuracy, bool corners, 
     signal->lines = lines;
     for (size_t i = 0, count; i < all; i += count) {
         double step;
-        count = run_of(lines, all, i, limit, corners, &step);
+        count = run_of(lines, all, i, limit, shorter, &step);
         const dea_segment run = {.from = lines[i].from,
                                  .to = lines[i + count - 1].to,
                                  .start = lines[i].start,
@@ -74,7 +77,8 @@ dea_status dea_signal_soften(dea_signal *signal, double accuracy, bool corners, 
                                  .sine = true,
                                  .lines = &lines[i],
                                  .line_count = count,
-                                 .step = step};
+                                 .step = step,
+                                 .corner = lines[i].to - lines[i].from <= shorter};
         for (size_t k = 0; count < FEWEST && k < count; k++) {
             signal->segments[signal->count++] = lines[i + k];
         }

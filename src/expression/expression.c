@@ -390,6 +390,83 @@ dea_expr dea_expr_apply(dea_pool *pool, dea_operation operation, dea_expr a, dea
     return (size_t)operation < known && sums[operation] ? sums[operation](pool, a, b) : combine(pool, operation, a, b);
 }
 
+/* A term as a factor that holds neither node nor symbol 0, and what does, -1: nothing. */
+typedef struct factored {
+    dea_expr factor, rest;
+} factored;
+
+static dea_expr whole(dea_pool *pool, factored f)
+{
+    return f.rest < 0 ? f.factor : combine(pool, DEA_MUL, f.factor, f.rest);
+}
+
+/* Neither node nor symbol 0 in it. */
+static bool is_fixed(const dea_pool *pool, dea_expr ref)
+{
+    const dea_term *term = &pool->terms[ref];
+    return term->operation >= DEA_ADD ? is_fixed(pool, term->a) && is_fixed(pool, term->b)
+                                      : term->operation == DEA_NUMBER || (term->operation == DEA_SYMBOL && term->a > 0);
+}
+
+static factored factor_of(dea_pool *pool, dea_operation operation, factored a, factored b)
+{
+    const dea_expr one = dea_expr_number(pool, 1.0);
+    const dea_expr factor = operation == DEA_MUL || operation == DEA_DIV ? dea_expr_apply(pool, operation, a.factor, b.factor) : one;
+    if (operation == DEA_MUL && a.rest >= 0 && b.rest >= 0) {
+        return (factored){factor, dea_expr_mul(pool, a.rest, b.rest)};
+    }
+    if (operation == DEA_MUL || (operation == DEA_DIV && b.rest < 0)) {
+        return (factored){factor, a.rest >= 0 ? a.rest : b.rest};
+    }
+    if (operation == DEA_DIV) {
+        return (factored){factor, dea_expr_div(pool, a.rest >= 0 ? a.rest : one, b.rest)};
+    }
+    const bool sum = operation == DEA_ADD || operation == DEA_SUB;
+    if (sum && a.rest >= 0 && a.rest == b.rest) {
+        return (factored){dea_expr_apply(pool, operation, a.factor, b.factor), a.rest};
+    }
+    if (sum && a.rest >= 0 && b.rest >= 0 && a.factor == b.factor) {
+        return (factored){a.factor, dea_expr_apply(pool, operation, a.rest, b.rest)};
+    }
+    const dea_expr left = whole(pool, a), right = whole(pool, b);
+    const dea_term inner = pool->terms[left]; /* a copy: the pool grows */
+    if (sum && b.rest < 0 && is_sum(&inner) && is_fixed(pool, inner.a)) {
+        return (factored){one, dea_expr_apply(pool, inner.operation, dea_expr_apply(pool, operation, inner.a, right), inner.b)};
+    }
+    return (factored){one, dea_expr_apply(pool, operation, left, right)};
+}
+
+static factored factor_out(dea_pool *pool, dea_expr ref, factored *made)
+{
+    const dea_term term = pool->terms[ref]; /* a copy: the pool grows */
+    if (made[ref].factor >= 0) {
+        return made[ref];
+    }
+    factored result = {ref, -1};
+    if (term.operation == DEA_NODE || (term.operation == DEA_SYMBOL && term.a == 0)) {
+        result = (factored){dea_expr_number(pool, 1.0), ref};
+    } else if (term.operation >= DEA_ADD) {
+        const factored a = factor_out(pool, term.a, made), b = factor_out(pool, term.b, made);
+        result = a.rest < 0 && b.rest < 0 ? result : factor_of(pool, term.operation, a, b);
+    }
+    made[ref] = result;
+    return result;
+}
+
+dea_expr dea_expr_gathered(dea_pool *pool, dea_expr ref)
+{
+    const size_t size = ((size_t)pool->count + 1) * sizeof(factored);
+    factored *made = pool->exhausted ? NULL : malloc(size);
+    if (!made) {
+        pool->exhausted = true;
+        return 0;
+    }
+    memset(made, 0xff, size); /* -1: not made */
+    const dea_expr result = whole(pool, factor_out(pool, ref, made));
+    free(made);
+    return result;
+}
+
 /* What a leaf is worth: one of several values, NAN past the last; a stride of 0 gives the same to all. */
 static double pick(const double *values, int count, int stride, int index)
 {
@@ -410,6 +487,11 @@ static void evaluate(const dea_pool *pool, const dea_point_values *at, int strid
 void dea_pool_values(const dea_pool *pool, double symbol, double node, double *values)
 {
     evaluate(pool, &(dea_point_values){&symbol, &node, 1, 1}, 1, values);
+}
+
+void dea_pool_values_at(const dea_pool *pool, const dea_point_values *at, double *values)
+{
+    evaluate(pool, at, 1, values);
 }
 
 void dea_pool_values_uniform(const dea_pool *pool, double symbols, double nodes, double *values)

@@ -53,6 +53,10 @@ dea_expr dea_expr_positive(dea_pool *pool, dea_expr a);
 /* Any operation; of one operand a, @p b is a again. */
 dea_expr dea_expr_apply(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b);
 
+/* The same with the factors of every product that hold neither node nor symbol 0 drawn together in front, as one term: in a netlist
+ * they are one parameter. */
+dea_expr dea_expr_gathered(dea_pool *pool, dea_expr ref);
+
 /* A number, or NAN where the expression varies. */
 double dea_expr_constant(const dea_pool *pool, dea_expr ref);
 
@@ -66,8 +70,9 @@ typedef struct dea_point_values {
 } dea_point_values;
 
 /* Values of all terms of the pool, into an array of pool->count: with one symbol and one node, NAN where a further one stands; with
- * one value for all symbols and one for all nodes. */
+ * any; with one value for all symbols and one for all nodes. */
 void dea_pool_values(const dea_pool *pool, double symbol, double node, double *values);
+void dea_pool_values_at(const dea_pool *pool, const dea_point_values *at, double *values);
 void dea_pool_values_uniform(const dea_pool *pool, double symbols, double nodes, double *values);
 
 #endif

@@ -77,6 +77,7 @@ void dea_point_place(const dea_scene *scene, dea_point *point)
     point->voltage = scene->drive.voltage * film_share(scene);
     point->focal_length = actuator->focal_length;
     point->refractive_index = actuator->refractive_index;
+    point->load = scene->load.stiffness > 0.0 ? scene->load.stiffness : 0.0;
     place_skin(&scene->electrode, point);
 }
 
@@ -130,7 +131,8 @@ double dea_point_mass(const dea_scene *scene, const dea_point *point)
     const double film = moving_disc(reference) + moving_annulus(reference, b);
     const double electrode = point->kind == DEA_DOT ? moving_disc(radius) : moving_annulus(radius, b);
     const double areal = dea_electrode_mass(scene);
-    return scene->material.density * point->film_thickness * film + areal * electrode;
+    const double load = scene->load.mass > 0.0 ? scene->load.mass : 0.0;
+    return scene->material.density * point->film_thickness * film + areal * electrode + load;
 }
 
 /* The membrane at rest, W11 (w'' + w'/R - w/R^2) + m omega^2 w = 0 in the reference film of thickness H with m its mass per volume,

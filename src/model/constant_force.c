@@ -37,6 +37,7 @@ static void build(const dea_symbols *symbols, dea_network *network)
 {
     dea_pool *pool = symbols->pool;
     const dea_expr area = dea_hyperelastic_area(symbols, network->strain);
+    dea_network_call(network, ADD(NUM(1.0), network->strain), "stretch_disc", "stretch of the disc over the pre-stretch [1]");
     dea_network_add_stress(network, "n_disc", "disc, sigma - sigma_pre [Pa] on the area A, Eq. 13",
                            dea_hyperelastic_change(symbols, network->strain), area);
     if (symbols->skin) {

@@ -175,6 +175,8 @@ static void build(const dea_symbols *symbols, dea_network *network)
     const dea_expr passive = dot ? annulus : disc;
     const dea_expr area = dea_hyperelastic_area(symbols, disc);
     network->capacitance = capacitance(symbols, disc);
+    dea_network_call(network, ADD(one, disc), "stretch_disc", "stretch of the disc over the pre-stretch [1]");
+    dea_network_call(network, ADD(one, annulus), "stretch_annulus", "stretch of the annulus over the pre-stretch, Eq. 17 [1]");
     dea_network_add_stress(network, "n_disc", "disc, sigma - sigma_pre [Pa] on the area A, Eq. 18",
                            dea_hyperelastic_change(symbols, disc), area);
     dea_network_add_stress(network, "n_annulus", "annulus, sigma_pre - sigma [Pa] on the area A, Eqs. 17, 18",
@@ -206,6 +208,7 @@ const dea_model dea_model_coverage = {
     .equation = "Eq. 18",
     .leaves_out = "non-uniform passive stress",
     .lens = true,
+    .edge = true,
     .solve = solve,
     .solve_many = solve_many,
     .along = along,

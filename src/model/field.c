@@ -68,11 +68,12 @@ static dea_stress disc_stress(const membrane *m, double l)
     return m->lens ? m->film->law->stress(m->film->constants, l, l) : dea_point_coated_stress(m->point, l, l);
 }
 
-/* Skin's share of the stress s1 of the annulus less that of the disc. */
-static double skin_jump(const membrane *m, double l, double d)
+/* What the stress s1 of the annulus less that of the disc has of the skin, and of a load k at the edge, -k u/(2 pi R_a H). */
+static double beside_jump(const membrane *m, double l, double d)
 {
     const double e = l - m->film->prestretch;
-    return m->lens ? dea_point_skin_rise(m->point, e - d, e) : -dea_point_skin_rise(m->point, e, e);
+    const double load = m->point->load * e / (2.0 * DEA_PI * m->point->film_thickness);
+    return (m->lens ? dea_point_skin_rise(m->point, e - d, e) : -dea_point_skin_rise(m->point, e, e)) - load;
 }
 
 static radial_state slope_at(const membrane *m, radial_state s)
@@ -145,7 +146,7 @@ static double jump_at_edge(const membrane *m, double l)
             continue;
         }
         sound = d;
-        const double rise = m->film->law->rise(m->film->constants, l, -d, 0.0) + skin_jump(m, l, d);
+        const double rise = m->film->law->rise(m->film->constants, l, -d, 0.0) + beside_jump(m, l, d);
         const double residual = rise + jump + m->annulus_k * d * l * l;
         const double s11 = here.w11 - m->annulus_k * l * l;
         const double most = 0.25 * (l - d); /* lambda_1 moves by a quarter at most: the first root from lambda_2 on is meant */
@@ -306,17 +307,30 @@ static bool stays_elliptic(const membrane *full, place from, place to, double le
     return true;
 }
 
+/* 1/(2 pi H n) of disc and annulus of bare film, and of what is beside them, skin and load [Pa]. */
+static double bare_stiffness(const dea_point *point)
+{
+    const double b2 = point->coverage * point->coverage, q = (1.0 + b2) / (1.0 - b2);
+    const dea_film *film = &point->film;
+    return film->w11 + film->w12 + film->w11 * q - film->w12;
+}
+
+static double beside_stiffness(const dea_point *point)
+{
+    const double b2 = point->coverage * point->coverage, q = (1.0 + b2) / (1.0 - b2);
+    const dea_film *skin = &point->skin;
+    const double coat = point->kind == DEA_DOT ? skin->w11 + skin->w12 : skin->w11 * q - skin->w12;
+    return (point->skin_share > 0.0 ? point->skin_share * coat : 0.0) + point->load / (2.0 * DEA_PI * point->film_thickness);
+}
+
 /* Strain of the linearised membrane (the model `lame`), NAN where it has pulled in. */
 static double linear_guess(const dea_point *point, double m)
 {
     const dea_film *film = &point->film;
     const bool dot = point->kind == DEA_DOT;
     const double b2 = point->coverage * point->coverage;
-    const double q = (1.0 + b2) / (1.0 - b2);
-    const double softening = m * film->square * (dot ? 3.0 : q - 2.0);
-    const dea_film *skin = &point->skin;
-    const double coat = point->skin_share > 0.0 ? point->skin_share * (dot ? skin->w11 + skin->w12 : skin->w11 * q - skin->w12) : 0.0;
-    const double stiffness = film->w11 + film->w12 + film->w11 * q - film->w12 + coat - softening;
+    const double softening = m * film->square * (dot ? 3.0 : (1.0 + b2) / (1.0 - b2) - 2.0);
+    const double stiffness = bare_stiffness(point) + beside_stiffness(point) - softening;
     return stiffness > 0.0 ? dea_point_sign(point) * m * film->square * film->prestretch / stiffness : NAN;
 }
 
@@ -326,18 +340,19 @@ static bool near_rest(const membrane *m, double guess, double *edge)
 {
     double e0 = guess;
     double miss0 = miss_at_frame(m, e0, NULL);
-    double slope = 1.0; /* d(miss)/d(edge) at rest */
-    double first_slope = 1.0;
+    const double at_rest = 1.0 + beside_stiffness(m->point) / bare_stiffness(m->point); /* d(miss)/d(edge) */
+    double slope = at_rest;
+    double first_slope = slope;
     for (int i = 0; i < 12 && isfinite(miss0); i++) {
         const double step = -miss0 / slope;
         const double e1 = e0 + step;
         if (fabs(step) <= 1e-9 * fabs(e1)) { /* the error left is the product of the last two steps */
             *edge = e1;
             const double size = fabs(e1) / m->film->prestretch;
-            const double softest = fmin(first_slope, slope); /* falls from 1 at rest to 0 at a fold */
+            const double softest = fmin(first_slope, slope) / at_rest; /* falls from 1 at rest to 0 at a fold */
             const place rest = {0.0, 0.0, m->film->prestretch};
             const place here = {e1, 1.0, radial_stretch(m, 1.0, e1)};
-            return fmax(first_slope, slope) < 2.0 && (softest > 0.4 ? size < 0.1 : softest > 0.1 && size < 0.05) &&
+            return fmax(first_slope, slope) < 2.0 * at_rest && (softest > 0.4 ? size < 0.1 : softest > 0.1 && size < 0.05) &&
                    fabs(here.stretch - rest.stretch) < 0.5 * rest.stretch && stays_elliptic(m, rest, here, 0.1 * m->film->w11);
         }
         const double miss1 = miss_at_frame(m, e1, NULL);
@@ -579,7 +594,7 @@ static void solve_many(const dea_point *points, size_t count, double accuracy, d
         bool solved[CHUNK];
         dea_collocation_solve(points + from, some, accuracy, rows + from, solved);
         for (size_t i = 0; i < some; i++) {
-            if (!solved[i]) {
+            if (!solved[i] || points[from + i].skin_share > 0.0 || points[from + i].load > 0.0) { /* collocation takes bare films */
                 dea_field_solve(&points[from + i], mesh, &rows[from + i]);
             }
         }
@@ -596,6 +611,7 @@ const dea_model dea_model_field = {
     .equation = "axisymmetric membrane",
     .leaves_out = "bending, all out of plane",
     .lens = true,
+    .edge = true,
     .solve = solve,
     .solve_many = solve_many,
     .along = dea_field_profile,

@@ -17,6 +17,7 @@ typedef struct film_pair {
     double ratio;
     const dea_film *skin; /* NULL: none */
     double share;         /* t lambda_pre^2/H: its Cauchy stress counts so much [1] */
+    double load, turn;    /* a spring at the edge adds load e (1 + turn e) [Pa], turn e being the strain of the disc */
 } film_pair;
 
 static inline balance balance_at(const film_pair *pair, double e)
@@ -41,6 +42,9 @@ static inline balance balance_at(const film_pair *pair, double e)
         b.slope += pair->share * skin.slope;
         b.curve += pair->share * skin.curve;
     }
+    b.load += pair->load * e * (1.0 + pair->turn * e);
+    b.slope += pair->load * (1.0 + 2.0 * pair->turn * e);
+    b.curve += 2.0 * pair->load * pair->turn;
     b.fold = (1.0 + e) * b.slope - 4.0 * b.load;
     return b;
 }
@@ -64,19 +68,19 @@ static double end_of(const film_pair *pair)
 static double rest_slope(const film_pair *pair)
 {
     const double film = pair->film->prestretch * pair->film->slope * (1.0 + pair->ratio);
-    return pair->skin ? film + pair->share * pair->skin->slope : film;
+    return (pair->skin ? film + pair->share * pair->skin->slope : film) + pair->load;
 }
 
 static double rest_curve(const film_pair *pair)
 {
     const double film = pair->film->square * pair->film->curvature * (1.0 - pair->ratio * pair->ratio);
-    return pair->skin ? film + pair->share * pair->skin->curvature : film;
+    return (pair->skin ? film + pair->share * pair->skin->curvature : film) + 2.0 * pair->load * pair->turn;
 }
 
 /* Films abreast on their way to a root. */
 typedef struct walkers {
     const dea_film *film, *skin; /* as of a pair */
-    double share[DEA_LANES];
+    double share[DEA_LANES], spring[DEA_LANES], turn[DEA_LANES]; /* spring: load of the pair [Pa] */
     double ratio[DEA_LANES], m[DEA_LANES], end[DEA_LANES];
     double stiffness[DEA_LANES], curvature[DEA_LANES]; /* dN/de and d2N/de2 at rest */
     double strain[DEA_LANES], last[DEA_LANES];
@@ -131,9 +135,10 @@ DEA_INLINE void step_on(walkers *w)
     {
         const double e = w->strain[l], last = w->last[l], ratio = w->ratio[l], m = w->m[l];
         const double square = (1.0 + e) * (1.0 + e);
-        const double load = value[l] - value[DEA_LANES + l];
-        const double first = slope[l] + ratio * slope[DEA_LANES + l];
-        const double second = curve[l] - ratio * ratio * curve[DEA_LANES + l];
+        const double spring = w->spring[l], turn = w->turn[l];
+        const double load = value[l] - value[DEA_LANES + l] + spring * e * (1.0 + turn * e);
+        const double first = slope[l] + ratio * slope[DEA_LANES + l] + spring * (1.0 + 2.0 * turn * e);
+        const double second = curve[l] - ratio * ratio * curve[DEA_LANES + l] + 2.0 * spring * turn;
         const double residual = load - m * square * square;
         const double steep = first - 4.0 * m * square * (1.0 + e);
         const double bent = second - 12.0 * m * square;
@@ -203,7 +208,15 @@ static bool is_first(const walkers *w, size_t l, const dea_path *path)
 static film_pair pair_of(const dea_point *point, double ratio)
 {
     const bool skinned = point->skin_share > 0.0;
-    return (film_pair){&point->film, ratio, skinned ? &point->skin : NULL, point->skin_share * point->film.square};
+    const double turn = point->kind == DEA_DOT ? 1.0 : -ratio;
+    return (film_pair){.film = &point->film,
+                       .ratio = ratio,
+                       .skin = skinned ? &point->skin : NULL,
+                       .share = point->skin_share * point->film.square,
+                       .load = point->load != 0.0
+                                   ? point->load * dea_point_divide(point) / dea_point_cross_section(point) * fabs(turn)
+                                   : 0.0,
+                       .turn = turn};
 }
 
 /* Strains of up to DEA_LANES films of as many points, each with its own ratio, under the pressures m; false where there is none. */
@@ -215,6 +228,8 @@ static void find(const dea_point *points, size_t count, const double *ratio, con
         const size_t from = l < count ? l : 0; /* an idle lane does what the first does */
         const film_pair pair = pair_of(&points[from], ratio[from]);
         w.share[l] = pair.share;
+        w.spring[l] = pair.load;
+        w.turn[l] = pair.turn;
         w.ratio[l] = ratio[from];
         w.m[l] = m[from];
         w.stiffness[l] = rest_slope(&pair);

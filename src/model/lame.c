@@ -13,14 +13,18 @@ static bool is_taut(double rest, double a, double b, double d1, double d2)
 /* Share of its terms below which a difference is computed again in long double: their rounding would be seen. */
 static const double nearly = 1e-2;
 
-/* 1/(2 pi H n) of the skin: a + b on a disc, a q - b on an annulus, with its moduli [Pa]. */
-static double skin_stiffness(const dea_point *point)
+/* 1/(2 pi H n) of a load, and with the skin: a + b on a disc, a q - b on an annulus, with its moduli [Pa]. */
+static double load_stiffness(const dea_point *point)
+{
+    return point->load / (2.0 * DEA_PI * point->film_thickness);
+}
+
+static double beside_stiffness(const dea_point *point)
 {
     const double b2 = point->coverage * point->coverage, q = (1.0 + b2) / (1.0 - b2);
-    if (!(point->skin_share > 0.0)) {
-        return 0.0;
-    }
-    return point->skin_share * (point->kind == DEA_DOT ? point->skin.w11 + point->skin.w12 : point->skin.w11 * q - point->skin.w12);
+    const dea_film *skin = &point->skin;
+    const double coat = point->skin_share > 0.0 ? point->skin_share * (point->kind == DEA_DOT ? skin->w11 + skin->w12 : skin->w11 * q - skin->w12) : 0.0;
+    return coat + load_stiffness(point);
 }
 
 /* 1/(2 pi H n) of disc, annulus and softening together [Pa], in long double from the constants of the film: just before pull-in
@@ -34,7 +38,7 @@ static long double fine_stiffness(const dea_point *point)
     const long double b2 = (long double)point->coverage * point->coverage,
                       field = (long double)point->voltage / point->film_thickness;
     const long double share = point->kind == DEA_DOT ? 3.0L : (1.0L + b2) / (1.0L - b2) - 2.0L;
-    return 2.0L * w11 / (1.0L - b2) + skin_stiffness(point) - share * film->permittivity * field * field * y;
+    return 2.0L * w11 / (1.0L - b2) + beside_stiffness(point) - share * film->permittivity * field * field * y;
 }
 
 /* Area of a lens' annulus over that at rest where the edge of the disc comes to the frame's radius on the other side of the centre,
@@ -67,7 +71,7 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     const double q = (1.0 + b2) * inverse;
 
     /* 1/n over 2 pi H: disc a + b, annulus a (1 + B^2)/(1 - B^2) - b */
-    double stiffness = disc1 + disc2 + annulus1 * q - annulus2;
+    double stiffness = disc1 + disc2 + annulus1 * q - annulus2 + load_stiffness(point);
     if (fabs(stiffness) < nearly * film->w11 * inverse) {
         stiffness = (double)fine_stiffness(point);
     }
@@ -186,7 +190,7 @@ static void linear(const dea_point *point, dea_linear *linear)
     *linear = (dea_linear){.stiffness = thickness * (film->w11 + film->w12 + film->w11 * q - film->w12),
                            .softening = -unit * share,
                            .force = dea_point_sign(point) * unit * dea_point_divide(point)};
-    linear->beside = thickness * skin_stiffness(point);
+    linear->beside = thickness * beside_stiffness(point);
     linear->capacitance[0] = dea_point_capacitance(point);
     linear->capacitance[1] = 2.0 * linear->force;
     linear->capacitance[2] = 2.0 * unit * share;
@@ -197,6 +201,7 @@ const dea_model dea_model_lame = {
     .equation = "Lame's disc and annulus",
     .leaves_out = "finite strain",
     .lens = true,
+    .edge = true,
     .solve = solve,
     .network = build,
     .linear = linear,

@@ -6,11 +6,13 @@
 /* A difference of terms of size 1 below which it is computed again in long double. */
 static const double nearly = 1e-2;
 
-/* Modulus of one spring that is as stiff as both: (1 - B) Y_disc + B Y_annulus, one of them with the skin. */
+/* Modulus of one spring that is as stiff as all: (1 - B) Y_disc + B Y_annulus, one of them with the skin, and a load k, which is
+ * (1 - B) k r_a/A_cross. */
 static double modulus_of(const dea_point *point)
 {
-    const double share = point->kind == DEA_DOT ? 1.0 - point->coverage : point->coverage;
-    return point->film.modulus + share * dea_point_skin_modulus(point);
+    const double b = point->coverage, share = point->kind == DEA_DOT ? 1.0 - b : b;
+    const double load = (1.0 - b) * point->load * dea_point_divide(point) / dea_point_cross_section(point);
+    return point->film.modulus + share * dea_point_skin_modulus(point) + load;
 }
 
 /* Area of a lens' annulus over that at rest where the edge of the disc comes to the frame's radius on the other side of the centre,
@@ -88,7 +90,7 @@ static void linear(const dea_point *point, dea_linear *linear)
     const double width = (1.0 - point->coverage) * point->frame_radius;
     *linear = (dea_linear){.stiffness = point->film.modulus * section * (1.0 / dea_point_divide(point) + 1.0 / width),
                            .force = dea_point_sign(point) * dea_point_stress_per_volt(point) * section};
-    linear->beside = dea_point_skin_modulus(point) * section / (point->kind == DEA_DOT ? dea_point_divide(point) : width);
+    linear->beside = dea_point_skin_modulus(point) * section / (point->kind == DEA_DOT ? dea_point_divide(point) : width) + point->load;
     linear->capacitance[0] = dea_point_capacitance(point);
     linear->capacitance[1] = 2.0 * linear->force;
 }
@@ -98,6 +100,7 @@ const dea_model dea_model_lumped = {
     .equation = "Eqs. 19-23",
     .leaves_out = "hyperelasticity, hoop stress",
     .lens = true,
+    .edge = true,
     .solve = solve,
     .network = build,
     .linear = linear,

@@ -24,6 +24,7 @@ typedef struct rings {
     double radial, hoop; /* e1/s and e2/s of the annulus */
     double outer, inner; /* (F + A)/2A, (F - A)/2A */
     double aspect;       /* (F + A)/(F - A) */
+    double load;         /* of a spring k at the edge, k lambda_pre/(2 pi H) [Pa] */
 } rings;
 
 /* Area stretch of the electroded film over lambda_pre^2. */
@@ -50,9 +51,9 @@ static inline ring_place place_at(const rings *r, double x)
     }
     const dea_biaxial *disc = &place.disc, *annulus = &place.annulus;
     const double held = disc->p1 + r->inner * annulus->p2 - r->outer * annulus->p1;
-    place.path.held = r->dot ? held : -held;
+    place.path.held = (r->dot ? held : -held) + r->load * x;
     place.path.slope = r->film->prestretch *
-                       (disc->w11 + disc->w12 + 0.5 * (annulus->w11 * r->aspect + annulus->w22 / r->aspect) - annulus->w12);
+                       (disc->w11 + disc->w12 + 0.5 * (annulus->w11 * r->aspect + annulus->w22 / r->aspect) - annulus->w12) + r->load;
     const double area = area_at(r, s);
     place.path.weight = edge * area;
     place.path.weight_slope = r->dot ? 3.0 * area : -(area + edge * (r->radial * (1.0 + e2) + r->hoop * (1.0 + e1)));
@@ -118,7 +119,7 @@ static bool balance(const rings *r, double m, double *x, ring_place *at)
     const dea_film *skin = &r->point->skin;
     const double coat = r->dot ? skin->w11 + skin->w12 : 0.5 * skin->w11 * both - skin->w12;
     const double held = r->point->skin_share > 0.0 ? lame + r->point->skin_share * coat : lame;
-    const dea_path path = {path_place, r, film->prestretch * held, r->dot ? 2.0 * r->inner : 1.0, r->inner / (r->inner + 0.5)};
+    const dea_path path = {path_place, r, film->prestretch * held + r->load, r->dot ? 2.0 * r->inner : 1.0, r->inner / (r->inner + 0.5)};
     if (!isfinite(m) || !(path.rest > 0.0)) {
         return false;
     }
@@ -161,7 +162,8 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
                      .hoop = b / (1.0 + b),
                      .outer = 0.5 * (1.0 + b) / b,
                      .inner = 0.5 * (1.0 - b) / b,
-                     .aspect = (1.0 + b) / (1.0 - b)};
+                     .aspect = (1.0 + b) / (1.0 - b),
+                     .load = point->load * film->prestretch / (2.0 * DEA_PI * point->film_thickness)};
     const double k = film->permittivity * nominal * nominal, m = k * film->square * film->prestretch;
     double x = 0.0;
     ring_place at = {0};
@@ -257,6 +259,9 @@ static void build(const dea_symbols *symbols, dea_network *network)
     const dea_expr one = NUM(1.0);
     const ring_strains e = strains_of(symbols, network->strain);
     const ring_levers lever = levers_of(symbols, &e);
+    dea_network_call(network, ADD(one, e.disc), "stretch_disc", "stretch of the disc over the pre-stretch [1]");
+    dea_network_call(network, ADD(one, e.radial), "stretch_radial", "radial stretch of the annulus over the pre-stretch [1]");
+    dea_network_call(network, ADD(one, e.hoop), "stretch_hoop", "hoop stretch of the annulus over the pre-stretch [1]");
     dea_network_add_stress(network, "n_disc", "disc, sigma - sigma_pre [Pa] on 2 pi A H/lambda",
                            dea_hyperelastic_change(symbols, e.disc), lever.disc);
     dea_network_add_stress(network, "n_radial", "annulus, radial sigma_pre - sigma [Pa] on pi H (F + A)/lambda",
@@ -294,6 +299,7 @@ const dea_model dea_model_ring = {
     .equation = "one ring of film each for disc and annulus",
     .leaves_out = "how stress and stretch vary across the annulus",
     .lens = true,
+    .edge = true,
     .solve = solve,
     .along = along,
     .network = build,

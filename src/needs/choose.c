@@ -201,7 +201,8 @@ static dea_status bound_of(const dea_scene *scene, const dea_model *model, const
 static bool fits(const dea_scene *scene, const dea_engine *engine, const dea_model *model)
 {
     const bool kind = (model->lens || scene->actuator.kind == DEA_DOT) && dea_study_takes(dea_study_of(scene), model);
-    return kind && dea_crew_of(scene, engine, model).count > 0;
+    const bool loaded = scene->load.stiffness > 0.0 || scene->load.mass > 0.0;
+    return kind && (model->edge || !loaded) && dea_crew_of(scene, engine, model).count > 0;
 }
 
 /* Models that fit, the cheapest first, and of those that cost the same the nearest to the membrane: the last of the table. */

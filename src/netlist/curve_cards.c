@@ -54,16 +54,16 @@ static void write_sines(const dea_curve_cards *c, const dea_segment *segment)
         const double phase = 360.0 * (turns - floor(turns)) + tone->phase * 180.0 / DEA_PI;
         const double numbers[] = {i > 0 ? 0.0 : curve->offset, tone->amplitude, tone->frequency, from - c->begin, 0.0, phase};
         char plus[24], minus[24] = "0";
-        char name[24] = "source";
+        char name[24] = "SOURCE";
         snprintf(plus, sizeof plus, "%.20s", c->node);
         if (i > 0) {
-            snprintf(name, sizeof name, "wave%zu", i);
+            snprintf(name, sizeof name, "WAVE%zu", i);
             snprintf(plus, sizeof plus, "wave%zu", i);
         }
         if (i + 1 < curve->count) {
             snprintf(minus, sizeof minus, "wave%zu", i + 1);
         }
-        fprintf(c->out, "v%s %s %s sin(", name, plus, minus);
+        fprintf(c->out, "V%s %s %s sin(", name, plus, minus);
         for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
             fputs(k > 0 ? " " : "", c->out);
             c->number(c->out, numbers[k]);
@@ -114,7 +114,7 @@ static void write_chain(const dea_curve_cards *c)
 {
     const dea_curve *curve = &c->signal->curve;
     size_t links = 0;
-    fprintf(c->out, "vsource %s wave0 ", c->node);
+    fprintf(c->out, "VSOURCE %s wave0 ", c->node);
     c->number(c->out, curve->offset);
     fputc('\n', c->out);
     for (size_t i = c->first; i < c->first + c->count; i++) {
@@ -133,14 +133,14 @@ static void write_chain(const dea_curve_cards *c)
         }
         dea_dialect_source_end(c->dialect, c->out);
     }
-    fprintf(c->out, "vwaves wave%zu 0 0\n", links);
+    fprintf(c->out, "VWAVES wave%zu 0 0\n", links);
 }
 
 /* Makes begin and end of the curves time points. */
 static void write_corners(const dea_curve_cards *c)
 {
     const dea_segment *end = &c->signal->segments[c->first + c->count - 1];
-    fputs("* makes begin and end of the curves time points\nvdelay delay 0 pwl(0 0", c->out);
+    fputs("* makes begin and end of the curves time points\nVDELAY delay 0 pwl(0 0", c->out);
     for (size_t i = c->first + 1; i < c->first + c->count; i++) {
         fputs(i % 4 == 0 ? "\n+ " : " ", c->out);
         c->number(c->out, c->signal->segments[i].from - c->begin);
@@ -148,7 +148,7 @@ static void write_corners(const dea_curve_cards *c)
     }
     fputc(' ', c->out);
     c->number(c->out, end->to - c->begin + (c->signal->segments[c->first + 1].from - c->begin));
-    fputs(" 0)\nrdelay delay 0 1\n", c->out);
+    fputs(" 0)\nRDELAY delay 0 1\n", c->out);
 }
 
 void dea_curve_cards_write(const dea_curve_cards *c)

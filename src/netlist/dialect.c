@@ -1,5 +1,6 @@
 #include "netlist/dialect.h"
 
+#include <ctype.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -7,7 +8,7 @@ static const dea_dialect dialects[] = {
     {
         .name = "ngspice",
         .title = "ngspice",
-        .source = {"b", "b"},
+        .source = {"B", "B"},
         .equals = {" v=", " i="},
         .open = "",
         .close = "",
@@ -26,7 +27,7 @@ static const dea_dialect dialects[] = {
     {
         .name = "ltspice",
         .title = "LTspice",
-        .source = {"b", "b"},
+        .source = {"B", "B"},
         .equals = {" v=", " i="},
         .open = "",
         .close = "",
@@ -43,7 +44,7 @@ static const dea_dialect dialects[] = {
     {
         .name = "xyce",
         .title = "Xyce",
-        .source = {"b", "b"},
+        .source = {"B", "B"},
         .equals = {" v=", " i="},
         .open = "{",
         .close = "}",
@@ -62,7 +63,7 @@ static const dea_dialect dialects[] = {
     {
         .name = "pspice",
         .title = "PSpice",
-        .source = {"e", "g"},
+        .source = {"E", "G"},
         .equals = {" value=", " value="},
         .open = "{",
         .close = "}",
@@ -104,7 +105,11 @@ const dea_dialect *dea_dialect_find(const char *name)
 void dea_dialect_source_begin(const dea_dialect *dialect, FILE *out, dea_quantity quantity, const char *name, const char *plus,
                               const char *minus)
 {
-    fprintf(out, "%s%s %s %s%s%s", dialect->source[quantity], name, plus, minus, dialect->equals[quantity], dialect->open);
+    fputs(dialect->source[quantity], out);
+    for (; *name; name++) {
+        fputc(toupper((unsigned char)*name), out);
+    }
+    fprintf(out, " %s %s%s%s", plus, minus, dialect->equals[quantity], dialect->open);
 }
 
 void dea_dialect_source_end(const dea_dialect *dialect, FILE *out)

@@ -1,6 +1,7 @@
 /* What differs between the simulators that read our netlists: one table, so that no other place asks which simulator it is.
  *
- * All else stays within what they have in common: lower case, no indentation, numbers without suffixes, `.param name={...}`, the
+ * All else stays within what they have in common: names of elements in upper case, which editors of netlists want, all else in
+ * lower, no indentation, numbers without suffixes, `.param name={...}`, the
  * elements r c l v i g e f h k x, products instead of powers, min and max instead of conditions. */
 #ifndef DEA_DIALECT_H
 #define DEA_DIALECT_H
@@ -13,7 +14,7 @@
 typedef struct dea_dialect {
     const char *name;                 /* as on the command line, e.g. "ngspice" */
     const char *title;                /* as its makers write it */
-    const char *source[2];            /* letter of a behavioural source of voltage, of current: "b", or "e" and "g" */
+    const char *source[2];            /* letter of a behavioural source of voltage, of current: "B", or "E" and "G" */
     const char *equals[2];            /* what stands before its expression: " v=", " i=", or " value=" */
     const char *open, *close;         /* round the expression of a behavioural source */
     const char *left, *right;         /* round a parameter inside such an expression; brackets where it is put in as text */
@@ -34,7 +35,8 @@ size_t dea_dialect_count(void);
 const dea_dialect *dea_dialect_at(size_t index);
 const dea_dialect *dea_dialect_find(const char *name);
 
-/* A behavioural source from node @p plus to @p minus: begin, then the expression, then end. `bforce 0 edge i=` ... */
+/* A behavioural source from node @p plus to @p minus, its name in capitals: begin, then the expression, then end.
+ * `BFORCE 0 edge i=` ... */
 void dea_dialect_source_begin(const dea_dialect *dialect, FILE *out, dea_quantity quantity, const char *name, const char *plus,
                               const char *minus);
 void dea_dialect_source_end(const dea_dialect *dialect, FILE *out);

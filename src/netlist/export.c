@@ -1,52 +1,6 @@
 #include "netlist/export.h"
 
-#include <string.h>
-
 #include "study/study.h"
-
-static const dea_analogy analogies[] = {
-    {"mobility", "mobility analogy: v(edge) = velocity [m/s], current = force [N], compliance = inductor, mass = capacitor", 'c',
-     'l', false},
-    {"impedance", "impedance analogy: voltage = force [N], current = velocity [m/s], compliance = capacitor, mass = inductor",
-     'l', 'c', true},
-};
-
-enum { ANALOGIES = sizeof analogies / sizeof *analogies };
-
-const dea_analogy *dea_analogy_at(size_t index)
-{
-    return index < ANALOGIES ? &analogies[index] : NULL;
-}
-
-const dea_analogy *dea_analogy_find(const char *name)
-{
-    for (size_t i = 0; i < ANALOGIES; i++) {
-        if (strcmp(analogies[i].name, name) == 0) {
-            return &analogies[i];
-        }
-    }
-    return NULL;
-}
-
-void dea_export_share(dea_part_text *text)
-{
-    for (int i = 0; i < text->pool->count; i++) {
-        const dea_term *term = &text->pool->terms[i];
-        text->nodal[i] = text->moves[i] && term->operation >= DEA_ADD && !dea_expr_is_scaled(text->pool, i);
-    }
-}
-
-void dea_export_number(FILE *out, double value)
-{
-    dea_part_number(out, value);
-}
-
-void dea_export_parameter(FILE *out, const char *name, double value)
-{
-    fprintf(out, ".param %s=", name);
-    dea_part_number(out, value);
-    fputc('\n', out);
-}
 
 void dea_export_head(const dea_export *export, const char *meaning)
 {
@@ -62,7 +16,11 @@ static dea_status refuse_models(const dea_scene *scene, dea_error *error)
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "a netlist holds one model, the scene has %zu: choose one, --model %s",
                         scene->model_count, scene->models[0]->name);
     }
-    if (!scene->models[0]->network && !(scene->models[0]->membrane && scene->study == DEA_STUDY_SWEEP)) {
+    if (scene->models[0]->membrane && scene->study == DEA_STUDY_TRANSIENT) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the motion of the model %s is no netlist: --as subckt is its part",
+                        scene->models[0]->name);
+    }
+    if (!scene->models[0]->network && !scene->models[0]->membrane) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is not a network: --model lumped is one",
                         scene->models[0]->name);
     }

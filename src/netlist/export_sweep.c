@@ -6,7 +6,7 @@
 
 #include "engine/line.h"
 #include "netlist/export.h"
-#include "netlist/part_text.h"
+#include "netlist/netlist.h"
 #include "netlist/rings_line.h"
 #include "network/balance.h"
 #include "support/text.h"
@@ -40,8 +40,7 @@ typedef struct line_text {
     bool membrane;          /* a network of rings, else one node: */
     dea_network network;    /* owned */
     dea_balance balance;    /* owned */
-    dea_part_text text;     /* owned */
-    dea_expr elastic, load;
+    dea_still_cards cards;  /* owned */
     size_t from, to; /* points with an equilibrium, `to` excluded */
 } line_text;
 
@@ -101,16 +100,6 @@ static void find_stretch(line_text *l)
     l->w->left_out += l->w->points - (l->to - l->from);
 }
 
-/* The swept scalar moves as the displacement does: both are voltages. */
-static void move_symbol(dea_part_text *text)
-{
-    for (int i = 0; i < text->pool->count; i++) {
-        const dea_term *term = &text->pool->terms[i];
-        text->moves[i] = text->moves[i] || term->operation == DEA_SYMBOL ||
-                         (term->operation >= DEA_ADD && (text->moves[term->a] || text->moves[term->b]));
-    }
-}
-
 static void write_parameter_sum(const dea_dialect *dialect, FILE *out, const char *sign, const char *name)
 {
     fputs(sign, out);
@@ -125,14 +114,14 @@ void dea_export_axis(const dea_dialect *dialect, const dea_axis *axis, size_t fr
     dea_dialect_source_begin(dialect, out, DEA_VOLTAGE, "point", "point", "0");
     fprintf(out, "min(max(v(k),%zu),%zu)", from, to - 1);
     dea_dialect_source_end(dialect, out);
-    dea_export_parameter(out, "axis_from", axis->values[uniform ? 0 : from]);
+    dea_part_value(out, "axis_from", axis->values[uniform ? 0 : from]);
     for (size_t i = from + 1; i < to && !uniform; i++) {
         char name[32];
         snprintf(name, sizeof name, "axis_step%zu", i);
-        dea_export_parameter(out, name, axis->values[i] - axis->values[i - 1]);
+        dea_part_value(out, name, axis->values[i] - axis->values[i - 1]);
     }
     if (uniform) {
-        dea_export_parameter(out, "axis_span", axis->values[axis->count - 1] - axis->values[0]);
+        dea_part_value(out, "axis_span", axis->values[axis->count - 1] - axis->values[0]);
     }
     dea_dialect_source_begin(dialect, out, DEA_VOLTAGE, "axis", "axis", "0");
     write_parameter_sum(dialect, out, "", "axis_from");
@@ -149,54 +138,27 @@ void dea_export_axis(const dea_dialect *dialect, const dea_axis *axis, size_t fr
     dea_dialect_source_end(dialect, out);
 }
 
-static void write_forces(const line_text *l)
+static void write_guess(const line_text *l, const char *node, double value)
 {
     FILE *out = l->w->out;
-    for (int i = 0; i < l->network.element_count; i++) {
-        fprintf(out, "* %s: %s\n", l->network.elements[i].name, l->network.elements[i].meaning);
-    }
-    fputs("* elastic force of all springs [N], from the edge to the frame\n", out);
-    dea_dialect_source_begin(l->w->dialect, out, DEA_CURRENT, "spring", "edge", "0");
-    dea_part_text_write(&l->text, l->elastic);
-    dea_dialect_source_end(l->w->dialect, out);
-    fputs("* electrostatic force f_dea [N], Eq. 21, onto the edge\n", out);
-    dea_dialect_source_begin(l->w->dialect, out, DEA_CURRENT, "force", "0", "edge");
-    dea_part_text_write(&l->text, l->load);
-    dea_dialect_source_end(l->w->dialect, out);
-}
-
-static void write_guess(const line_text *l, const char *node, int number, double value)
-{
-    FILE *out = l->w->out;
-    fprintf(out, " v(xline%zu%s%s", l->w->lines, l->w->dialect->inside, node);
-    fprintf(out, number >= 0 ? "%d)=" : ")=", number);
-    dea_export_number(out, value);
+    fprintf(out, " v(xline%zu%s%s)=", l->w->lines, l->w->dialect->inside, node);
+    dea_part_number(out, value);
 }
 
 /* Newton's start of the first point. */
-static dea_status write_start(const line_text *l, dea_error *error)
+static void write_start(line_text *l)
 {
-    FILE *out = l->w->out;
+    char inside[32];
     const double u = displacement_at(l, l->from);
-    double *values = malloc(((size_t)l->network.pool.count + 1) * sizeof *values);
-    if (!values) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
-    }
-    dea_pool_values(&l->network.pool, symbol_at(l, l->from), u, values);
-    fprintf(out, ".nodeset v(edge%zu)=", l->w->lines);
-    dea_export_number(out, u);
+    fprintf(l->w->out, ".nodeset v(edge%zu)=", l->w->lines);
+    dea_part_number(l->w->out, u);
     if (l->axis) {
-        write_guess(l, "point", -1, (double)l->from);
-        write_guess(l, "axis", -1, symbol_at(l, l->from));
+        write_guess(l, "point", (double)l->from);
+        write_guess(l, "axis", symbol_at(l, l->from));
     }
-    for (int i = 0; i < l->network.pool.count; i++) {
-        if (l->text.written[i] && l->text.moves[i]) {
-            write_guess(l, "x", i, values[i]);
-        }
-    }
-    fputc('\n', out);
-    free(values);
-    return DEA_OK;
+    snprintf(inside, sizeof inside, "xline%zu%s", l->w->lines, l->w->dialect->inside);
+    dea_still_cards_write_start(&l->cards, inside, symbol_at(l, l->from), u);
+    fputc('\n', l->w->out);
 }
 
 /* Where the line lies on the other axes, and what it leaves out. */
@@ -231,26 +193,19 @@ static dea_status write_membrane(line_text *l, dea_error *error)
 static dea_status write_line(line_text *l, dea_error *error)
 {
     FILE *out = l->w->out;
-    static const char *const symbols[] = {"v(axis)"};
-    if (!dea_part_text_open(&l->text, &l->network.pool, l->w->dialect, out)) {
+    if (!dea_still_cards_open(&l->network, symbol_at(l, l->from), l->w->dialect, out, &l->cards)) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
     }
-    l->text.node = "v(edge)";
-    l->text.symbols = symbols;
-    move_symbol(&l->text);
-    dea_export_share(&l->text);
-    dea_part_text_use(&l->text, l->elastic);
-    dea_part_text_use(&l->text, l->load);
     write_place(l);
     fprintf(out, ".subckt line%zu k edge\n", l->w->lines);
-    dea_part_text_parameters(&l->text);
+    dea_still_cards_write_numbers(&l->cards);
     if (l->axis) {
         dea_export_axis(l->w->dialect, l->axis, l->from, l->to, out);
     }
-    dea_part_text_nodes(&l->text);
-    write_forces(l);
-    fprintf(out, ".ends\nxline%zu k edge%zu line%zu\n", l->w->lines, l->w->lines, l->w->lines);
-    return write_start(l, error);
+    dea_still_cards_write_network(&l->cards, 0);
+    fprintf(out, ".ends\nXLINE%zu k edge%zu line%zu\n", l->w->lines, l->w->lines, l->w->lines);
+    write_start(l);
+    return DEA_OK;
 }
 
 /* Size of the film at a point. */
@@ -305,8 +260,6 @@ static dea_status visit_line(void *user, const dea_scene *scene, const dea_line 
     l.membrane = scene->models[0]->membrane;
     dea_status status = l.membrane ? DEA_OK : dea_network_build(scene, scene->models[0], line->axis, &l.network, error);
     if (status == DEA_OK && !l.membrane) {
-        l.elastic = dea_network_elastic(&l.network);
-        l.load = dea_network_load(&l.network);
         status = dea_balance_open(&l.network, &l.balance, error);
     }
     if (status == DEA_OK) {
@@ -320,7 +273,7 @@ static dea_status visit_line(void *user, const dea_scene *scene, const dea_line 
             fprintf(w->out, "* line %zu has no point with an equilibrium\n", w->lines);
         }
     }
-    dea_part_text_close(&l.text);
+    dea_still_cards_close(&l.cards);
     dea_balance_close(&l.balance);
     dea_network_free(&l.network);
     return status;
@@ -330,11 +283,11 @@ static void write_tolerances(const writer *w)
 {
     if (w->dialect->solver) {
         fprintf(w->out, "* tolerances of one point\n%s reltol=", w->dialect->solver);
-        dea_export_number(w->out, fmin(1e-8, 0.1 * w->export->scene->accuracy));
+        dea_part_number(w->out, fmin(1e-8, 0.1 * w->export->scene->accuracy));
         fputs(" abstol=", w->out);
-        dea_export_number(w->out, 1e-18 * w->force);
+        dea_part_number(w->out, 1e-18 * w->force);
         fputs(" vntol=", w->out);
-        dea_export_number(w->out, 1e-18 * w->length);
+        dea_part_number(w->out, 1e-18 * w->length);
         fputc('\n', w->out);
     }
 }
@@ -344,7 +297,7 @@ static void write_analysis(const writer *w, const char *names)
     FILE *out = w->out;
     write_tolerances(w);
     fputs(w->dialect->sweep, out);
-    fputs("* the sweep over the index of the points\nvindex k 0 0\n", out);
+    fputs("* the sweep over the index of the points\nVINDEX k 0 0\n", out);
     if (w->export->dialect->save) {
         fprintf(out, "%s%s\n", w->export->dialect->save, names);
     }
@@ -353,8 +306,8 @@ static void write_analysis(const writer *w, const char *names)
         fprintf(out, "* every row number n %zu, n = 0, 1, 2 ..., is a point; those between lead from one to the next\n",
                 w->parts);
     }
-    fprintf(out, ".dc vindex 0 %zu ", w->points - 1);
-    dea_export_number(out, 1.0 / (double)w->parts);
+    fprintf(out, ".dc VINDEX 0 %zu ", w->points - 1);
+    dea_part_number(out, 1.0 / (double)w->parts);
     fputs("\n.end\n", out);
 }
 

@@ -1,18 +1,34 @@
-/* Writes the moving network in the mobility analogy: velocity of the edge -> voltage, force -> current, compliance -> inductor,
- * mass -> capacitor to ground, mechanical resistance r -> resistor 1/r. Only what the scene has becomes an element. */
+/* The moving network of a scene as cards, in one of the two analogies: what the engine `ngspice` runs and what is exported is this
+ * one text. It names its numbers, which stand in `.param` cards before it, so that it is the same in all units and from every
+ * start; sources, steps, tolerances and what is read off are the deck behind it. Only what the scene has becomes an element. */
 #ifndef DEA_MOBILITY_H
 #define DEA_MOBILITY_H
 
-#include "drive/signal.h"
+#include "netlist/part_text.h"
 #include "network/dynamics.h"
 
+/* How mechanical quantities become electrical ones. Mobility: velocity -> voltage, force -> current, elements between the edge
+ * and the frame. Impedance: force -> voltage, velocity -> current, the same elements as links of one loop. */
+typedef struct dea_analogy {
+    const char *name;    /* as on the command line */
+    const char *meaning; /* one line for the head of a netlist */
+    char mass, spring;   /* letters of the elements */
+    bool loop;           /* elements are links of a loop; else they lie between edge and frame */
+} dea_analogy;
+
+/* Analogy number @p index, the default first, NULL past the end; by name, NULL if there is none. */
+const dea_analogy *dea_analogy_at(size_t index);
+const dea_analogy *dea_analogy_find(const char *name);
+
+/* What the cards are written from. */
 typedef struct dea_mobility {
     const dea_dynamics *dynamics;              /* borrowed */
     dea_network network;                       /* owned: built under 1 V, so that the force is phi */
+    dea_quantities quantities;                 /* its symbols */
     dea_network_stress stresses[DEA_STRESSES]; /* S_a and B_a, as many as the dynamics have */
     dea_expr tension, push;                    /* G, phi */
     bool tense;                                /* there is a G */
-    dea_expr resistance;                       /* tau_KV sum B_a S_a' [N s/m], where there is a damper */
+    dea_expr resistance;                       /* sum B_a S_a', which a damper scales by tau_KV [N/m] */
     double stiffness;                          /* of all linear springs [N/m]; NAN where the springs are hyperelastic */
     double rest;                               /* capacitance of the film at rest [F] */
     bool displaced;                            /* set by dea_mobility_displace() */
@@ -25,45 +41,14 @@ typedef struct dea_mobility_state {
     double z[DEA_RELAXED_MAX]; /* relaxed stresses of the branches, as the dynamics number them */
 } dea_mobility_state;
 
-/* One piece of a transient. */
-typedef struct dea_mobility_piece {
-    const dea_signal *signal;
-    size_t segment;     /* of `from` */
-    double from, to;    /* [s] */
-    double step;        /* longest time step [s] */
-    double parts;       /* an edge that is shorter than so many steps is cut into as many parts by corners */
-    double scale;       /* size of a displacement, for tolerances [m] */
-    double force;       /* that goes with it, for tolerances [N] */
-    double tolerance;   /* of Newton's method in a step, relative [1] */
-    double loose;       /* absolute tolerances over the tightest that rounding is thought to allow, >= 1 */
-    double mass;        /* [kg] */
-    double conductance; /* 0: none; resistor beside the mass that fits the rule's damping to the film's [N s/m] */
-    dea_mobility_state start;
-} dea_mobility_piece;
-
-/* A small-signal network about an equilibrium. */
-typedef struct dea_mobility_bias {
-    double u;       /* [m] */
-    double voltage; /* of the film [V] */
-} dea_mobility_bias;
-
-/* Frequencies: points_per_decade of a decade from `from` on; or, where they are 0, `count` evenly, or one alone. */
-typedef struct dea_mobility_band {
-    double from, to; /* [Hz] */
-    size_t points_per_decade, count;
-} dea_mobility_band;
-
-/* Most vectors of a run: time, displacement, velocity, charge, branches. */
-enum { DEA_MOBILITY_VECTORS = 4 + DEA_RELAXED_MAX, DEA_MOBILITY_NAME = 24 };
-
-typedef struct dea_mobility_vectors {
-    char names[DEA_MOBILITY_VECTORS][DEA_MOBILITY_NAME];
-    size_t count;
-} dea_mobility_vectors;
-
-/* Builds what the netlists are written from; the caller ends it with dea_mobility_close(), also after a failure. */
+/* Builds what the cards are written from; the caller ends it with dea_mobility_close(), also after a failure. */
 dea_status dea_mobility_open(const dea_scene *scene, const dea_dynamics *dynamics, dea_mobility *mobility, dea_error *error);
 void dea_mobility_close(dea_mobility *mobility);
+
+/* The network of a transient as engine and exports write it, with the dynamics behind it; the caller ends both, also after a
+ * failure. */
+dea_status dea_mobility_prepare(const dea_scene *scene, const dea_model *model, const dea_analogy *analogy, dea_dynamics *dynamics,
+                                dea_mobility *mobility, dea_error *error);
 
 /* Transients of a film without mass and damper in the displacement form from here on: nothing holds its velocity, a difference of
  * displacements over a step that drowns in rounding where steps are short. */
@@ -75,16 +60,55 @@ typedef struct dea_stress_node {
 } dea_stress_node;
 dea_stress_node dea_mobility_stress_node(const dea_dynamics *dynamics, size_t index);
 
-/* Netlist of one piece of a transient; on DEA_OK the caller frees *text. */
-dea_status dea_mobility_write(const dea_mobility *mobility, const dea_mobility_piece *piece, char **text, dea_error *error);
-/* The vectors of its plot, time first. */
-dea_mobility_vectors dea_mobility_vectors_of(const dea_mobility *mobility);
-/* The states of point @p index from columns in the order of the vectors. */
-dea_mobility_state dea_mobility_read(const dea_mobility *mobility, const double *const *columns, size_t index);
+/* Which text. */
+typedef struct dea_cards_form {
+    const dea_dialect *dialect;
+    const dea_analogy *analogy;
+    bool numbers; /* parameters as numbers; else as formulas of those of the scene */
+} dea_cards_form;
 
-/* Small-signal netlist about a bias, over a band; on DEA_OK the caller frees *text. Its vectors are `lspring#branch`, the current
- * of the spring, and `vsource#branch`; the source has 1 V. */
-dea_status dea_mobility_write_small(dea_dynamics *dynamics, const dea_mobility_bias *bias, const dea_mobility_band *band,
-                                    char **text, dea_error *error);
+/* Numbers of the elements that are not the network's own. */
+typedef struct dea_cards_numbers {
+    dea_mobility_state start;
+    double mass; /* [kg] */
+    double unit; /* in which currents of the port are counted [A] */
+} dea_cards_numbers;
+
+/* A text on its way out. */
+typedef struct dea_cards {
+    dea_cards_form form;
+    FILE *out;                    /* borrowed, as the next two */
+    const dea_mobility *mobility; /* NULL: small signals */
+    const dea_dynamics *dynamics;
+    dea_part_text text;  /* owned */
+    const char **symbols; /* owned: names of the quantities */
+    double *values;       /* owned: of all terms at rest; dea_cards_start(): at the start */
+    char node[64];        /* what stands for the displacement */
+    int links;            /* of the loop so far */
+    char ends[2][16];     /* nodes between which the next element of the mechanics lies */
+} dea_cards;
+
+/* Starts a transient's text; false without memory. The caller ends it with dea_cards_close() in either case. */
+bool dea_cards_open(const dea_mobility *mobility, const dea_cards_form *form, FILE *out, dea_cards *cards);
+void dea_cards_close(dea_cards *cards);
+/* In this order: the numbers, the network, and behind it where Newton starts in the first step, ` v(node)=value` of every node. */
+void dea_cards_write_numbers(dea_cards *cards, const dea_cards_numbers *numbers);
+void dea_cards_write_network(dea_cards *cards);
+void dea_cards_write_start(dea_cards *cards, const dea_cards_numbers *numbers, double source);
+/* Film voltage that goes with the start [V]. */
+double dea_cards_film_voltage(dea_cards *cards, const dea_cards_numbers *numbers, double source);
+
+/* A small-signal network about an equilibrium. */
+typedef struct dea_mobility_bias {
+    double u;       /* [m] */
+    double voltage; /* of the film [V] */
+} dea_mobility_bias;
+
+/* Its numbers and its network; the source of the port is not among them. v(disp) is the displacement. */
+void dea_cards_write_small(dea_dynamics *dynamics, const dea_mobility_bias *bias, const dea_cards_form *form, FILE *out);
+
+/* First and last line of every network. */
+#define DEA_CARDS_BEGIN "* the network\n"
+#define DEA_CARDS_END "* end of the network\n"
 
 #endif

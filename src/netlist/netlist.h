@@ -1,9 +1,30 @@
-/* Writes the network of a line of points as a netlist that one DC sweep solves. */
+/* The network of a line of points in displacement form, v(edge) = displacement, current = force, as cards: what the engine
+ * `ngspice` sweeps and what is exported is this one text. */
 #ifndef DEA_NETLIST_H
 #define DEA_NETLIST_H
 
 #include "deaspice/scene.h"
+#include "netlist/part_text.h"
 #include "network/network.h"
+
+/* A text on its way out. */
+typedef struct dea_still_cards {
+    const dea_network *network; /* borrowed */
+    dea_expr elastic, load;
+    dea_part_text text; /* owned */
+    double *values;     /* owned: of all terms where the line begins, at rest */
+} dea_still_cards;
+
+/* Starts the text of a network, whose pool grows; @p symbol is the first value of the axis. False without memory. The caller ends it
+ * with dea_still_cards_close() in either case. */
+bool dea_still_cards_open(dea_network *network, double symbol, const dea_dialect *dialect, FILE *out, dea_still_cards *cards);
+void dea_still_cards_close(dea_still_cards *cards);
+/* The numbers, then the network between DEA_CARDS_BEGIN and DEA_CARDS_END; the axis is v(axis). @p ramp > 0: the load grows with
+ * v(k)/ramp. */
+void dea_still_cards_write_numbers(dea_still_cards *cards);
+void dea_still_cards_write_network(dea_still_cards *cards, size_t ramp);
+/* ` v(name)=value` of its nodes at a place; @p inside stands before the names. */
+void dea_still_cards_write_start(dea_still_cards *cards, const char *inside, double symbol, double u);
 
 /* How the netlist is driven. */
 typedef struct dea_netlist_study {
@@ -18,7 +39,7 @@ typedef struct dea_netlist_study {
 /* Most values of an axis that is not uniform in one netlist. */
 enum { DEA_NETLIST_LIST = 64 };
 
-/* Writes the netlist; on DEA_OK the caller frees *text. One card a line, from the title to `.end`. */
+/* Writes the netlist that the engine runs; on DEA_OK the caller frees *text. One card a line, from the title to `.end`. */
 dea_status dea_netlist_write(dea_network *network, const dea_netlist_study *study, char **text, dea_error *error);
 
 #endif

@@ -1,6 +1,5 @@
 #include "netlist/part.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -8,7 +7,9 @@
 
 #include "expression/derivative.h"
 #include "expression/formula.h"
+#include "model/models.h"
 #include "netlist/part_text.h"
+#include "netlist/rings_part.h"
 #include "network/network.h"
 #include "support/text.h"
 
@@ -26,13 +27,14 @@ enum {
     LAYERS,
     VOLTAGE,  /* always replaced by a number */
     CONSTANT, /* the first of those of the law */
-    SYMBOLS = CONSTANT + DEA_LAW_CONSTANTS
+    DAMP = CONSTANT + DEA_LAW_CONSTANTS, /* made by the checks; of the membrane alone */
+    SYMBOLS
 };
 
 static const char *const symbol_names[SYMBOLS] = {"radius",  "cover",  "thick", "stretch", "eps_r",
                                                   "y_given", "y_free", "rho",   "areal",   "layer", "",
                                                   "film1",   "film2",  "film3", "film4",   "film5",
-                                                  "film6",   "film7",  "film8"};
+                                                  "film6",   "film7",  "film8", "damp"};
 _Static_assert(DEA_LAW_CONSTANTS == 8, "one name a constant");
 
 typedef struct part {
@@ -43,7 +45,8 @@ typedef struct part {
     size_t constants; /* of the law, in use */
     bool linear;
     size_t branches;
-    dea_network network; /* owned */
+    dea_network network; /* owned; of the membrane that of `ring`, for ranges and numbers at rest */
+    dea_rings_part *rings; /* owned; NULL: one node */
     dea_part_text text;  /* owned */
     /* expressions of the displacement and the symbols, the voltage taken out */
     dea_network_stress stresses[DEA_NETWORK_STRESSES]; /* S_a and their levers B_a */
@@ -78,6 +81,7 @@ static const form *form_of(const dea_model *model)
         {"lame", "_lame", "Lame's disc and annulus with electrostatic softening", false, 1.0, 1e-6},
         {"coverage", "_hyper", "hyperelastic disc and annulus, Eq. 18, quasi-linear relaxation", false, 1e6, 1.0},
         {"ring", "_ring", "hyperelastic disc and annulus, one ring of membrane each, quasi-linear relaxation", false, 1e6, 1.0},
+        {"field", "_field", "the exact membrane as a network of rings, quasi-linear relaxation", false, 1e6, 1.0},
     };
     for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
         if (strcmp(model->name, forms[i].model) == 0) {
@@ -104,8 +108,8 @@ static dea_expr at_volts(dea_pool *pool, dea_expr ref, double volts)
 
 static dea_symbols symbols_of(dea_pool *pool, const part *p)
 {
-    dea_expr s[SYMBOLS];
-    for (int i = 0; i < SYMBOLS; i++) {
+    dea_expr s[DAMP];
+    for (int i = 0; i < DAMP; i++) {
         s[i] = dea_expr_symbol(pool, i);
     }
     dea_symbols symbols = {.pool = pool,
@@ -115,6 +119,7 @@ static dea_symbols symbols_of(dea_pool *pool, const part *p)
                            .coverage = s[COVER],
                            .film_thickness = MUL(s[LAYERS], s[THICK]),
                            .layers = s[LAYERS],
+                           .load = NUM(0.0),
                            .prestretch = s[STRETCH],
                            .permittivity = MUL(SCALE(DEA_EPSILON_0, s[EPS_R]), SQUARE(s[LAYERS])),
                            .breakdown = NUM(INFINITY),
@@ -153,7 +158,7 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is made");
     }
     const dea_symbols symbols = symbols_of(pool, p);
-    const dea_status status = dea_network_build_symbols(&symbols, model, network, error);
+    const dea_status status = dea_network_build_symbols(&symbols, model->membrane ? &dea_model_ring : model, network, error);
     if (status != DEA_OK) {
         return status;
     }
@@ -175,6 +180,14 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
     p->mass = moving_mass(&symbols);
     p->divide = MUL(symbols.frame_radius, symbols.coverage);
     p->width = dea_symbols_annulus_width(&symbols);
+    if (model->membrane && !pool->exhausted) {
+        p->rings = malloc(sizeof *p->rings);
+        if (!p->rings) {
+            return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is made");
+        }
+        const dea_rings_numbers numbers = {dea_expr_symbol(pool, RHO), dea_expr_symbol(pool, AREAL), dea_expr_symbol(pool, DAMP)};
+        dea_rings_part_make(&symbols, &numbers, p->branches, p->rings);
+    }
     p->taut = calloc((size_t)network->tension_count + 1, sizeof *p->taut);
     p->loosen = calloc((size_t)network->tension_count + 1, sizeof *p->loosen);
     if (!p->taut || !p->loosen) {
@@ -273,19 +286,6 @@ static void check_optics(const part *p, int *count)
     line(p, ".param flat={height*height/(a_lens*a_lens)}");
 }
 
-/* Name of a constant as a parameter: in lower case, of a list with the number of its entry. */
-void dea_part_constant_name(const dea_law *law, size_t i, char name[DEA_PART_NAME])
-{
-    char number[24] = "";
-    if (law->entries > 1) {
-        snprintf(number, sizeof number, "%zu", i / law->constant_count + 1);
-    }
-    snprintf(name, DEA_PART_NAME, "%s%s", law->constants[i % law->constant_count].name, number);
-    for (char *c = name; *c; c++) {
-        *c = (char)tolower((unsigned char)*c);
-    }
-}
-
 /* Constants of the law, moduli in the part's unit of stress: those with a bound of their own are put behind it. */
 static void check_law(const part *p, const form *of, int *count)
 {
@@ -293,7 +293,7 @@ static void check_law(const part *p, const form *of, int *count)
     line(p, "* constants of the law, moduli in units of %.0f Pa", of->stress);
     for (size_t i = 0; i < p->constants; i++) {
         const dea_constant *constant = &p->law->constants[i % p->law->constant_count];
-        dea_part_constant_name(p->law, i, name);
+        dea_constant_name(p->law, i, name);
         snprintf(raw, sizeof raw, constant->modulus ? "%s/%.0f" : "%s", name, of->stress);
         if (constant->low == 0.0) {
             const bool small = constant->modulus && of->stress > 1.0;
@@ -362,12 +362,19 @@ static void declare(part *p)
 {
     dea_part_text *text = &p->text;
     const dea_network *network = &p->network;
-    const dea_expr all[] = {p->push, p->capacitance, p->c_rest, p->k_rest, p->field,
-                            p->mass, p->divide,      p->width,  p->linear ? p->push_slope : p->tension};
+    const struct {
+        const char *root;
+        dea_expr ref;
+    } all[] = {{"push", p->push},      {"capacity", p->capacitance}, {"capacity", p->c_rest},
+               {"stiffness", p->k_rest}, {"field", p->field},        {"mass", p->mass},
+               {"size", p->divide},    {"size", p->width},           {"rest", p->linear ? p->push_slope : p->tension}};
+    dea_part_text_call(text, network);
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-        dea_part_text_use(text, all[i]);
+        dea_part_text_root(text, all[i].root);
+        dea_part_text_use(text, all[i].ref);
     }
     for (size_t a = 0; a < p->stress_count && !p->linear; a++) {
+        dea_part_text_root(text, "lever");
         dea_part_text_use(text, p->stresses[a].lever);
         dea_part_text_use(text, p->stresses[a].stress);
     }
@@ -377,10 +384,12 @@ static void declare(part *p)
         }
     }
     for (int i = 0; i < network->tension_count; i++) {
+        dea_part_text_root(text, "taut");
         dea_part_text_use(text, p->taut[i]);
         dea_part_text_use(text, p->loosen[i]);
     }
     for (size_t a = 0; a < p->stress_count && !p->linear; a++) {
+        dea_part_text_root(text, "damping");
         dea_part_text_use_as_factor(text, p->slopes[a]);
     }
 }
@@ -430,12 +439,12 @@ static void write_port(const part *p)
 {
     line(p, "* film: v(film) = charge/c_rest on a capacitor of c_rest, whose current is d(C U)/dt; v(plate) is this current [mA]");
     source(p, DEA_VOLTAGE, "charge", "film", "0", "v(plate)+[ok]*v(p,n)*[]/[c_rest]", p->capacitance);
-    line(p, ".param i_film={1e-3*many}\ncfilm film plate {c_rest}\ngsense plate 0 plate 0 1e-3\ngfilm p n plate 0 {i_film}");
+    line(p, ".param i_film={1e-3*many}\nCFILM film plate {c_rest}\nGSENSE plate 0 plate 0 1e-3\nGFILM p n plate 0 {i_film}");
     line(p, "* conductance of the leakage [S], 0 without a resistance");
-    line(p, ".param leak={many*r_leak/(r_leak*r_leak+1e-30)}\ngleak p n p n {leak}");
+    line(p, ".param leak={many*r_leak/(r_leak*r_leak+1e-30)}\nGLEAK p n p n {leak}");
     line(p, "* electrostatic force [N] onto the edge, (1/2) U^2 dC/du");
     source(p, DEA_VOLTAGE, "force", "force", "0", "[ok]*[]*v(p,n)*v(p,n)", p->push);
-    line(p, "gforce 0 edge force 0 {many}");
+    line(p, "GFORCE 0 edge force 0 {many}");
 }
 
 /* The velocity enters with a large factor, so that pivoting finds it from the integrator and not from a difference of forces:
@@ -446,7 +455,7 @@ static void write_integrator(FILE *out, const char *from, const char *to)
         out,
         "* u = displacement [um], the integral of the velocity; it leaks 1e-9 of itself a second, so that springs in parallel\n"
         "* have an operating point\n"
-        "gdisp 0 u %s %s 1e6\ncdisp u 0 1\ngdrift u 0 u 0 1e-9\n",
+        "GDISP 0 u %s %s 1e6\nCDISP u 0 1\nGDRIFT u 0 u 0 1e-9\n",
         from, to);
 }
 
@@ -454,19 +463,24 @@ static void write_displacement(const part *p)
 {
     write_integrator(p->out, "edge", "0");
     line(p, "* holds the edge where a parameter is out of its range [N/um]");
-    line(p, ".param hold={1-ok}\ngsafe edge 0 u 0 {hold}");
+    line(p, ".param hold={1-ok}\nGSAFE edge 0 u 0 {hold}");
     line(p,
          "* mass that moves with the edge [kg]; a capacitor of a millionth of it, so that the tolerance of currents, 1e-12, is");
     line(p, "* one of 1e-6 N: the force of inertia is 0 at rest, where a kink of the voltage would ask for steps without end");
-    line(p, ".param f_mass={1e6*many}\nemass m1 0 edge 0 1e-6\ncmass m1 m2 {inertia}\nvmass m2 0 0\nfmass edge 0 vmass {f_mass}");
+    line(p, ".param f_mass={1e6*many}\nEMASS m1 0 edge 0 1e-6\nCMASS m1 m2 {inertia}\nVMASS m2 0 0\nFMASS edge 0 VMASS {f_mass}");
 }
+
+/* What tells the elements and nodes of several stresses apart; nothing where there is one. */
+typedef struct mark {
+    char element[2], node[2];
+} mark;
 
 /* z relaxes to what the branch follows with its time. A branch without a share follows at once: its state would only be one more
  * pole. */
-static void write_relaxation(const part *p, size_t i, const char *follows, const char *mark)
+static void write_relaxation(const part *p, size_t i, const char *follows, const mark *m)
 {
-    line(p, "grelax%zu%s 0 z%zu%s %s z%zu%s 1\ncrelax%zu%s z%zu%s 0 {c_relax%zu}", i, mark, i, mark, follows, i, mark, i, mark, i, mark,
-         i);
+    line(p, "GRELAX%zu%s 0 z%zu%s %s z%zu%s 1\nCRELAX%zu%s z%zu%s 0 {c_relax%zu}", i, m->element, i, m->node, follows, i, m->node, i,
+         m->element, i, m->node, i);
 }
 
 static void write_relaxation_time(const part *p, size_t i)
@@ -480,42 +494,44 @@ static void write_linear_springs(const part *p)
     const char *k = dea_part_text_parameter(&p->text, p->k_rest, name);
     line(p, "* springs [N/um], damper [N s/m], branches: z relaxes to u with the time of the branch");
     line(p, ".param k_um={1e-6*many*%s}\n.param r_damp={many*damp*%s}", k, k);
-    line(p, "gspring edge 0 u 0 {k_um}\ngdamp edge 0 edge 0 {r_damp}");
+    line(p, "GSPRING edge 0 u 0 {k_um}\nGDAMP edge 0 edge 0 {r_damp}");
     for (size_t i = 1; i <= p->branches; i++) {
         line(p, ".param k_um%zu={share%zu*k_um}", i, i);
         write_relaxation_time(p, i);
-        write_relaxation(p, i, "u", "");
-        line(p, "gbranch%zu edge 0 u z%zu {k_um%zu}", i, i, i);
+        write_relaxation(p, i, "u", &(mark){"", ""});
+        line(p, "GBRANCH%zu edge 0 u z%zu {k_um%zu}", i, i, i);
     }
 }
 
 /* Stress number @p a with its branches and the forces of both and of the damper. */
 static void write_stress(const part *p, size_t a)
 {
-    char mark[16] = "", node[32], name[32], text[64];
-    if (p->stress_count > 1) { /* its nodes and elements bear a letter, those of a single stress none */
-        snprintf(mark, sizeof mark, "%c", 'a' + (int)a);
+    mark m = {"", ""};
+    char node[32], name[32], text[64];
+    if (p->stress_count > 1) {
+        m = (mark){{(char)('A' + (int)a), '\0'}, {(char)('a' + (int)a), '\0'}};
     }
-    snprintf(node, sizeof node, "s%s", mark);
-    snprintf(name, sizeof name, "stress%s", mark);
+    snprintf(node, sizeof node, "s%s", m.node);
+    snprintf(name, sizeof name, "stress%s", m.node);
     source(p, DEA_VOLTAGE, name, node, "0", "[]", p->stresses[a].stress);
     for (size_t i = 1; i <= p->branches; i++) {
         if (a == 0) {
             write_relaxation_time(p, i);
         }
-        write_relaxation(p, i, node, mark);
-        line(p, "ebranch%zu%s b%zu%s b%zu%s %s z%zu%s {share%zu}", i, mark, i, mark, i - 1, mark, node, i, mark, i);
+        write_relaxation(p, i, node, &m);
+        line(p, "EBRANCH%zu%s b%zu%s b%zu%s %s z%zu%s {share%zu}", i, m.element, i, m.node, i - 1, m.node, node, i, m.node,
+             i);
     }
-    line(p, "ebranch0%s b0%s 0 %s 0 1\n* force of springs and branches, and of the damper, tau B dS/du times the velocity [N]", mark, mark,
-         node);
+    line(p, "EBRANCH0%s b0%s 0 %s 0 1\n* force of springs and branches, and of the damper, tau B dS/du times the velocity [N]", m.element,
+         m.node, node);
     if (a == 0) {
         line(p, ".param a_um={1e6*many}\n.param r_damp={damp*a_um}");
     }
-    snprintf(name, sizeof name, "spring%s", mark);
-    snprintf(text, sizeof text, "[a_um]*[]*v(b%zu%s)", p->branches, mark);
+    snprintf(name, sizeof name, "spring%s", m.node);
+    snprintf(text, sizeof text, "[a_um]*[]*v(b%zu%s)", p->branches, m.node);
     source(p, DEA_CURRENT, name, "edge", "0", text, p->stresses[a].lever);
     /* an iterate whose velocity runs away would overflow the product, which ends a run instead of shortening its step */
-    snprintf(name, sizeof name, "damper%s", mark);
+    snprintf(name, sizeof name, "damper%s", m.node);
     source(p, DEA_CURRENT, name, "edge", "0", "[r_damp]*[]*[]*min(max(v(edge),-1e3),1e3)", p->stresses[a].lever, p->slopes[a]);
 }
 
@@ -535,10 +551,10 @@ static void write_hyperelastic_springs(const part *p)
 static void write_outputs(const part *p)
 {
     line(p, "* to be read: strain [1], true field [V/um]");
-    line(p, "estrain strain 0 u 0 {per_um}");
+    line(p, "ESTRAIN strain 0 u 0 {per_um}");
     source(p, DEA_VOLTAGE, "field", "field", "0", "[ok]*1e-6*[]*v(p,n)", p->field);
     line(p, "* capacitance [pF] and charge [nC] of all films side by side");
-    line(p, ".param c_scale={1e12*many}\n.param q_scale={1e9*many*c_rest}\nestored q 0 film plate {q_scale}");
+    line(p, ".param c_scale={1e12*many}\n.param q_scale={1e9*many*c_rest}\nESTORED q 0 film plate {q_scale}");
     source(p, DEA_VOLTAGE, "capacity", "c", "0", "[c_scale]*[]", p->capacitance);
     line(p, "* bad = 1: a parameter out of its range, or no stable equilibrium of the relaxed film here (pull-in)");
     source(p, DEA_VOLTAGE, "outside", "outside", "0", "max(v(u)-[u_high],[u_low]-v(u))");
@@ -573,19 +589,66 @@ static void write_optics(const part *p)
            "[f_height]*((1+v(strain))*(1+v(strain))+[flat]*v(eta)*v(eta))/max(v(eta),1e-3)");
 }
 
+/* What is declared of the membrane: the numbers at rest, the ranges, the rings. */
+static void declare_rings(part *p)
+{
+    const dea_expr all[] = {p->c_rest, p->k_rest, p->divide, p->width};
+    dea_rings_part_declare(p->rings, &p->text);
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        dea_part_text_use(&p->text, all[i]);
+    }
+    for (int i = 0; i < p->network.range_count; i++) {
+        if (is_made(p, p->network.range[i])) {
+            dea_part_text_use(&p->text, p->network.range[i]);
+        }
+    }
+}
+
+/* Film and outputs of the membrane; v(swell) = C/c_rest - 1. */
+static void write_rings(part *p)
+{
+    line(p, ".param still={max(1-rho*1e30,0)*max(1-areal*1e30,0)*max(1-retard*1e30,0)}\n.param damp={retard+1e-9*still}");
+    for (size_t i = 1; i <= p->branches; i++) {
+        write_relaxation_time(p, i);
+    }
+    dea_rings_part_write(p->rings, &p->text);
+    line(p, "* film: v(film) = charge/c_rest on a capacitor of c_rest; v(plate) is its current [mA]");
+    source(p, DEA_VOLTAGE, "charge", "film", "0", "v(plate)+[ok]*v(p,n)*(1+v(swell))");
+    line(p, ".param i_film={1e-3*many}\ncfilm film plate {c_rest}\ngsense plate 0 plate 0 1e-3\ngfilm p n plate 0 {i_film}");
+    line(p, ".param leak={many*r_leak/(r_leak*r_leak+1e-30)}\ngleak p n p n {leak}");
+    line(p, "* to be read: strain [1], force [N], true field at r_a [V/um], capacitance [pF], charge [nC]");
+    char name[DEA_PART_NAME];
+    line(p, ".param per_um={1e-6/%s}\nestrain strain 0 u 0 {per_um}", dea_part_text_parameter(&p->text, p->divide, name));
+    source(p, DEA_VOLTAGE, "force", "force", "0", "[ok]*v(pull)*v(p,n)*v(p,n)");
+    source(p, DEA_VOLTAGE, "field", "field", "0", "[ok]*v(stretched)*v(p,n)");
+    line(p, ".param c_scale={1e12*many*c_rest}\n.param q_scale={1e9*many*c_rest}\nestored q 0 film plate {q_scale}");
+    source(p, DEA_VOLTAGE, "capacity", "c", "0", "[c_scale]*(1+v(swell))");
+    line(p, "* bad = 1: a parameter out of its range, or the edge past centre or frame; slack = 1: the film wrinkles");
+    line(p, ".param u_low={-0.99e6*r_a}\n.param u_high={0.99e6*r_ring}");
+    source(p, DEA_VOLTAGE, "bad", "bad", "0", "min(max(1-[ok],max(1e3*(v(u)-[u_high]),1e3*([u_low]-v(u)))),1)");
+    source(p, DEA_VOLTAGE, "slack", "slack", "0", "1-min(max(1e6*v(tension),0),1)");
+}
+
 static void write_body(part *p, const form *of)
 {
-    declare(p);
+    (p->rings ? declare_rings : declare)(p);
     give_names(p);
     const int checks = write_checks(p, of);
     dea_part_text_parameters(&p->text);
     check_ranges(p, checks);
+    if (p->rings) {
+        write_rings(p);
+        if (p->kind == DEA_LENS) {
+            write_optics(p);
+        }
+        return;
+    }
     write_numbers(p);
     write_displacement(p);
     if (!p->linear) {
         line(p, "* w = u between stops short of the centre and of the frame [um]: past them is no film");
         source(p, DEA_VOLTAGE, "clip", "w", "0", "min(max(v(u),[u_low]),[u_high])");
-        line(p, ".param k_stop={1e-3*many*k_rest}\ngstop edge 0 u w {k_stop}");
+        line(p, ".param k_stop={1e-3*many*k_rest}\nGSTOP edge 0 u w {k_stop}");
     }
     dea_part_text_nodes(&p->text);
     if (p->linear) {
@@ -628,7 +691,7 @@ static void add_constants(const dea_material *material, dea_part_parameter *list
     for (size_t i = 0; i < constants_in_use(material); i++) {
         const dea_constant *constant = &material->law->constants[i % material->law->constant_count];
         char name[DEA_PART_NAME];
-        dea_part_constant_name(material->law, i, name);
+        dea_constant_name(material->law, i, name);
         add(list, count, name, constant->unit, "", constants[i]);
         dea_part_parameter *entry = &list[*count - 1];
         snprintf(entry->meaning, sizeof entry->meaning, "%s constant %s%s", material->law->title, constant->name,
@@ -719,7 +782,7 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
                           FILE *out, dea_error *error)
 {
     if (!form_of(model)) {
-        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is no circuit part: lumped, lame, coverage and ring are",
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is no circuit part: lumped, lame, coverage, ring and field are",
                         model->name);
     }
     if (defaults->electrode.law) {
@@ -749,6 +812,7 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
     free(text);
     dea_part_text_close(&p.text);
     dea_network_free(&p.network);
+    free(p.rings);
     free(p.taut);
     free(p.loosen);
     return status;
@@ -763,16 +827,16 @@ void dea_part_write_mechanics(const char *prefix, FILE *out)
             ".param k_um={1e-6*stiffness*m}\n",
             prefix, prefix);
     write_integrator(out, "a", "b");
-    fprintf(out, "gspring a b u 0 {k_um}\n.ends %s_spring\n", prefix);
+    fprintf(out, "GSPRING a b u 0 {k_um}\n.ends %s_spring\n", prefix);
     fprintf(
         out,
         "* %s_lever: v(b) = ratio v(a), force on a = ratio times force on b; ratio = -1 turns the sense of an edge; m levers\n"
         "* side by side are one\n"
         ".subckt %s_lever a b\n"
         "+ params: ratio=-1 m=1\n"
-        "elever turned 0 a 0 {ratio}\n"
-        "vsense turned b 0\n"
-        "flever a 0 vsense {ratio}\n"
+        "ELEVER turned 0 a 0 {ratio}\n"
+        "VSENSE turned b 0\n"
+        "FLEVER a 0 VSENSE {ratio}\n"
         ".ends %s_lever\n",
         prefix, prefix, prefix);
 }

@@ -46,7 +46,7 @@ dea_status dea_part_library(const dea_dialect *dialect, FILE *out, dea_error *er
 
 /* One parameter of a part: what header, symbols and documentation list. */
 typedef struct dea_part_parameter {
-    char name[32];
+    char name[40];
     const char *unit; /* SI, "1" without dimension */
     char meaning[64];
     double value; /* its default */

@@ -2,17 +2,25 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "support/number.h"
 
 void dea_part_number(FILE *out, double value)
 {
     char text[DEA_NUMBER_LENGTH];
-    int digits = 1;
+    int digits = 15; /* any decimal of so few is given back by them */
     while (digits < 17 && strtod(dea_number_text(text, value, digits), NULL) != value) {
         digits++;
     }
     fputs(dea_number_text(text, value, digits), out);
+}
+
+void dea_part_value(FILE *out, const char *name, double value)
+{
+    fprintf(out, ".param %s=", name);
+    dea_part_number(out, value);
+    fputc('\n', out);
 }
 
 /* Places of the displacement in a term, up to MANY: what is worth a node. */
@@ -51,9 +59,11 @@ bool dea_part_text_open(dea_part_text *text, const dea_pool *pool, const dea_dia
     text->divides = calloc(size, sizeof *text->divides);
     text->nodal = calloc(size, sizeof *text->nodal);
     text->written = calloc(size, sizeof *text->written);
+    text->owners = calloc(size, sizeof *text->owners);
+    text->numbers = calloc(size, sizeof *text->numbers);
     double *rest = calloc(size, sizeof *rest);
     const bool ready = !pool->exhausted && text->uses && text->carded && text->moves && text->places && text->divides &&
-                       text->nodal && text->written && rest;
+                       text->nodal && text->written && text->owners && text->numbers && rest;
     if (ready) {
         mark_moving(pool, text, rest);
     }
@@ -71,7 +81,45 @@ void dea_part_text_close(dea_part_text *text)
     free(text->divides);
     free(text->nodal);
     free(text->written);
+    free(text->owners);
+    free(text->numbers);
+    free(text->roots);
     *text = (dea_part_text){0};
+}
+
+/* A parameter times or below another term. */
+static bool is_scaled(const dea_part_text *text, const dea_term *term)
+{
+    const bool product = term->operation == DEA_MUL, quotient = term->operation == DEA_DIV;
+    return ((product || quotient) && !text->moves[term->b]) || (product && !text->moves[term->a]);
+}
+
+void dea_part_text_share(dea_part_text *text)
+{
+    text->dividing = true;
+    for (int i = 0; i < text->pool->count; i++) {
+        const dea_term *term = &text->pool->terms[i];
+        text->nodal[i] = text->moves[i] && term->operation >= DEA_ADD && !is_scaled(text, term);
+    }
+}
+
+void dea_part_text_root(dea_part_text *text, const char *name)
+{
+    for (text->root = 1; text->root <= text->root_count; text->root++) {
+        if (strcmp(text->roots[text->root - 1].name, name) == 0) {
+            return;
+        }
+    }
+    dea_part_root *roots = realloc(text->roots, ((size_t)text->root_count + 1) * sizeof *roots);
+    if (!roots) {
+        text->exhausted = true;
+        text->root = 0;
+        return;
+    }
+    text->roots = roots;
+    dea_part_root *root = &roots[text->root_count++];
+    root->count = 0;
+    snprintf(root->name, sizeof root->name, "%s", name);
 }
 
 /* Integers below 1e6 are exact as literals. */
@@ -107,10 +155,36 @@ void dea_part_text_name(dea_part_text *text, dea_expr ref, const char *name, con
     text->names = names;
 }
 
+static void claim(dea_part_text *text, dea_expr ref)
+{
+    const dea_term *term = &text->pool->terms[ref];
+    if (text->owners[ref] == 0) {
+        text->owners[ref] = text->root;
+        if (term->operation >= DEA_ADD) {
+            claim(text, term->a);
+            claim(text, term->b);
+        }
+    }
+}
+
+void dea_part_text_call(dea_part_text *text, const dea_network *network)
+{
+    for (int i = 0; i < network->named_count; i++) {
+        dea_part_text_name(text, network->named[i].ref, network->named[i].name, network->named[i].meaning);
+    }
+    for (int i = 0; i < network->element_count; i++) {
+        const char *name = network->elements[i].name;
+        const bool word = strncmp(name, "n_", 2) == 0 && strlen(name) > 3; /* n_a stays as it is */
+        dea_part_text_root(text, word ? name + 2 : name);
+        claim(text, network->elements[i].value);
+    }
+}
+
 static void use(dea_part_text *text, dea_expr ref, bool in_source)
 {
     const dea_term *term = &text->pool->terms[ref];
     const bool moves = text->moves[ref];
+    text->owners[ref] = text->owners[ref] ? text->owners[ref] : text->root;
     text->carded[ref] = text->carded[ref] || (in_source && !moves);
     const bool again = text->uses[ref]++ > 0 && (!moves || text->nodal[ref]); /* else it is written out each time */
     if (!again && term->operation >= DEA_ADD) {
@@ -153,8 +227,10 @@ const char *dea_part_text_parameter(const dea_part_text *text, dea_expr ref, cha
         snprintf(name, DEA_PART_NAME, "%s", text->symbols[term->a]);
     } else if (own) {
         snprintf(name, DEA_PART_NAME, "%s", own->name);
+    } else if (text->owners[ref]) {
+        snprintf(name, DEA_PART_NAME, "%s_%d", text->roots[text->owners[ref] - 1].name, text->numbers[ref]);
     } else {
-        snprintf(name, DEA_PART_NAME, "p%d", ref);
+        snprintf(name, DEA_PART_NAME, "%c%d", text->moves[ref] ? 'x' : 'p', ref);
     }
     return name;
 }
@@ -185,8 +261,8 @@ static void write_operand(const stream *s, dea_expr ref, bool brackets)
     const dea_part_text *t = s->text;
     const dea_term *term = &t->pool->terms[ref];
     char name[DEA_PART_NAME];
-    if (t->moves[ref] && t->written[ref] && (!s->divisor || t->places[ref] == 0)) {
-        fprintf(t->out, "v(x%d%s)", ref, suffix_of(t, ref));
+    if (t->moves[ref] && t->written[ref] && (t->dividing || !s->divisor || t->places[ref] == 0)) {
+        fprintf(t->out, "v(%s%s)", dea_part_text_parameter(t, ref, name), suffix_of(t, ref));
     } else if (term->operation == DEA_NODE) {
         fputs(t->nodes ? t->nodes[term->a] : t->node, t->out);
     } else if (is_plain(term)) {
@@ -238,29 +314,91 @@ static void write_term(const stream *s, dea_expr ref)
     }
 }
 
-/* Named, shared, or used by a source; numbers and symbols only where a source needs them and they are not names already. */
+/* Named, shared, or used by a source; numbers and symbols only where a source needs them and they are not names already. Of
+ * numbers only what sources use is of use. */
 static bool gets_card(const dea_part_text *text, dea_expr ref)
 {
     const dea_term *term = &text->pool->terms[ref];
-    if (text->uses[ref] == 0 || text->moves[ref] || term->operation == DEA_SYMBOL || is_plain(term)) {
+    if (text->uses[ref] == 0 || text->moves[ref] || is_plain(term) || (term->operation == DEA_SYMBOL && !text->values)) {
         return false;
     }
-    return text->carded[ref] || (term->operation >= DEA_ADD && (text->uses[ref] > 1 || name_of(text, ref)));
+    return text->carded[ref] ||
+           (!text->values && term->operation >= DEA_ADD && (text->uses[ref] > 1 || name_of(text, ref)));
+}
+
+static void write_meaning(const dea_part_text *text, dea_expr ref)
+{
+    const dea_part_name *own = name_of(text, ref);
+    if (own && *own->meaning) {
+        dea_dialect_comment(text->out, own->meaning);
+    }
+}
+
+/* Its number among those of its root. */
+static void give_number(dea_part_text *text, dea_expr ref)
+{
+    if (text->owners[ref] && text->numbers[ref] == 0 && text->pool->terms[ref].operation != DEA_SYMBOL && !name_of(text, ref)) {
+        text->numbers[ref] = ++text->roots[text->owners[ref] - 1].count;
+    }
+}
+
+static bool gets_node(const dea_part_text *text, dea_expr ref)
+{
+    return text->nodal[ref] && text->uses[ref] > 1;
+}
+
+/* What sources refer to first, so that they read the same with numbers and with formulas. */
+static void number_terms(dea_part_text *text)
+{
+    for (int pass = 0; pass < 3; pass++) {
+        for (int i = 0; i < text->pool->count; i++) {
+            const bool its = pass == 0 ? gets_node(text, i) : gets_card(text, i) && text->carded[i] == (pass == 1);
+            if (its) {
+                give_number(text, i);
+            }
+        }
+    }
+}
+
+/* Cards for the parameters at the border of what moves. */
+static void card_aside(dea_part_text *text, dea_expr ref)
+{
+    const dea_term *term = &text->pool->terms[ref];
+    if (!text->moves[ref]) {
+        use(text, ref, true);
+    } else if (term->operation >= DEA_ADD) {
+        card_aside(text, term->a);
+        card_aside(text, term->b);
+    }
+}
+
+void dea_part_text_use_aside(dea_part_text *text, dea_expr ref)
+{
+    number_terms(text);
+    card_aside(text, ref);
+}
+
+static void write_card(const dea_part_text *text, dea_expr ref)
+{
+    const stream s = {text, false, false};
+    char name[DEA_PART_NAME];
+    (void)dea_part_text_parameter(text, ref, name);
+    if (text->values) {
+        dea_part_value(text->out, name, text->values[ref]);
+        return;
+    }
+    fprintf(text->out, ".param %s={", name);
+    write_term(&s, ref);
+    fputs("}\n", text->out);
 }
 
 void dea_part_text_parameters(dea_part_text *text)
 {
-    const stream s = {text, false, false};
+    number_terms(text);
     for (int i = 0; i < text->pool->count; i++) {
         if (gets_card(text, i)) {
-            char name[DEA_PART_NAME];
-            const dea_part_name *own = name_of(text, i);
-            if (own && *own->meaning) {
-                dea_dialect_comment(text->out, own->meaning);
-            }
-            fprintf(text->out, ".param %s={", dea_part_text_parameter(text, i, name));
-            write_term(&s, i);
-            fputs("}\n", text->out);
+            write_meaning(text, i);
+            write_card(text, i);
             text->written[i] = true;
         }
     }
@@ -280,8 +418,9 @@ void dea_part_text_move_symbol(dea_part_text *text, int index)
 static void write_node(dea_part_text *text, dea_expr ref)
 {
     const stream s = {text, true, false};
-    char name[2 * DEA_PART_NAME];
-    snprintf(name, sizeof name, "x%d%s", ref, suffix_of(text, ref));
+    char own[DEA_PART_NAME], name[2 * DEA_PART_NAME];
+    write_meaning(text, ref);
+    snprintf(name, sizeof name, "%s%s", dea_part_text_parameter(text, ref, own), suffix_of(text, ref));
     dea_dialect_source_begin(text->dialect, text->out, DEA_VOLTAGE, name, name, "0");
     write_term(&s, ref);
     dea_dialect_source_end(text->dialect, text->out);
@@ -291,8 +430,19 @@ static void write_node(dea_part_text *text, dea_expr ref)
 void dea_part_text_nodes(dea_part_text *text)
 {
     for (int i = 0; i < text->pool->count; i++) {
-        if (text->nodal[i] && text->uses[i] > 1) {
+        if (gets_node(text, i)) {
             write_node(text, i);
+        }
+    }
+}
+
+void dea_part_text_start(const dea_part_text *text, const char *inside, const double *values)
+{
+    for (int i = 0; i < text->pool->count; i++) {
+        if (text->written[i] && text->moves[i]) {
+            char name[DEA_PART_NAME];
+            fprintf(text->out, " v(%s%s)=", inside, dea_part_text_parameter(text, i, name));
+            dea_part_number(text->out, values[i]);
         }
     }
 }

@@ -137,11 +137,16 @@ static bool is_worth(const dea_part_text *text, dea_expr ref)
     return text->places[ref] == 0 || (text->places[ref] >= WORTH && !scaled);
 }
 
-void dea_rings_cards_declare(const dea_rings_cards *cards, dea_part_text *text)
+void dea_rings_cards_share(dea_part_text *text)
 {
     for (int i = 0; i < text->pool->count; i++) {
         text->nodal[i] = text->nodal[i] && is_worth(text, i);
     }
+}
+
+void dea_rings_cards_declare(const dea_rings_cards *cards, dea_part_text *text)
+{
+    dea_rings_cards_share(text);
     bool declared[DEA_RINGS_STRAINS][2] = {{false}};
     for (size_t q = 0; q < cards->ring_count; q++) {
         const dea_rings_ring *ring = &cards->rings[q];

@@ -45,6 +45,8 @@ typedef struct dea_rings_cards {
  * the pool. */
 void dea_rings_cards_make(const dea_symbols *symbols, dea_rings_mesh mesh, dea_rings_cards *cards);
 
+/* Keeps nodes for the terms that are worth one in a ring; before any is declared. */
+void dea_rings_cards_share(dea_part_text *text);
 /* Declares all that will be written; then, in this order: cards of the parameters by dea_part_text_parameters(), and the rest. */
 void dea_rings_cards_declare(const dea_rings_cards *cards, dea_part_text *text);
 /* Strains, stresses and balance of forces in displacement form. */

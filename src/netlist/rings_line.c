@@ -56,8 +56,8 @@ static void name_all(writer *w)
     name(w, &s->voltage, "voltage", "V");
     const size_t constants = s->law->constant_count * (s->law->entries > 1 ? w->line->scene->material.entry_count : 1);
     for (size_t i = 0; i < constants; i++) {
-        char own[DEA_PART_NAME];
-        dea_part_constant_name(s->law, i, own);
+        char own[DEA_QUANTITY_NAME];
+        dea_constant_name(s->law, i, own);
         name(w, &s->constants[i], own, s->law->constants[i % s->law->constant_count].unit);
     }
 }
@@ -67,7 +67,7 @@ static void write_quantities(const writer *w)
     for (size_t i = 1; i < w->count; i++) {
         const quantity *q = &w->quantities[i];
         fprintf(w->out, "* %s [%s]\n", q->name, q->unit);
-        dea_export_parameter(w->out, q->name, q->value);
+        dea_part_value(w->out, q->name, q->value);
     }
 }
 
@@ -90,7 +90,7 @@ static void write_edge(const writer *w)
 static void write_guess(const writer *w, const char *node, double value)
 {
     fprintf(w->out, " v(xline%zu%s%s)=", w->line->number, w->dialect->inside, node);
-    dea_export_number(w->out, value);
+    dea_part_number(w->out, value);
 }
 
 /* Where Newton starts: the film at rest, and what moves with the axis alone at the first point. */

@@ -25,7 +25,7 @@ static void lever(FILE *out, const char *element, const char *into, size_t numbe
 {
     if (value != 0.0) {
         fprintf(out, "G%s%zu_%zu 0 %s%zu %s%zu 0 ", element, number, of, into, number, control, of);
-        dea_export_number(out, value);
+        dea_part_number(out, value);
         fputc('\n', out);
     }
 }
@@ -53,7 +53,7 @@ static void write_pair(FILE *out, const char *tag, const char into[2][2], const 
     for (int a = 0; a < 2; a++) {
         for (int b = 0; b < 2; b++) {
             fprintf(out, "G%s%s%s%zu 0 %s%zu %s%zu 0 ", tag, into[a], from[b], number, into[a], number, from[b], number);
-            dea_export_number(out, factor * w[a + b]);
+            dea_part_number(out, factor * w[a + b]);
             fputc('\n', out);
         }
     }
@@ -104,7 +104,7 @@ static void write_ring(FILE *out, const dea_rings_small *s, size_t index, const 
             const size_t node = ring->first + i + 1;
             if (slope != 0.0) {
                 fprintf(out, "Gf%s%zu_%zu v%zu 0 %s%zu 0 ", stress_names[a], number, node, node, stress_names[a], number);
-                dea_export_number(out, lever_size * slope);
+                dea_part_number(out, lever_size * slope);
                 fputc('\n', out);
             }
         }
@@ -118,16 +118,16 @@ static void write_node(FILE *out, const dea_rings_small *s, size_t index, double
             s->membrane->rings.radii[index]);
     if (s->membrane->masses[index] > 0.0) {
         fprintf(out, "Cm%zu v%zu 0 ", n, n);
-        dea_export_number(out, s->membrane->masses[index]);
+        dea_part_number(out, s->membrane->masses[index]);
         fputc('\n', out);
     }
     fprintf(out, "Gu%zu 0 u%zu v%zu 0 1\nCu%zu u%zu 0 1\n", n, n, n, n, n);
     fprintf(out, "Gp%zu 0 v%zu film 0 ", n, n);
-    dea_export_number(out, transduction);
+    dea_part_number(out, transduction);
     fprintf(out, "\nGi%zu film 0 v%zu 0 ", n, n);
-    dea_export_number(out, transduction);
+    dea_part_number(out, transduction);
     fprintf(out, "\nGq%zu 0 motion u%zu 0 ", n, n);
-    dea_export_number(out, transduction);
+    dea_part_number(out, transduction);
     fputc('\n', out);
 }
 
@@ -136,14 +136,14 @@ static void write_port(FILE *out, const dea_dynamics *film, double capacitance)
     fputs("* source of 1 V, resistances [Ohm], capacitance of the film at the bias [F]\n", out);
     fputs(film->series > 0.0 ? "Vsource source 0 dc 0 ac 1\n" : "Vsource film 0 dc 0 ac 1\n", out);
     if (film->series > 0.0) {
-        dea_export_parameter(out, "r_series", film->series);
+        dea_part_value(out, "r_series", film->series);
         fputs("Rseries source film {r_series}\n", out);
     }
     if (film->conductance > 0.0) {
-        dea_export_parameter(out, "r_leak", 1.0 / film->conductance);
+        dea_part_value(out, "r_leak", 1.0 / film->conductance);
         fputs("Rleak film 0 {r_leak}\n", out);
     }
-    dea_export_parameter(out, "c_film", capacitance);
+    dea_part_value(out, "c_film", capacitance);
     fputs("Cfilm film 0 {c_film}\nRmotion motion 0 1\n", out);
 }
 
@@ -160,9 +160,9 @@ void dea_rings_small_write(const dea_rings_small *small, FILE *out)
             m->rings.node_count, m->rings.mesh.disc, m->rings.mesh.annulus, m->rings.edge + 1);
     for (size_t i = 0; i < m->film.branch_count; i++) {
         fprintf(out, ".param tau%zu=", i + 1);
-        dea_export_number(out, m->film.branches[i].tau);
+        dea_part_number(out, m->film.branches[i].tau);
         fprintf(out, "\n.param share%zu=", i + 1);
-        dea_export_number(out, m->film.branches[i].share);
+        dea_part_number(out, m->film.branches[i].share);
         fputc('\n', out);
     }
     write_port(out, &m->film, look.capacitance);

@@ -174,7 +174,7 @@ dea_status dea_dynamics_settle(const dea_scene *scene, const dea_model *model, d
                         .radius = NAN,
                         .focal_length = scene->actuator.focal_length,
                         .refractive_index = scene->actuator.refractive_index,
-                        .linear = model->linear != NULL && !scene->electrode.law};
+                        .linear = model->linear != NULL && !scene->electrode.law && !(scene->load.stiffness > 0.0)};
     d->softens = !scene->reduction.softening;
     if (!dea_dynamics_relax(d, scene)) {
         return dea_fail(error, DEA_ERROR_USAGE, "the shares g of the branches sum to 1 or more");
@@ -467,6 +467,20 @@ static void sample_uncharged(dea_dynamics *dynamics, const dea_moment *moment, d
     dynamics->dropped = series;
     sample->voltage = moment->source;
     sample->current = moment->source / series;
+}
+
+bool dea_dynamics_is_free(const dea_dynamics *d)
+{
+    return !(d->mass > 0.0) && !(d->retardation > 0.0);
+}
+
+void dea_dynamics_lighten(dea_dynamics *d, double accuracy)
+{
+    const dea_edge e = dea_dynamics_edge(d, 0.0);
+    const double resistance = d->retardation * dea_edge_viscous(d, &e);
+    if (d->mass * dea_dynamics_stiffness(d, 0.0, 0.0, false) <= 1e-3 * accuracy * resistance * resistance) {
+        d->mass = 0.0;
+    }
 }
 
 bool dea_dynamics_inside(dea_dynamics *dynamics, double u)

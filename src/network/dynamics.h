@@ -38,7 +38,7 @@ typedef struct dea_dynamics {
     double conductance;                    /* 1/R_p [S], 0: no leakage */
     double radius;                         /* r_a [m] */
     double focal_length, refractive_index; /* NAN: no optics */
-    bool linear;                           /* one stress K u on the lever 1, without G, as without a skin, as without a skin */
+    bool linear;                           /* one stress K u on the lever 1, without G, as without a skin and a load, as without a skin */
     dea_tape tape;                         /* owned: G, phi, C, then S_a and B_a in turn */
     dea_balance balance;                   /* owned: rows */
 } dea_dynamics;
@@ -104,6 +104,11 @@ double dea_dynamics_velocity_charged(dea_dynamics *dynamics, double u, double vo
 /* True where disc and annulus both are there and, with an electrical port, a capacitance is: that of the linear models falls to
  * zero before the electrode is gone, and what charges it ends there. */
 bool dea_dynamics_inside(dea_dynamics *dynamics, double u);
+
+/* True without mass and damper. */
+bool dea_dynamics_is_free(const dea_dynamics *dynamics);
+/* Drops a mass that a damper outweighs: it only matters for a moment m/r behind an edge, and then to m K/r^2 of the displacement. */
+void dea_dynamics_lighten(dea_dynamics *dynamics, double accuracy);
 
 /* State of the moving network at one time. */
 typedef struct dea_moment {

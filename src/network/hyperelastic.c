@@ -3,16 +3,28 @@
 #include "expression/derivative.h"
 #include "material/form.h"
 
-dea_expr dea_hyperelastic_principal(const dea_symbols *symbols, dea_expr e1, dea_expr e2)
+/* Cauchy stresses at two relative stretches. */
+static dea_law_form form_at(const dea_symbols *symbols, dea_expr e1, dea_expr e2)
 {
     dea_pool *pool = symbols->pool;
-    const dea_expr one = NUM(1.0);
+    const dea_expr l1 = MUL(symbols->prestretch, ADD(NUM(1.0), e1)), l2 = MUL(symbols->prestretch, ADD(NUM(1.0), e2));
     dea_law_form form = {0};
     if (!pool->exhausted) {
-        const dea_expr l1 = MUL(symbols->prestretch, ADD(one, e1)), l2 = MUL(symbols->prestretch, ADD(one, e2));
         symbols->law->form(pool, symbols->constants, l1, l2, &form);
     }
-    return dea_expr_change(pool, form.stress[0]);
+    return form;
+}
+
+dea_expr dea_hyperelastic_principal(const dea_symbols *symbols, dea_expr e1, dea_expr e2)
+{
+    return dea_expr_change(symbols->pool, form_at(symbols, e1, e2).stress[0]);
+}
+
+void dea_hyperelastic_cauchy(const dea_symbols *symbols, dea_expr e1, dea_expr e2, dea_expr stress[2])
+{
+    const dea_law_form form = form_at(symbols, e1, e2);
+    stress[0] = dea_expr_change(symbols->pool, form.stress[0]);
+    stress[1] = dea_expr_change(symbols->pool, form.stress[1]);
 }
 
 dea_expr dea_hyperelastic_skin(const dea_symbols *symbols, dea_expr e1, dea_expr e2)
@@ -29,15 +41,9 @@ dea_expr dea_hyperelastic_skin(const dea_symbols *symbols, dea_expr e1, dea_expr
 void dea_hyperelastic_nominal(const dea_symbols *symbols, dea_expr e1, dea_expr e2, dea_expr stress[2])
 {
     dea_pool *pool = symbols->pool;
-    const dea_expr stretch[2] = {ADD(NUM(1.0), e1), ADD(NUM(1.0), e2)};
-    dea_law_form form = {0};
-    if (!pool->exhausted) {
-        symbols->law->form(pool, symbols->constants, MUL(symbols->prestretch, stretch[0]), MUL(symbols->prestretch, stretch[1]),
-                           &form);
-    }
-    for (int a = 0; a < 2; a++) {
-        stress[a] = dea_expr_change(pool, DIV(form.stress[a], stretch[a]));
-    }
+    const dea_law_form form = form_at(symbols, e1, e2);
+    stress[0] = dea_expr_change(pool, DIV(form.stress[0], ADD(NUM(1.0), e1)));
+    stress[1] = dea_expr_change(pool, DIV(form.stress[1], ADD(NUM(1.0), e2)));
 }
 
 dea_expr dea_hyperelastic_change(const dea_symbols *symbols, dea_expr e)

@@ -8,6 +8,8 @@
 dea_expr dea_hyperelastic_change(const dea_symbols *symbols, dea_expr e);
 /* sigma_1 - sigma(lambda_pre) [Pa] at the stretches lambda_pre (1 + e1), lambda_pre (1 + e2), likewise. */
 dea_expr dea_hyperelastic_principal(const dea_symbols *symbols, dea_expr e1, dea_expr e2);
+/* Both changes of the Cauchy stresses [Pa], likewise. */
+void dea_hyperelastic_cauchy(const dea_symbols *symbols, dea_expr e1, dea_expr e2, dea_expr stress[2]);
 /* lambda_pre (P_a - P_a(lambda_pre)) [Pa] at these stretches, likewise: work-conjugate to e_a. */
 void dea_hyperelastic_nominal(const dea_symbols *symbols, dea_expr e1, dea_expr e2, dea_expr stress[2]);
 

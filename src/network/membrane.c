@@ -17,6 +17,7 @@ static void set_masses(const dea_scene *scene, dea_membrane *m)
         m->masses[n] = density * point->film_thickness * m->rings.areas[n] +
                        electrode * point->film.square * m->rings.coated[n]; /* it lies on the pre-stretched film */
     }
+    m->masses[m->rings.edge] += m->heavy && scene->load.mass > 0.0 ? scene->load.mass : 0.0;
 }
 
 /* A ring at the frame has no node of its own: any does, with a hoop of 0. */
@@ -125,6 +126,7 @@ bool dea_membrane_look_at(const dea_membrane *m, const double *u, dea_membrane_l
         sum += ring->electroded ? ring->volume * area * area : 0.0;
     }
     const double thickness = m->film.point.film_thickness;
+    look->edge = u[m->rings.edge];
     look->capacitance = m->film.point.film.permittivity / (thickness * thickness) * sum;
     return true;
 }
@@ -212,6 +214,7 @@ void dea_membrane_force(const dea_membrane *m, const dea_membrane_look *look, do
         }
         pull_ring(m, r, s, force);
     }
+    force[m->rings.edge] -= m->film.point.load * look->edge;
 }
 
 /* ds_a/dlambda_b of a ring: of the film, of its electrical part k lambda_a lambda_b^2, of x_a/lambda_a at constant x_a, and of a
@@ -270,6 +273,7 @@ void dea_membrane_stiffness(const dea_membrane *m, const dea_membrane_look *look
         ring_tangent(&look->rings[r], m->rings.rings[r].electroded ? k : 0.0, x ? x[r] : NULL, share, t);
         assemble_ring(m, r, t, stiffness);
     }
+    stiffness[m->rings.edge * (m->rings.node_count + 1)] += m->film.point.load;
 }
 
 void dea_membrane_damping(const dea_membrane *m, const dea_membrane_look *look, double share, double *damping)
@@ -701,7 +705,8 @@ static double way_integral(const dea_membrane *m, const double *u, const double 
         }
         sum += dea_gauss_weight(g) * ring_power(m, f, rates);
     }
-    return sum;
+    const size_t edge = m->rings.edge;
+    return z ? sum : sum + 0.5 * m->film.point.load * (to[edge] - u[edge]) * (to[edge] + u[edge]);
 }
 
 void dea_membrane_audit_jump(dea_audit *audit, const dea_membrane *m, const double *u, const double *to, const double *z)

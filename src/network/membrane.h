@@ -35,6 +35,7 @@ typedef struct dea_ring_look {
 
 typedef struct dea_membrane_look {
     dea_ring_look rings[DEA_RINGS_MOST];
+    double edge;        /* displacement of the edge [m] */
     double capacitance; /* [F] */
 } dea_membrane_look;
 

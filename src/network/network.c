@@ -1,6 +1,8 @@
 #include "network/network.h"
 
+#include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "expression/derivative.h"
@@ -11,9 +13,11 @@ void dea_network_free(dea_network *network)
     if (network) {
         dea_pool_free(&network->pool);
         free(network->elements);
+        free(network->named);
         free(network->tension);
         free(network->range);
         network->elements = NULL;
+        network->named = NULL;
         network->tension = network->range = NULL;
     }
 }
@@ -38,6 +42,31 @@ void dea_network_add(dea_network *network, dea_role role, const char *name, cons
 void dea_network_add_stress(dea_network *network, const char *name, const char *meaning, dea_expr stress, dea_expr lever)
 {
     add_element(network, (dea_element){DEA_ROLE_HYPERELASTIC, name, meaning, stress, lever});
+}
+
+void dea_network_call(dea_network *network, dea_expr ref, const char *name, const char *meaning)
+{
+    dea_named_term *named = realloc(network->named, ((size_t)network->named_count + 1) * sizeof *named);
+    if (!named) {
+        network->pool.exhausted = true;
+        return;
+    }
+    named[network->named_count++] = (dea_named_term){ref, name, meaning};
+    network->named = named;
+}
+
+void dea_network_gather(dea_network *network)
+{
+    dea_pool *pool = &network->pool;
+    for (int i = 0; i < network->element_count; i++) {
+        dea_element *element = &network->elements[i];
+        element->value = dea_expr_gathered(pool, element->value);
+        element->lever = element->role == DEA_ROLE_HYPERELASTIC ? dea_expr_gathered(pool, element->lever) : element->lever;
+    }
+    for (int i = 0; i < network->named_count; i++) {
+        network->named[i].ref = dea_expr_gathered(pool, network->named[i].ref);
+    }
+    network->capacitance = dea_expr_gathered(pool, network->capacitance);
 }
 
 /* One more expression at the end of a list. */
@@ -231,6 +260,7 @@ dea_symbols dea_symbols_of(const dea_scene *scene, const dea_axis *axis, dea_poo
     const dea_expr breakdown = scalar(pool, scene, axis, &material->breakdown);
     s.breakdown = given(pool, breakdown) ? breakdown : NUM(INFINITY);
     coat(scene, axis, &s);
+    s.load = scene->load.stiffness > 0.0 ? scalar(pool, scene, axis, &scene->load.stiffness) : NUM(0.0);
     s.voltage = film_voltage(pool, scene, axis, &s);
     s.focal_length = scalar(pool, scene, axis, &actuator->focal_length);
     s.refractive_index = scalar(pool, scene, axis, &actuator->refractive_index);
@@ -325,14 +355,60 @@ dea_status dea_network_build_symbols(const dea_symbols *symbols, const dea_model
 {
     place_edge(symbols, network);
     model->network(symbols, network);
+    if (dea_expr_constant(&network->pool, symbols->load) != 0.0) {
+        dea_network_add(network, DEA_ROLE_BESIDE, "n_load", "compliance of the load between edge and frame [m/N]", symbols->load);
+    }
     if (network->pool.exhausted) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built");
     }
     return DEA_OK;
 }
 
-dea_status dea_network_build(const dea_scene *scene, const dea_model *model, const dea_axis *axis, dea_network *network,
-                             dea_error *error)
+void dea_constant_name(const dea_law *law, size_t index, char name[DEA_QUANTITY_NAME])
+{
+    char number[24] = "";
+    if (law->entries > 1) {
+        snprintf(number, sizeof number, "%zu", index / law->constant_count + 1);
+    }
+    snprintf(name, DEA_QUANTITY_NAME, "%s%s", law->constants[index % law->constant_count].name, number);
+    for (char *c = name; *c; c++) {
+        *c = (char)tolower((unsigned char)*c);
+    }
+}
+
+/* Makes a number a symbol; 0 stays, so that it vanishes. */
+static void lift(dea_quantities *quantities, dea_pool *pool, const char *name, dea_expr *field)
+{
+    const double value = dea_expr_constant(pool, *field);
+    if (isfinite(value) && value != 0.0 && quantities->count < DEA_QUANTITIES) {
+        const int symbol = ++quantities->count;
+        snprintf(quantities->names[symbol], DEA_QUANTITY_NAME, "%s", name);
+        quantities->values[symbol] = value;
+        *field = dea_expr_symbol(pool, symbol);
+    }
+}
+
+static void lift_all(dea_quantities *quantities, dea_symbols *s, bool modulus)
+{
+    char name[DEA_QUANTITY_NAME];
+    lift(quantities, s->pool, "frame_radius", &s->frame_radius);
+    lift(quantities, s->pool, "film_thickness", &s->film_thickness);
+    lift(quantities, s->pool, "permittivity", &s->permittivity);
+    for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
+        if (s->law->constants[i % s->law->constant_count].modulus) {
+            dea_constant_name(s->law, i, name);
+            lift(quantities, s->pool, name, &s->constants[i]);
+        }
+    }
+    if (modulus) {
+        lift(quantities, s->pool, "modulus", &s->modulus);
+    } else {
+        s->modulus = dea_symbols_modulus(s);
+    }
+}
+
+static dea_status build(const dea_scene *scene, const dea_model *model, const dea_axis *axis, dea_quantities *quantities,
+                        dea_network *network, dea_error *error)
 {
     *network = (dea_network){0};
     if (!model->network) {
@@ -342,8 +418,25 @@ dea_status dea_network_build(const dea_scene *scene, const dea_model *model, con
     if (network->pool.exhausted) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built");
     }
-    const dea_symbols symbols = dea_symbols_of(scene, axis, &network->pool);
+    dea_symbols symbols = dea_symbols_of(scene, axis, &network->pool);
+    if (quantities && !network->pool.exhausted) {
+        *quantities = (dea_quantities){0};
+        const dea_expr modulus = scalar(&network->pool, scene, axis, &scene->material.modulus);
+        lift_all(quantities, &symbols, given(&network->pool, modulus));
+    }
     return dea_network_build_symbols(&symbols, model, network, error);
+}
+
+dea_status dea_network_build_named(const dea_scene *scene, const dea_model *model, const dea_axis *axis,
+                                   dea_quantities *quantities, dea_network *network, dea_error *error)
+{
+    return build(scene, model, axis, quantities, network, error);
+}
+
+dea_status dea_network_build(const dea_scene *scene, const dea_model *model, const dea_axis *axis, dea_network *network,
+                             dea_error *error)
+{
+    return build(scene, model, axis, NULL, network, error);
 }
 
 static dea_expr sum_of(dea_network *network, dea_role role)

@@ -28,6 +28,7 @@ typedef struct dea_symbols {
     const dea_law *skin;                        /* of the electrodes' skin, NULL: there is none */
     dea_expr skin_constants[DEA_LAW_CONSTANTS]; /* of it */
     dea_expr skin_share;                        /* t/H [1] */
+    dea_expr load;                 /* stiffness of a spring between edge and frame [N/m], NUM(0): none */
     dea_expr voltage;              /* across the film [V] */
     dea_expr focal_length;         /* of a lens at rest [m], NAN: no optics */
     dea_expr refractive_index;     /* of its liquid [1] */
@@ -52,8 +53,16 @@ typedef struct dea_network_stress {
     dea_expr stress, lever;
 } dea_network_stress;
 
+/* A term that texts of the network call by its name. */
+typedef struct dea_named_term {
+    dea_expr ref;
+    const char *name, *meaning; /* borrowed */
+} dea_named_term;
+
 typedef struct dea_network {
     dea_pool pool;
+    dea_named_term *named; /* owned */
+    int named_count;
     dea_element *elements; /* owned */
     int element_count;
     dea_expr capacitance; /* of the film [F] */
@@ -78,6 +87,18 @@ typedef struct dea_network {
  * The caller frees it with dea_network_free(), also after a failure. */
 dea_status dea_network_build(const dea_scene *scene, const dea_model *model, const dea_axis *axis, dea_network *network,
                              dea_error *error);
+/* Numbers of a scene that have a dimension and stay symbols 1, 2, ... of its network: its expressions are then the same whatever
+ * the units. Symbol 0 is that of the axis. */
+enum { DEA_QUANTITIES = 4 + DEA_LAW_CONSTANTS, DEA_QUANTITY_NAME = 24 };
+typedef struct dea_quantities {
+    int count;
+    char names[DEA_QUANTITIES + 1][DEA_QUANTITY_NAME]; /* by symbol; of symbol 0 "" */
+    double values[DEA_QUANTITIES + 1];                 /* in SI, or the units of the scene */
+} dea_quantities;
+dea_status dea_network_build_named(const dea_scene *scene, const dea_model *model, const dea_axis *axis,
+                                   dea_quantities *quantities, dea_network *network, dea_error *error);
+/* Name of a law's constant as a parameter: in lower case, of a list with the number of its entry. */
+void dea_constant_name(const dea_law *law, size_t index, char name[DEA_QUANTITY_NAME]);
 /* The same from symbols whose pool is that of the zeroed network. */
 dea_status dea_network_build_symbols(const dea_symbols *symbols, const dea_model *model, dea_network *network, dea_error *error);
 void dea_network_free(dea_network *network);
@@ -86,6 +107,11 @@ void dea_network_free(dea_network *network);
 void dea_network_add(dea_network *network, dea_role role, const char *name, const char *meaning, dea_expr value);
 /* A hyperelastic spring: a change of stress from rest and its lever. */
 void dea_network_add_stress(dea_network *network, const char *name, const char *meaning, dea_expr stress, dea_expr lever);
+
+/* A name for a term, and what it is with its unit; borrowed for the life of the network. */
+void dea_network_call(dea_network *network, dea_expr ref, const char *name, const char *meaning);
+/* Draws the parameters of every product of elements, capacitance and named terms together (dea_expr_gathered()). */
+void dea_network_gather(dea_network *network);
 
 /* Something that is positive while the film is taut. */
 void dea_network_taut(dea_network *network, dea_expr tension);

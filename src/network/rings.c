@@ -268,7 +268,7 @@ static double interpolate(const lobatto *rule, const double *values, double x, d
         for (size_t q = 0; q <= rule->degree; q++) {
             at += rule->slopes[n][q] * values[q];
         }
-        const double weight = lagrange(rule, n, x);
+        const double weight = lagrange(rule->places, rule->degree, n, x);
         sum += weight * values[n];
         slopes += weight * at;
     }

@@ -124,6 +124,9 @@ bool dea_still_step(const dea_still *still, double share, const double *u, doubl
         }
         add_ring(still, ring, &s, n, step, k);
     }
+    const size_t edge = still->rings.edge;
+    step[edge] -= still->point->load * u[edge];
+    k[edge * n + edge] += still->point->load;
     if (!factor(n, k)) {
         return false;
     }

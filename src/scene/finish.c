@@ -101,7 +101,8 @@ static dea_status sheet_check(dea_reader *reader)
 {
     const dea_scene *scene = reader->scene;
     const size_t sheet = offsetof(dea_scene, electrode.sheet_resistance);
-    for (size_t i = 0; i < scene->model_count && dea_study_of(scene)->moves; i++) {
+    const bool currents = dea_study_of(scene)->timed || dea_study_of(scene)->phasors;
+    for (size_t i = 0; i < scene->model_count && currents; i++) {
         if (scene->models[i]->membrane) {
             return dea_place_fail(dea_reader_place(reader, sheet, "electrode"), reader->error, "electrode.sheet_resistance",
                                   "is one resistance, which the model %s has no place for; accepted: models of one node, e.g. ring",
@@ -161,6 +162,21 @@ static dea_status locking_check(dea_reader *reader)
                           "too small (%g) for the pre-stretch %g, where I1 - 3 is %.6g: the chains are straight at %.6g; accepted: "
                           "a larger %s, or less pre-stretch",
                           scene->material.constants[last], film.prestretch, film.j, locking, law->constants[last].name);
+}
+
+/* A load gives something, and one that has mass moves a film that has, too. */
+static dea_status load_check(dea_reader *reader)
+{
+    const dea_scene *scene = reader->scene;
+    const dea_node *load = dea_tree_child(reader->root, "load");
+    if (load && isnan(scene->load.mass) && isnan(scene->load.stiffness)) {
+        return dea_place_fail(&load->place, reader->error, "load", "without a number; accepted: mass and stiffness, e.g. {stiffness: 20 N/m}");
+    }
+    if (isnan(scene->load.mass) || !isnan(scene->material.density)) {
+        return DEA_OK;
+    }
+    return dea_place_fail(dea_reader_place(reader, offsetof(dea_scene, load.mass), "load"), reader->error, "load.mass",
+                          "moves with a film that has none; accepted: material.density beside it, e.g. 1080 kg/m^3");
 }
 
 static dea_status radius_check(dea_reader *reader)
@@ -263,6 +279,7 @@ dea_status dea_reader_finish(dea_reader *reader)
     const dea_holder holder = dea_reader_holder(reader, &film);
     status = status ? status : law_check(reader, &holder);
     status = status ? status : electrode_check(reader);
+    status = status ? status : load_check(reader);
     status = status ? status : locking_check(reader);
     status = status ? status : radius_check(reader);
     status = status ? status : thickness_check(reader);

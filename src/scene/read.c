@@ -268,7 +268,7 @@ static const char automatic[] = "auto"; /* the name of no model: the cheapest th
 
 /* What a model must be able to do. */
 typedef struct ability {
-    bool lens;
+    bool lens, edge;
     const dea_study *study; /* NULL: any */
 } ability;
 
@@ -278,7 +278,8 @@ static void model_list(ability wanted, char *out, size_t room)
     out[0] = '\0';
     for (size_t i = 0; i < dea_model_count() && used < room; i++) {
         const dea_model *model = dea_model_at(i);
-        if ((!wanted.lens || model->lens) && (!wanted.study || dea_study_takes(wanted.study, model))) {
+        if ((!wanted.lens || model->lens) && (!wanted.study || dea_study_takes(wanted.study, model)) &&
+            (!wanted.edge || model->edge)) {
             used += (size_t)snprintf(out + used, room - used, "%s, ", model->name);
         }
     }
@@ -310,7 +311,7 @@ static dea_status model_fail(dea_reader *reader, const dea_node *node, const cha
     char names[DEA_KEY_ROOM];
     char meant[DEA_KEY_ROOM] = "";
     model_list(wanted, names, sizeof names);
-    const bool any = !wanted.lens && !wanted.study;
+    const bool any = !wanted.lens && !wanted.study && !wanted.edge;
     if (node->kind == DEA_NODE_SCALAR && any) {
         char several[DEA_KEY_ROOM];
         model_split(node, several);
@@ -336,6 +337,12 @@ dea_status dea_models_finish(dea_reader *reader)
     const dea_study *study = dea_study_of(scene);
     if (scene->automatic) {
         scene->models[0] = dea_needs_truth(scene->study);
+    }
+    for (size_t i = 0; i < scene->model_count && dea_tree_child(reader->root, "load"); i++) {
+        if (!scene->models[i]->edge) {
+            return model_fail(reader, reader->model_names[i], "has no edge that a load acts on",
+                              (ability){.lens = scene->actuator.kind == DEA_LENS, .study = study, .edge = true});
+        }
     }
     for (size_t i = 0; i < scene->model_count; i++) {
         if (!dea_study_takes(study, scene->models[i])) {

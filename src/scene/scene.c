@@ -24,6 +24,7 @@ static dea_status scene_clear(dea_scene *scene)
                      .focal_length = NAN,
                      .refractive_index = NAN},
         .electrode = {.thickness = NAN, .density = NAN, .sheet_resistance = NAN},
+        .load = {.mass = NAN, .stiffness = NAN},
         .material = dea_material_default(),
         .drive = {.voltage = NAN,
                   .waveform = dea_waveform_none(),

@@ -466,6 +466,17 @@ static bool inside(const motion *m, long double u)
     return is_framed(m, u) && ((f->series == 0.0L && f->conductance == 0.0L) || has_capacitance(f, u));
 }
 
+static bool is_linear(const true_film *f)
+{
+    return strcmp(f->model, "coverage") != 0 && strcmp(f->model, "ring") != 0;
+}
+
+/* Does a motion go on there? Of a linear film only the samples tell, and what charges it. */
+static bool stays(const motion *m, long double u)
+{
+    return is_linear(&m->film) ? m->film.series == 0.0L || has_capacitance(&m->film, u) : inside(m, u);
+}
+
 /* A film without mass and damper: its displacement goes with the voltage, branches held. */
 static bool jump(motion *m, state *s, long double to)
 {
@@ -485,7 +496,7 @@ static bool jump(motion *m, state *s, long double to)
             }
             s->u -= step;
         }
-        if (!inside(m, s->u) || !(fabsl(step) < 1e-9L * m->size[0])) {
+        if (!stays(m, s->u) || !(fabsl(step) < 1e-9L * m->size[0])) {
             return false;
         }
     }
@@ -653,7 +664,6 @@ static long double first_step(const motion *m)
 static bool run_segment(motion *m, state *s)
 {
     const long double width = (long double)m->segment->to - m->segment->from;
-    const bool linear = strcmp(m->film.model, "coverage") != 0 && strcmp(m->film.model, "ring") != 0;
     long double time = 0.0L, h = first_step(m);
     while (time < width) {
         state whole, half, two;
@@ -677,9 +687,7 @@ static bool run_segment(motion *m, state *s)
             }
             continue;
         }
-        /* of a linear film only the samples tell, and what charges it */
-        const bool stays = linear ? m->film.series == 0.0L || has_capacitance(&m->film, two.u) : inside(m, two.u);
-        if (!stays || (is_free(&m->film) && !(hold(&m->film, &two) > 0.0L))) {
+        if (!stays(m, two.u) || (is_free(&m->film) && !(hold(&m->film, &two) > 0.0L))) {
             if (h > 1e-9L * width) {
                 h *= 0.1L; /* rows before it counts are still to be taken */
                 continue;

@@ -179,6 +179,7 @@ typedef struct energy_film {
     bool dot;
     long double skin;    /* t mu [N/m] */
     long double voltage; /* [V] */
+    long double load;    /* stiffness of a spring at the edge [N/m] */
 } energy_film;
 
 /* W and the skin's W_e over their volumes less U^2 C/2 [J]. */
@@ -191,7 +192,7 @@ static long double energy_at(const energy_film *f, long double u)
     const long double skin = 0.5L * f->skin * (f->dot ? inside * invariant(disc, disc) : outside * invariant(radial, hoop));
     const long double area = f->dot ? disc * disc : radial * hoop;
     const long double capacitance = epsilon * pre * pre / h * (f->dot ? inside : outside) * area * area;
-    return elastic + skin - 0.5L * capacitance * f->voltage * f->voltage;
+    return elastic + skin + 0.5L * f->load * u * u - 0.5L * capacitance * f->voltage * f->voltage;
 }
 
 static long double force_at(const energy_film *f, long double u)
@@ -215,7 +216,7 @@ static void a_skinned_film_of_rings_rests_where_its_energy_is_least(void **state
 {
     (void)state;
     for (size_t e = 0; e < ENGINES; e++) {
-        const energy_film dot = {true, 25e-6L * 20e3L, 4500.0L}, lens = {false, 25e-6L * 20e3L, 4500.0L};
+        const energy_film dot = {true, 25e-6L * 20e3L, 4500.0L, 0.0L}, lens = {false, 25e-6L * 20e3L, 4500.0L, 0.0L};
         assert_relative(row_of(FILM("dot", "") PAPER SKIN STILL, "ring", engines[e]).displacement, rest_of(&dot, 0.0L, 2e-3L), 1e-9);
         assert_relative(row_of(FILM("lens", "") PAPER SKIN STILL, "ring", engines[e]).displacement, rest_of(&lens, -2e-3L, 0.0L), 1e-9);
     }
@@ -363,6 +364,105 @@ static void sheets_add_to_the_series_resistance(void **state)
     }
 }
 
+#define LOAD "load: {mass: 2 g, stiffness: 500 N/m}\n"
+
+static void a_film_against_a_spring_rests_where_its_energy_is_least(void **state)
+{
+    (void)state;
+    for (size_t e = 0; e < ENGINES; e++) {
+        const energy_film dot = {true, 0.0L, 4500.0L, 500.0L}, lens = {false, 0.0L, 4500.0L, 500.0L};
+        const double out = row_of(FILM("dot", "") PAPER "load: {stiffness: 500 N/m}\n" STILL, "ring", engines[e]).displacement;
+        const double in = row_of(FILM("lens", "") PAPER "load: {stiffness: 500 N/m}\n" STILL, "ring", engines[e]).displacement;
+        assert_relative(out, rest_of(&dot, 0.0L, 2e-3L), 1e-9);
+        assert_relative(in, rest_of(&lens, -2e-3L, 0.0L), 1e-9);
+    }
+}
+
+/* The film is the spring that the load takes its force from: against one that gives way by nothing all of it is left. */
+static void engines_agree_on_loads(void **state)
+{
+    (void)state;
+    for (size_t m = 0; m < dea_model_count(); m++) {
+        const dea_model *model = dea_model_at(m);
+        for (int lens = 0; lens < 2 && model->edge; lens++) {
+            char text[1024], stiff[1024];
+            const char *film = lens ? FILM("lens", ", layers: 2") PAPER SKIN STILL : FILM("dot", ", layers: 2") PAPER SKIN STILL;
+            snprintf(text, sizeof text, "%sload: {stiffness: 700 N/m}\n", film);
+            snprintf(stiff, sizeof stiff, "%sload: {stiffness: 1 GN/m}\n", film);
+            const dea_row wanted = row_of(text, model->name, "direct"), held = row_of(stiff, model->name, "direct");
+            assert_true(fabs(wanted.strain) < 0.9 * fabs(row_of(film, model->name, "direct").strain));
+            assert_relative(held.displacement, held.force / 1e9, 1e-5);
+            for (size_t e = 1; e < ENGINES; e++) {
+                if (can(text, model->name, engines[e])) {
+                    assert_relative(row_of(text, model->name, engines[e]).strain, wanted.strain, 1e-7);
+                    assert_relative(row_of(stiff, model->name, engines[e]).strain, held.strain, 1e-7);
+                }
+            }
+        }
+    }
+}
+
+static void engines_agree_on_moving_loads(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lumped", "lame", "coverage", "ring"};
+    for (size_t m = 0; m < 4; m++) {
+        for (size_t d = 0; d < 2; d++) {
+            const char *text = d ? FILM("dot", "") LOSSY LOAD SWITCHED("1 MOhm") MOVED
+                                 : FILM("lens", "") LOSSY SKIN LOAD "drive: {waveform: {points: [[0 s, 4 kV]]}}\n" MOVED;
+            run(text, models[m], "ida", &one);
+            const dea_sample *wanted = (const dea_sample *)one.bytes;
+            for (size_t e = 0; e < ENGINES; e += 2) {
+                if (!can(text, models[m], engines[e])) {
+                    continue;
+                }
+                run(text, models[m], engines[e], &other);
+                const dea_sample *rows = (const dea_sample *)other.bytes;
+                for (size_t i = 0; i < one.rows; i++) {
+                    assert_near(rows[i].displacement, wanted[i].displacement, 4e-5 * fabs(wanted[40].displacement));
+                }
+            }
+        }
+    }
+    assert_true(can(FILM("lens", "") LOSSY SKIN LOAD "drive: {waveform: {points: [[0 s, 4 kV]]}}\n" MOVED, "lumped", "direct"));
+}
+
+static void engines_agree_on_shaken_loads(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lumped", "lame", "coverage", "ring"};
+    const char *text = FILM("dot", "") LOSSY LOAD SHAKEN;
+    for (size_t m = 0; m < 4; m++) {
+        run(text, models[m], "direct", &one);
+        run(text, models[m], "ngspice", &other);
+        const dea_response *wanted = (const dea_response *)one.bytes, *rows = (const dea_response *)other.bytes;
+        for (size_t i = 0; i < one.rows; i++) {
+            assert_relative(rows[i].displacement, wanted[i].displacement, 1e-6);
+            assert_relative(rows[i].impedance, wanted[i].impedance, 1e-6);
+        }
+    }
+}
+
+/* Under a heavy load the film is a spring: membrane and ring swing alike, at sqrt(k/m). */
+static void a_heavy_load_makes_the_membrane_a_spring(void **state)
+{
+    (void)state;
+    const char *film = FILM("dot", "") PAPER "drive: {voltage: 1 V}\nstudy: {sweep: {}}\nload: {stiffness: 500 N/m}\n";
+    dea_scene scene;
+    dea_error error = {0};
+    dea_response row;
+    read_scene(film, "field", &scene);
+    const dea_row rest = solve_direct(&scene, "field");
+    scene.material.density = 1e-3;
+    scene.load.mass = 1.0;
+    scene.study = DEA_STUDY_AC;
+    scene.ac = (dea_ac){.from = 1.0, .to = 1.0, .points_per_decade = 1, .bias = 1.0};
+    assert_int_equal(dea_engine_find("direct")->ac(NULL, &scene, scene.models[0], &row, NULL, &error), DEA_OK);
+    const double turn = 4.0 * DEA_PI * DEA_PI, stiffness = rest.force / rest.displacement;
+    assert_relative(row.displacement, 2.0 * rest.force / (stiffness - turn), 1e-5);
+    dea_scene_free(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -376,6 +476,11 @@ int main(void)
         cmocka_unit_test(engines_agree_on_moving_skins),
         cmocka_unit_test(engines_agree_on_shaken_skins),
         cmocka_unit_test(a_slow_membrane_moves_its_skin_along),
+        cmocka_unit_test(a_film_against_a_spring_rests_where_its_energy_is_least),
+        cmocka_unit_test(engines_agree_on_loads),
+        cmocka_unit_test(engines_agree_on_moving_loads),
+        cmocka_unit_test(engines_agree_on_shaken_loads),
+        cmocka_unit_test(a_heavy_load_makes_the_membrane_a_spring),
         cmocka_unit_test(sheets_are_one_resistance_of_the_same_loss),
         cmocka_unit_test(sheets_add_to_the_series_resistance),
     };

@@ -541,6 +541,48 @@ static void netlists_of_random_sweeps_give_the_numbers_of_the_engine(void **stat
     assert_true(done > RANDOM_SWEEPS * 9);
 }
 
+/* A film of every law at rest, in motion and about a bias. */
+static void netlists_of_every_law_give_the_numbers_of_the_engines(void **state)
+{
+    static const struct {
+        const char *law;
+        double constants[DEA_LAW_CONSTANTS];
+        size_t entries;
+    } films[] = {
+        {"neo_hookean", {44e3}, 1},
+        {"mooney_rivlin", {16e3, 7.3e3}, 1},
+        {"gent", {45e3, 120.0}, 1},
+        {"ogden", {43.4e3, 1.445, 84.2, 4.248, -2.4e3, -1.5}, 3},
+        {"arruda_boyce", {40e3, 5.99}, 1},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof films / sizeof *films; i++) {
+        double voltages[] = {400.0, 500.0, 600.0};
+        dea_axis axis;
+        dea_scene scene = paper_scene(i % 2 ? DEA_LENS : DEA_DOT, 1.3, 0.45, 400.0);
+        scene.material.law = dea_law_find(films[i].law);
+        memcpy(scene.material.constants, films[i].constants, sizeof films[i].constants);
+        scene.material.entry_count = films[i].entries;
+        scene.models[0] = dea_model_find(i % 3 ? "ring" : "coverage");
+        add_axis(&scene, &axis, &scene.drive.voltage, voltages, 3);
+        assert_int_equal(check_sweep(&scene, films[i].law), 3);
+        scene.axis_count = 0;
+        scene.material.retardation = 2e-4;
+        scene.material.prony_count = 1;
+        scene.material.prony[0] = (dea_prony){0.1, 5e-3};
+        scene.drive.voltage = (double)NAN;
+        scene.accuracy = 1e-4;
+        scene.study = DEA_STUDY_AC;
+        scene.ac = (dea_ac){.from = 10.0, .to = 1000.0, .points_per_decade = 1, .bias = 500.0};
+        check_response(&scene, i % 2 ? "mobility" : "impedance");
+        scene.study = DEA_STUDY_TRANSIENT;
+        scene.transient = (dea_transient){.until = 4e-3, .every = 1e-4};
+        scene.drive.waveform =
+            (dea_waveform){.kind = DEA_WAVE_STEP, .step = {1e-3, (double)NAN, 600.0, 1e-4}, .period = (double)NAN};
+        check_transient(&scene, i % 2 ? "mobility" : "impedance", "ida", 1e-4, films[i].law);
+    }
+}
+
 static void check_refused(const dea_scene *scene, const char *analogy, const char *says)
 {
     char *text = NULL;
@@ -674,17 +716,17 @@ static void check_card(const char *line, size_t length, const dea_dialect *diale
     static const char *const reserved[] = {".param e=",   ".param pi=",  ".param time=", ".param temper=",
                                            ".param min=", ".param max=", ".param abs=",  ".param hertz="};
     const bool pspice = strcmp(dialect->name, "pspice") == 0;
-    bool wrong = line[0] == ' ' || line[0] == '\t' || holds(line, length, "^") || holds(line, length, "**") ||
-                 holds(line, length, "?") || (!pspice && holds(line, length, "log(")) || (pspice && line[0] == 'b') ||
+    bool wrong = !(strchr(".+", line[0]) || isupper((unsigned char)line[0])) || holds(line, length, "^") || holds(line, length, "**") ||
+                 holds(line, length, "?") || (!pspice && holds(line, length, "log(")) || (pspice && line[0] == 'B') ||
                  (pspice && holds(line, length, "ln("));
     for (size_t i = 0; i < sizeof reserved / sizeof *reserved; i++) {
         wrong = wrong || holds(line, length, reserved[i]);
     }
     for (size_t i = 0; i < length; i++) {
-        wrong = wrong || isupper((unsigned char)line[i]) || (unsigned char)line[i] > '~';
+        wrong = wrong || (unsigned char)line[i] > '~';
     }
-    const char *expression = strstr(line, line[0] == 'b' ? "=" : "value=");
-    if (*dialect->open && expression && expression < line + length && strchr("beg", line[0])) {
+    const char *expression = strstr(line, line[0] == 'B' ? "=" : "value=");
+    if (*dialect->open && expression && expression < line + length && strchr("BEG", line[0])) {
         wrong = wrong || expression[strcspn(expression, "=") + 1] != '{' || line[length - 1] != '}';
     }
     if (wrong) {
@@ -921,6 +963,7 @@ int main(void)
         cmocka_unit_test(netlists_of_the_static_examples_give_the_numbers_of_the_engine),
         cmocka_unit_test(netlist_of_one_point_gives_its_displacement),
         cmocka_unit_test(netlists_of_random_sweeps_give_the_numbers_of_the_engine),
+        cmocka_unit_test(netlists_of_every_law_give_the_numbers_of_the_engines),
         cmocka_unit_test(what_no_netlist_can_hold_is_refused_with_a_way_out),
         cmocka_unit_test(titles_never_become_cards_or_commands),
         cmocka_unit_test(netlists_keep_to_the_rules_of_their_dialect),

@@ -75,26 +75,26 @@ static void network_has_the_elements_of_the_scene_and_no_other(void **state)
     for (int i = 0; i < 3; i++) {
         dea_scene scene = protocol(models[i]);
         const bool linear = scene.models[0]->linear != NULL;
-        assert_cards(&scene, "cmass", 0);
-        assert_cards(&scene, "lspring", linear ? 1 : 0);
-        assert_cards(&scene, "bspring", linear ? 0 : 1);
-        assert_cards(&scene, "r", 0);
-        assert_cards(&scene, "c", linear ? 0 : 1);
-        assert_cards(&scene, "bforce", 1);
+        assert_cards(&scene, "CMASS", 0);
+        assert_cards(&scene, "LSPRING", linear ? 1 : 0);
+        assert_cards(&scene, "BSPRING", linear ? 0 : 1);
+        assert_cards(&scene, "R", 0);
+        assert_cards(&scene, "C", linear ? 0 : 1);
+        assert_cards(&scene, "BFORCE", 1);
         scene.material.density = 1080.0;
-        assert_cards(&scene, "cmass", 1);
+        assert_cards(&scene, "CMASS", 1);
         add_branches(&scene);
-        assert_cards(&scene, linear ? "lbranch" : "gbranch", 3);
-        assert_cards(&scene, linear ? "rbranch" : "cbranch", 3);
+        assert_cards(&scene, linear ? "LBRANCH" : "GBRANCH", 3);
+        assert_cards(&scene, linear ? "RBRANCH" : "CBRANCH", 3);
         scene.material.retardation = 1e-4;
-        assert_cards(&scene, linear ? "rdamper" : "bdamper", 1);
-        assert_cards(&scene, "rseries", 0);
+        assert_cards(&scene, linear ? "RDAMPER" : "BDAMPER", 1);
+        assert_cards(&scene, "RSERIES", 0);
         scene.drive.leakage_resistance = 1e11;
-        assert_cards(&scene, "rleak", 1);
-        assert_cards(&scene, "ccharge", 0);
+        assert_cards(&scene, "RLEAK", 1);
+        assert_cards(&scene, "CCHARGE", 0);
         scene.drive.series_resistance = 1e6;
-        assert_cards(&scene, "rseries", 1);
-        assert_cards(&scene, "ccharge", 1);
+        assert_cards(&scene, "RSERIES", 1);
+        assert_cards(&scene, "CCHARGE", 1);
     }
 }
 
@@ -110,10 +110,9 @@ static void every_number_of_an_expression_is_a_parameter(void **state)
     assert_true(netlist[0] == '*' && netlist[1] == ' ');
     assert_string_equal(netlist + strlen(netlist) - 6, "\n.end\n");
     for (char *line = strtok(netlist, "\n"); line; line = strtok(NULL, "\n")) {
-        assert_false(isspace((unsigned char)line[0]));
+        assert_true(strchr("*.", line[0]) || isupper((unsigned char)line[0]));
         for (const char *at = line; *at && line[0] != '*'; at++) {
-            assert_false(isupper((unsigned char)*at));
-            assert_false(line[0] == 'b' && *at == '.'); /* a fraction written out */
+            assert_false(line[0] == 'B' && *at == '.'); /* a fraction written out */
         }
     }
     free(netlist);
@@ -124,7 +123,7 @@ static void both_edges_of_a_pulse_are_corners_of_the_source(void **state)
     (void)state;
     const dea_scene scene = protocol("lumped");
     char *netlist = netlist_of(&scene);
-    assert_non_null(strstr(netlist, "vsource film 0 pwl(0 0 5 0 5.0000010000000001 4500 15 4500 15.000000999999999 0 25 0)\n"));
+    assert_non_null(strstr(netlist, "VSOURCE film 0 pwl(0 0 5 0 5.000001 4500 15 4500 15.000001 0 25 0)\n"));
     free(netlist);
 }
 

@@ -640,6 +640,42 @@ static void a_film_past_pull_in_is_flagged(void **state)
     child_end(&run);
 }
 
+/* The load of a scene is a spring on the edge of its part. */
+static void a_spring_on_the_edge_is_the_load_of_a_scene(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *part;
+        dea_kind kind;
+        const char *model;
+    } parts[] = {{"dea_dot", DEA_DOT, "lumped"},          {"dea_lens", DEA_LENS, "lumped"},
+                 {"dea_dot_lame", DEA_DOT, "lame"},       {"dea_lens_lame", DEA_LENS, "lame"},
+                 {"dea_dot_hyper", DEA_DOT, "coverage"},  {"dea_lens_hyper", DEA_LENS, "coverage"},
+                 {"dea_dot_ring", DEA_DOT, "ring"},       {"dea_lens_ring", DEA_LENS, "ring"}};
+    enum { PARTS = sizeof parts / sizeof *parts };
+    child_run run;
+    FILE *file = begin_circuit();
+    fputs("va a 0 4000\n.save", file);
+    for (int i = 0; i < PARTS; i++) {
+        fprintf(file, " v(x%d.u)", i);
+    }
+    fputc('\n', file);
+    for (int i = 0; i < PARTS; i++) {
+        fprintf(file, "x%d a 0 e%d %s layers=2\nxs%d e%d 0 dea_spring stiffness=800\n", i, i, parts[i].part, i, i);
+    }
+    fputs(".op\n", file);
+    run_circuit(file, &run);
+    for (int i = 0; i < PARTS; i++) {
+        char name[24];
+        dea_scene scene = paper_scene(parts[i].kind, 1.2, 0.5, 4000.0);
+        scene.actuator.layers = 2.0;
+        scene.load.stiffness = 800.0;
+        snprintf(name, sizeof name, "v(x%d.u)", i);
+        assert_relative(1e-6 * child_value(&run, name, 0), solve_direct(&scene, parts[i].model).displacement, 1e-6);
+    }
+    child_end(&run);
+}
+
 static void a_lever_of_minus_one_sets_two_dots_against_each_other(void **state)
 {
     (void)state;
@@ -1060,6 +1096,7 @@ int main(void)
         cmocka_unit_test(parameters_out_of_range_are_flagged_and_move_nothing),
         cmocka_unit_test(a_part_of_any_law_stands_where_the_model_does),
         cmocka_unit_test(a_film_past_pull_in_is_flagged),
+        cmocka_unit_test(a_spring_on_the_edge_is_the_load_of_a_scene),
         cmocka_unit_test(a_lever_of_minus_one_sets_two_dots_against_each_other),
         cmocka_unit_test(a_scene_becomes_a_part_with_its_numbers_and_a_harmless_title),
         cmocka_unit_test(parts_of_different_names_share_a_circuit),

@@ -315,25 +315,26 @@ static void engines_keep_their_promises_on_random_scenes(void **state)
 /* Promises that were broken. */
 static const struct {
     dea_state last; /* of the last row */
-    size_t engines; /* that deliver */
+    size_t runs;    /* that deliver, of two accuracies of each engine */
+    size_t failed;  /* runs that say so */
     const char *text;
 } hard_to_keep[] = {
     /* a lens so deep in slack that its force follows the strain twenty times */
-    {DEA_STATE_SLACK, 2,
+    {DEA_STATE_SLACK, 5, 1,
      "actuator: {kind: lens, frame_radius: 0.037987516999655614 m, coverage: 0.34203059175942685,\n"
      "  film_thickness: 0.00026563453542893762 m, prestretch: 3.9298411033839291}\n"
      "material: {yeoh: {C1: 630479.30409754871 Pa, C2: 12070.152719188161 Pa, C3: 0 Pa}, permittivity: 8.1616038585472808}\n"
      "drive: {voltage: 23059.238763455531 V}\nmodel: field\n"
      "study: {sweep: {voltage: [28452.971753026566 V, 30078.865302443734 V]}}\n"},
     /* a narrow annulus that loses its ellipticity at a small strain of the disc, behind which there are other roots */
-    {DEA_STATE_PULL_IN, 2,
+    {DEA_STATE_PULL_IN, 6, 0,
      "actuator: {kind: lens, frame_radius: 0.0018328892777835966 m, coverage: 0.97152469858042112,\n"
      "  film_thickness: 4.610956161882364e-05 m, prestretch: 1.2203506766512637}\n"
      "material: {yeoh: {C1: 46935.6 Pa, C2: -4125.2 Pa, C3: 307.04 Pa}, permittivity: 3.1188}\n"
      "drive: {voltage: 1000 V}\nmodel: field\n"
      "study: {sweep: {voltage: [1000 V, 1140 V, 1300 V, 1758 V]}}\n"},
     /* a linear film whose capacitance ends before its frame, as it swings back */
-    {DEA_STATE_PULL_IN, 2,
+    {DEA_STATE_PULL_IN, 4, 0,
      "actuator: {kind: lens, frame_radius: 0.0012503066153113683 m, coverage: 0.91267207652003479,\n"
      "  film_thickness: 1.0637744766120891e-05 m, prestretch: 1.14282342573808}\n"
      "material:\n  yeoh: {C1: 146417.69094899992 Pa, C2: 9831.3958373059559 Pa, C3: 5160.5324552135135 Pa}\n"
@@ -344,7 +345,7 @@ static const struct {
      "s}}\n"
      "model: lame\nstudy: {transient: {until: 0.000139 s, every: 7.0202743331343512e-07 s}}\n"},
     /* a film without mass and damper whose stiffness at rest is a tenth of its stresses */
-    {DEA_STATE_OK, 2,
+    {DEA_STATE_OK, 4, 0,
      "actuator: {kind: lens, frame_radius: 0.0024503558280604978 m, coverage: 0.54205249700484692,\n"
      "  film_thickness: 2.6067456848292821e-05 m, prestretch: 1.341461099136938}\n"
      "material: {yeoh: {C1: 139376.02 Pa, C2: -27342.778 Pa, C3: 1185.2416 Pa}, permittivity: 9.0414943}\n"
@@ -353,7 +354,7 @@ static const struct {
      "    phase: 4.3585337066108316 rad, delay: 4.064242338169842e-06 s}}\n"
      "model: coverage\nstudy: {transient: {until: 2e-05 s, every: 1.5e-07 s, start: bias}}\n"},
     /* a film without mass and damper that its charge holds past the fold of the voltage */
-    {DEA_STATE_OK, 2,
+    {DEA_STATE_OK, 4, 0,
      "actuator: {kind: lens, frame_radius: 0.035355362349280 m, coverage: 0.95330256529467, film_thickness: 1.31787322722e-05 "
      "m,\n"
      "  prestretch: 1.30401393083}\n"
@@ -362,12 +363,18 @@ static const struct {
      "  waveform: {points: [[0.295 s, 28 V], [2.245 s, 86 V], [4.246 s, -73 V], [7.09 s, 53 V], [9.08 s, -125 V]]}\n"
      "model: coverage\nstudy: {transient: {until: 10.39 s, every: 0.41558 s}}\n"},
     /* a jump at the first sample, which shows the velocity of a branch too fast and too weak to be seen otherwise */
-    {DEA_STATE_OK, 3,
+    {DEA_STATE_OK, 6, 0,
      "actuator: {kind: dot, frame_radius: 10 mm, coverage: 0.4, film_thickness: 3.1366820384274669e-06 m, prestretch: 1.327}\n"
      "material:\n  yeoh: {C1: 37829 Pa, C2: -2643 Pa, C3: 1408 Pa}\n  permittivity: 7.73\n"
      "  prony: [{g: 0.0083354617685569028, tau: 0.00064 s}, {g: 0.112, tau: 11093 s}, {g: 0.0121, tau: 6.2368944137494644 s}]\n"
      "drive: {waveform: {points: [[1968 s, 3.9 V], [12460 s, -18.9 V], [27511 s, -40 V], [60000 s, 29 V]]}}\n"
      "model: lumped\nstudy: {transient: {until: 60263 s, every: 251.09749029167287 s}}\n"},
+    /* a linear film without mass and damper that leaves its frame between two samples, where nobody sees it */
+    {DEA_STATE_OK, 6, 0,
+     "actuator: {kind: dot, frame_radius: 2.17 mm, coverage: 0.96945, film_thickness: 5 um, prestretch: 2.1937}\n"
+     "material: {mooney_rivlin: {C10: 37948 Pa, C01: 4734 Pa}, permittivity: 4.183, prony: [{g: 0.1, tau: 5 s}]}\n"
+     "drive: {waveform: {step: {on: 555 s, voltage: 171 V, rise: 0.8 s, off: 943 s}}}\n"
+     "model: lumped\nstudy: {transient: {until: 5000 s, every: 1250 s}}\n"},
 };
 
 /* Of all laws, no rise shorter than edges can be. */
@@ -413,9 +420,9 @@ static void engines_keep_the_promises_that_were_broken(void **state)
                 }
             }
         }
-        assert_int_equal(counted.delivered + counted.unjudged, 2 * hard_to_keep[i].engines);
+        assert_int_equal(counted.delivered + counted.unjudged, hard_to_keep[i].runs);
         assert_true(counted.unjudged <= 1); /* the truth of a run may be too coarse for the best accuracy */
-        assert_int_equal(counted.failed, 0);
+        assert_int_equal(counted.failed, hard_to_keep[i].failed);
         judge_close(&j);
     }
 }

@@ -270,7 +270,7 @@ static void runs_of_lines_leave_the_voltage_as_it_is(void **state)
         scene.accuracy = i % 4 < 2 ? 1e-3 : 1e-5;
         assert_int_equal(dea_signal_open(&scene, &one, &error), DEA_OK);
         assert_int_equal(dea_signal_open(&scene, &other, &error), DEA_OK);
-        assert_int_equal(dea_signal_soften(&other, scene.accuracy, i >= 4, &error), DEA_OK);
+        assert_int_equal(dea_signal_soften(&other, scene.accuracy, i >= 4 ? 1.0 : 0.0, &error), DEA_OK);
         assert_true(i >= 4 || i == 0 ? other.count < one.count / 20 : other.count <= one.count);
         for (int k = 0; k < PLACES; k++) {
             const double t = draw(0.0, 0.05);

@@ -30,6 +30,7 @@ typedef struct dea_radial {
     const dea_dynamics *dynamics; /* borrowed: point under the bias, masses, damper, branches */
     dea_row rest;                 /* the film under the bias */
     double mass[2];               /* rho R_a^2/W11 of disc and annulus [s^2] */
+    double load_mass;             /* at the edge [kg], 0: none */
     struct dea_radial_mesh *meshes[DEA_RADIAL_MESHES]; /* owned: each twice as fine as the one before; NULL: not made yet */
 } dea_radial;
 

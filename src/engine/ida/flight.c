@@ -164,17 +164,20 @@ static bool suits(const dea_flight *flight)
     return ring->light && !(linear && ring->turns) && ring->fastest <= 5.0 * ring->omega;
 }
 
-bool dea_flight_swings(dea_flight *flight)
+/* Radians of a ring up to which a line costs Runge-Kutta no more than a start of its own. */
+static const double short_line = 20.0;
+
+double dea_flight_short_line(dea_flight *flight)
 {
     const dea_segment *first = flight->motion.segment;
     const dea_segment whole = {.to = flight->scene->transient.until, .start = first->start, .end = first->start, .sine = true};
     if (!dea_motion_start(&flight->motion, flight->scene->transient.from_bias, flight->y)) {
-        return false;
+        return 0.0;
     }
     flight->motion.segment = &whole;
     dea_ring_find(&flight->motion, flight->ring);
     flight->motion.segment = first;
-    return suits(flight);
+    return suits(flight) ? short_line / flight->ring->omega : 0.0;
 }
 
 /* How long a ring is worth an explicit method in the segment [s]: until it is smaller than what the tolerance sees, if its
@@ -187,8 +190,8 @@ static double explicit_time(const dea_flight *flight)
     if (!suits(flight)) {
         return 0.0;
     }
-    if (segment->lines) {
-        return width; /* its corners never let the ring die */
+    if (segment->corner) {
+        return width; /* they never let the ring die */
     }
     const double life = fmin(width, log(10.0 / flight->tolerance) / ring->decay);
     return ring->turns || ring->omega * life < 1e6 ? life : 0.0;

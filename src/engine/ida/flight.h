@@ -70,8 +70,9 @@ dea_state dea_flight_step(dea_flight *flight, double time, const double *w);
 /* `failed`, because a solver ended with an error code at a time of the segment. */
 dea_state dea_flight_broke(dea_flight *flight, const char *solver, int code, double time);
 
-/* True where a run from rest would go by Runge-Kutta, to whose steps a corner between two of them is nothing. */
-bool dea_flight_swings(dea_flight *flight);
+/* Lines of the voltage up to that long are for Runge-Kutta, to whose steps a corner between two of them is nothing [s]; 0 where
+ * the film does not swing. */
+double dea_flight_short_line(dea_flight *flight);
 /* The segment from a time on to its end, by IDA; what happened. */
 dea_state dea_flight_implicit(dea_flight *flight, double from);
 /* The segment up to a time, by Runge-Kutta. */

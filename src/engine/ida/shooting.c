@@ -79,6 +79,12 @@ static double stress_change(const dea_shooting *s, region where, double d1, doub
     return is_coated(s, where) ? change + dea_point_skin_rise(s->point, d1, d2) : change;
 }
 
+/* What a load k at the edge adds to s1 of the annulus, k u/(2 pi R_a H). */
+static double load_stress(const dea_shooting *s, double edge)
+{
+    return s->point->load * edge / (2.0 * DEA_PI * s->point->film_thickness);
+}
+
 static dea_stress stress_at(const dea_shooting *s, region where, double l1, double l2)
 {
     const dea_film *film = &s->point->film;
@@ -192,7 +198,7 @@ static double jump_guess(const dea_shooting *s, double l)
 {
     const double edge = l - s->point->film.prestretch;
     const double load = (s->disc_k - s->annulus_k) * l * l * l;
-    const double at_edge = stress_change(s, DISC, edge, edge);
+    const double at_edge = stress_change(s, DISC, edge, edge) + load_stress(s, edge);
     double jump = 0.0;
     double sound = 0.0; /* last place within the energy */
     for (int i = 0; i < 60; i++) {
@@ -218,7 +224,7 @@ static bool start(dea_shooting *s, double edge)
     dea_integrator *m = &s->integrator;
     const dea_sundials *sun = m->sun;
     const double l = s->point->film.prestretch + edge;
-    const double sigma = stress_change(s, DISC, edge, edge) - s->disc_k * l * l * l;
+    const double sigma = stress_change(s, DISC, edge, edge) + load_stress(s, edge) - s->disc_k * l * l * l;
     sunrealtype *v = NV_DATA_S(m->y);
     v[SIGMA] = sigma / s->stress;
     v[HOOP] = edge / s->strain;
@@ -517,7 +523,7 @@ void dea_shooting_solve(dea_shooting *s, const dea_point *point, double accuracy
         return;
     }
     const double linear =
-        sign * s->pressure * film->square * film->prestretch * (1.0 - b2) / (2.0 * film->w11); /* without softening */
+        sign * s->pressure * film->square * film->prestretch * (1.0 - b2) / (2.0 * film->w11 + (1.0 - b2) * load_stress(s, 1.0)); /* without softening */
     double edge = fabs(linear) < 0.2 * film->prestretch ? edge_at_full_load(s, linear) : NAN;
     if (isnan(edge) || !is_near_rest(s, edge)) {
         const double end = sign > 0.0 ? film->prestretch * (1.0 / point->coverage - 1.0) : film->prestretch;

@@ -257,7 +257,7 @@ static dea_status fly_signal(const dea_sundials *sun, const dea_scene *scene, de
     if (status == DEA_OK) {
         status = dea_flight_open(sun, scene, dynamics, &signal, &flight, error);
         if (status == DEA_OK && !(flight.peaks && dynamics->series == 0.0)) { /* the current C U' has its peaks at corners */
-            status = dea_signal_soften(&signal, scene->accuracy, dea_flight_swings(&flight), error);
+            status = dea_signal_soften(&signal, scene->accuracy, dea_flight_short_line(&flight), error);
             flight.motion.segment = signal.segments;
         }
         if (status == DEA_OK) {

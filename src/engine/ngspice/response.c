@@ -5,7 +5,7 @@
 
 #include "deaspice/measures.h"
 #include "engine/ngspice/moving.h"
-#include "netlist/mobility.h"
+#include "engine/ngspice/deck.h"
 
 /* The library rounds the number of steps between two frequencies down: a last one that rounding leaves short would be lost. */
 static const double grid = 1e-13;
@@ -49,13 +49,10 @@ static void impedance_of(const film_port *port, const double *first, const doubl
     z[1] = (voltage[1] * current[0] - voltage[0] * current[1]) / square;
 }
 
-/* The flux of the spring is the displacement. */
-static void fill_row(const film_port *port, const dea_ngspice_table *table, size_t index, double stiffness, double frequency,
-                     dea_response *row)
+static void fill_row(const film_port *port, const dea_ngspice_table *table, size_t index, double frequency, dea_response *row)
 {
     double z[2];
-    const double *spring = &table->columns[0][2 * index];
-    const double u[2] = {spring[0] / stiffness, spring[1] / stiffness};
+    const double *u = &table->columns[0][2 * index];
     impedance_of(port, &table->columns[1][2 * index], u, frequency, z);
     row->frequency = frequency;
     polar(u[0], u[1], &row->displacement, &row->displacement_phase);
@@ -71,11 +68,11 @@ typedef struct response {
     dea_response *rows;
 } response;
 
-/* Spring and film of @p count frequencies; the caller frees the table, also after a failure. */
+/* Displacement and film of @p count frequencies; the caller frees the table, also after a failure. */
 static dea_status run_netlist(const response *r, const dea_mobility_band *band, size_t count, dea_ngspice_table *table,
                               dea_error *error)
 {
-    const char *const names[] = {"lspring#branch", r->dynamics->series > 0.0 ? "film" : "vsource#branch"};
+    const char *const names[] = {"disp", r->dynamics->series > 0.0 ? "film" : "vsource#branch"};
     char *netlist = NULL;
     dea_status status = dea_mobility_write_small(r->dynamics, &r->bias, band, &netlist, error);
     if (status == DEA_OK) {
@@ -93,12 +90,11 @@ static bool magnitudes(void *user, double from, double to, size_t count, double 
 {
     const response *r = user;
     const dea_mobility_band band = {.from = from, .to = to, .count = count};
-    const double stiffness = dea_dynamics_stiffness(r->dynamics, r->bias.u, r->bias.voltage, true);
     dea_ngspice_table table = {0};
     dea_error ignored = {0};
     const bool answered = run_netlist(r, &band, count, &table, &ignored) == DEA_OK;
     for (size_t i = 0; answered && i < count; i++) {
-        out[i] = hypot(table.columns[0][2 * i], table.columns[0][2 * i + 1]) / stiffness;
+        out[i] = hypot(table.columns[0][2 * i], table.columns[0][2 * i + 1]);
     }
     dea_ngspice_table_free(&table);
     return answered;
@@ -111,11 +107,10 @@ static dea_status run_band(const response *r, size_t first, size_t count, dea_er
     const dea_mobility_band band = {.from = dea_layout_place(r->scene, first),
                                     .to = dea_layout_place(r->scene, first + count - 1) * (1.0 + grid),
                                     .points_per_decade = count > 1 ? r->scene->ac.points_per_decade : 0};
-    const double stiffness = dea_dynamics_stiffness(r->dynamics, r->bias.u, r->bias.voltage, true);
     dea_ngspice_table table = {0};
     const dea_status status = run_netlist(r, &band, count, &table, error);
     for (size_t i = 0; i < count && status == DEA_OK; i++) {
-        fill_row(&port, &table, i, stiffness, dea_layout_place(r->scene, first + i), &r->rows[first + i]);
+        fill_row(&port, &table, i, dea_layout_place(r->scene, first + i), &r->rows[first + i]);
     }
     dea_ngspice_table_free(&table);
     return status;

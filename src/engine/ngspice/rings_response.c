@@ -7,8 +7,8 @@
 
 #include "deaspice/measures.h"
 #include "engine/ngspice/moving.h"
-#include "netlist/expression_text.h"
-#include "netlist/mobility.h"
+#include "netlist/part_text.h"
+#include "engine/ngspice/deck.h"
 #include "netlist/rings_small.h"
 #include "support/text.h"
 
@@ -43,9 +43,9 @@ static dea_status write_netlist(const response *r, const dea_mobility_band *band
         fprintf(out, ".options noopac pivtol=1e-60\n.save v(u%zu) v(film) v(motion)\n.ac ", r->membrane.rings.edge + 1);
         fprintf(out, band->points_per_decade > 0 ? "dec %zu " : "lin %zu ",
                 band->points_per_decade > 0 ? band->points_per_decade : band->count > 1 ? band->count : 1);
-        dea_netlist_number(out, band->from);
+        dea_part_number(out, band->from);
         fputc(' ', out);
-        dea_netlist_number(out, band->to);
+        dea_part_number(out, band->to);
         fputs("\n.end\n", out);
     }
     if (!dea_text_close(out) || !*text) {

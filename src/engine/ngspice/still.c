@@ -11,7 +11,7 @@
 
 #include "engine/ngspice/stretch.h"
 #include "netlist/rings_line.h"
-#include "netlist/expression_text.h"
+#include "netlist/part_text.h"
 #include "network/still.h"
 #include "support/text.h"
 
@@ -138,11 +138,11 @@ static dea_status write_deck(const dea_rings_line *line, const line_job *job, si
         fputs("* exact membrane as a network of rings\n", out);
         status = dea_rings_line_write(line, dea_dialect_at(0), out, error);
         fputs("vindex k 0 0\n.options itl1=100 itl2=100 gminsteps=0 srcsteps=0 reltol=", out);
-        dea_netlist_number(out, fmin(1e-7, job->accuracy));
+        dea_part_number(out, fmin(1e-7, job->accuracy));
         fputs(" vntol=", out);
-        dea_netlist_number(out, 1e-11 * strain);
+        dea_part_number(out, 1e-11 * strain);
         fputs(" abstol=", out);
-        dea_netlist_number(out, 1e-11 * strain);
+        dea_part_number(out, 1e-11 * strain);
         fputs("\n.save", out);
         for (size_t n = 1; n < line->mesh.disc + line->mesh.annulus; n++) {
             fprintf(out, " v(xline%zu.u%zu)", line->number, n);

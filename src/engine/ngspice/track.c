@@ -76,11 +76,6 @@ double dea_route_voltage(const dea_route *route, double source, double u, double
     return route->dynamics->series > 0.0 ? charge / dea_dynamics_edge(route->dynamics, u).capacitance : source;
 }
 
-static bool is_free(const dea_dynamics *d)
-{
-    return !(d->mass > 0.0) && !(d->retardation > 0.0);
-}
-
 /* m u'' = phi U^2 less what the film holds, its damper too. */
 static double acceleration(const dea_dynamics *d, const dea_edge *e, const node *n)
 {
@@ -415,7 +410,7 @@ static void enter_segment(runner *r, double time, double next)
 static bool is_possible(const runner *r, const node *n)
 {
     dea_dynamics *d = r->route->dynamics;
-    return is_inside(d, n) && (!is_free(d) || dea_dynamics_hold(d, n->moment.u, n->moment.voltage) > 0.0);
+    return is_inside(d, n) && (!dea_dynamics_is_free(d) || dea_dynamics_hold(d, n->moment.u, n->moment.voltage) > 0.0);
 }
 
 /* Why the run ends: the film has lost its stability there or, unless its charge holds it, will find no equilibrium, or another
@@ -429,7 +424,7 @@ static dea_state verdict(const runner *r)
     double u;
     const double most = fmin(r->route->voltage, fmax(fabs(segment->start), fabs(segment->end)));
     const double voltage = d->series > 0.0 ? fmax(most, fabs(r->last.moment.voltage)) : most;
-    const bool charged = is_free(d) && d->series > 0.0;
+    const bool charged = dea_dynamics_is_free(d) && d->series > 0.0;
     const bool lost = here < 1e-3 * rest || (!charged && !dea_dynamics_equilibrium(d, voltage, &u));
     return lost ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
 }
@@ -508,7 +503,7 @@ static bool advance(runner *r, const ahead *p)
     node n = read_point(r, p);
     correct(r, p->time - r->last.moment.time, &n);
     if (!is_possible(r, &n)) {
-        if (is_free(r->route->dynamics)) {
+        if (dea_dynamics_is_free(r->route->dynamics)) {
             r->track->end = verdict(r); /* Newton's method may have found a root of no film */
         } else {
             leave(r, &n);
@@ -541,7 +536,7 @@ static void find_fast(runner *r)
     const double held = dea_dynamics_stiffness(d, r->last.moment.u, r->last.moment.voltage, false);
     const double heavy = d->mass > 0.0 ? (r->rings || r->slow ? (double)INFINITY : d->mass / resistance) : resistance / held;
     r->fast =
-        (fast_rates){.u = !is_free(d) && heavy<limit, .charge = d->series> 0.0 && d->series * e.capacitance < limit && !r->rings};
+        (fast_rates){.u = !dea_dynamics_is_free(d) && heavy<limit, .charge = d->series> 0.0 && d->series * e.capacitance < limit && !r->rings};
     r->fast.any = r->fast.u || r->fast.charge;
     for (size_t i = 0; i < dea_dynamics_states(d); i++) {
         r->fast.z[i] = tau_of(d, i) < limit;
@@ -689,7 +684,7 @@ static void jump(runner *r, size_t segment)
     dea_mobility_state state = r->last.state;
     settle(r);
     r->segment = segment;
-    if (is_free(d) && d->series == 0.0) {
+    if (dea_dynamics_is_free(d) && d->series == 0.0) {
         const double u = state.u;
         if (!dea_dynamics_follow(d, route->signal->segments[segment].start, state.z, &state.u)) {
             r->track->end = DEA_STATE_PULL_IN;
@@ -753,7 +748,7 @@ static bool is_vague(const runner *r)
 {
     const dea_route *route = r->route;
     const dea_track *track = r->track;
-    return track->end == DEA_STATE_PULL_IN && !route->dynamics->linear && !is_free(route->dynamics) &&
+    return track->end == DEA_STATE_PULL_IN && !route->dynamics->linear && !dea_dynamics_is_free(route->dynamics) &&
            track->reached < route->samples && dea_layout_place(route->scene, track->reached) <= track->last.time + r->step;
 }
 

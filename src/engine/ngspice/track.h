@@ -4,7 +4,7 @@
 
 #include "engine/ngspice/library.h"
 #include "engine/ngspice/pieces.h"
-#include "netlist/mobility.h"
+#include "engine/ngspice/deck.h"
 #include "network/peak.h"
 
 /* Displacement, velocity, charge and its slope, where there is a series resistance, at a sample. */

@@ -539,14 +539,6 @@ static double scale_of(dea_dynamics *d, const dea_transient *transient, double v
     return share * still;
 }
 
-/* A damper so strong that the mass only matters for a moment m/r behind an edge, and then to m K/r^2 of the displacement. */
-static bool is_weightless(dea_dynamics *d, double accuracy)
-{
-    const dea_edge e = dea_dynamics_edge(d, 0.0);
-    const double resistance = d->retardation * dea_edge_viscous(d, &e);
-    return d->mass * dea_dynamics_stiffness(d, 0.0, 0.0, false) <= 1e-3 * accuracy * resistance * resistance;
-}
-
 /* A point of a netlist stands at a time of the run, which tells no two of them apart within an edge that is very short beside it:
  * refused where the film is as fast. */
 static dea_status can_tell_edges(const dea_route *route, const dea_pace *pace, dea_error *error)
@@ -643,22 +635,13 @@ static dea_status run_inside(dea_ngspice *library, const dea_scene *scene, const
                              dea_sample *samples, dea_summary *summary, dea_error *error)
 {
     dea_dynamics dynamics;
-    dea_mobility mobility = {0};
+    dea_mobility mobility;
     dea_signal signal = {0};
-    dea_status status = dea_dynamics_open(scene, model, &dynamics, error);
-    if (status == DEA_OK) {
-        if (is_weightless(&dynamics, scene->accuracy)) {
-            dynamics.mass = 0.0;
-        }
-        status = dea_mobility_open(scene, &dynamics, &mobility, error);
-    }
+    dea_status status = dea_mobility_prepare(scene, model, dea_analogy_at(0), &dynamics, &mobility, error);
     if (status == DEA_OK) {
         status = dea_signal_open(scene, &signal, error);
     }
     if (status == DEA_OK) {
-        if (!(dynamics.mass > 0.0) && !(dynamics.retardation > 0.0)) {
-            dea_mobility_displace(&mobility);
-        }
         dea_dynamics slow = dynamics; /* borrows what the other owns */
         slow.mass = 0.0;
         slow.retardation = dynamics.mass > 0.0 ? 0.0 : dynamics.retardation;
@@ -681,7 +664,7 @@ static dea_status run_inside(dea_ngspice *library, const dea_scene *scene, const
 /* The film's own time: of its ring, of its damper, or else that of the run [s]. */
 static double own_time(dea_dynamics *d, const dea_scene *scene)
 {
-    if (d->mass > 0.0 && !is_weightless(d, scene->accuracy)) {
+    if (d->mass > 0.0) {
         return sqrt(d->mass / fabs(dea_dynamics_stiffness(d, 0.0, 0.0, false)));
     }
     return d->retardation > 0.0 ? d->retardation : scene->transient.until;
@@ -697,7 +680,9 @@ dea_status dea_ngspice_units(const dea_scene *scene, const dea_model *model, dea
     }
     if (status == DEA_OK) {
         const double voltage = film_voltage(&dynamics, &scene->transient, &signal);
-        const dea_sizes sizes = {.displacement = scale_of(&dynamics, &scene->transient, voltage),
+        const double scale = scale_of(&dynamics, &scene->transient, voltage);
+        dea_dynamics_lighten(&dynamics, scene->accuracy);
+        const dea_sizes sizes = {.displacement = scale,
                                  .voltage = voltage,
                                  .time = own_time(&dynamics, scene)};
         *units = dea_units_of(&dynamics, &sizes);

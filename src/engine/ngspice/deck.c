@@ -1,0 +1,252 @@
+#include "engine/ngspice/deck.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "netlist/curve_cards.h"
+#include "support/text.h"
+
+/* The engine's text: numbers, in the analogy in which nothing but nodes is added. */
+static dea_cards_form engine_form(void)
+{
+    return (dea_cards_form){dea_dialect_find("ngspice"), dea_analogy_at(0), true};
+}
+
+typedef struct writer {
+    const dea_mobility *mobility;
+    const dea_dynamics *dynamics;
+    const dea_mobility_piece *piece;
+    dea_cards cards;
+    FILE *out;
+} writer;
+
+/* Corners of a segment up to its end. The library meets each, and from one to the next takes four steps at least, which it would
+ * not shorten for an edge that is shorter than one: corners on its line do that. */
+static void write_ramp(const writer *w, const dea_segment *segment)
+{
+    const dea_mobility_piece *p = w->piece;
+    const double from = fmax(segment->from, p->from);
+    const double end = fmin(segment->to, p->to);
+    const bool brief = segment->start != segment->end && end - from < p->parts * p->step;
+    const double parts = brief ? p->parts : 1.0;
+    for (double part = 1.0; part <= parts; part++) {
+        const double time = part == parts ? end : from + (end - from) * (part / parts);
+        fputc(' ', w->out);
+        dea_part_number(w->out, time - p->from);
+        fputc(' ', w->out);
+        dea_part_number(w->out, dea_segment_voltage(p->signal, segment, time));
+    }
+}
+
+/* The voltage of the source from the begin of the piece on: its segments as breakpoints, or a sine. */
+static void write_source(const writer *w, const char *node)
+{
+    const dea_mobility_piece *p = w->piece;
+    const dea_segment *segment = &p->signal->segments[p->segment];
+    fputs("* voltage of the source [V]\n", w->out);
+    if (segment->sine) {
+        const dea_curve_cards cards = {.out = w->out,
+                                       .dialect = engine_form().dialect,
+                                       .number = dea_part_number,
+                                       .signal = p->signal,
+                                       .first = p->segment,
+                                       .count = 1,
+                                       .begin = p->from,
+                                       .node = node};
+        dea_curve_cards_write(&cards);
+        return;
+    }
+    fprintf(w->out, "VSOURCE %s 0 ", node);
+    fputs("pwl(0 ", w->out);
+    dea_part_number(w->out, dea_segment_voltage(p->signal, segment, p->from));
+    for (size_t i = p->segment; i < p->signal->count && p->signal->segments[i].from < p->to; i++) {
+        write_ramp(w, &p->signal->segments[i]);
+    }
+    fputs(")\n", w->out);
+}
+
+static double current_tolerance(const writer *w)
+{
+    return 1e-10 * w->piece->force;
+}
+
+/* The library has one tolerance for all currents, forces and electrical ones: those of the port are drawn in a unit of so many
+ * amperes that it leaves 10^-9 of the voltage open. In amperes the current of a small resistance could not be found so well, and
+ * that of a large one would drown. */
+static double port_unit(const writer *w)
+{
+    const double unit = 1e-9 * w->piece->signal->largest / (w->dynamics->series * current_tolerance(w));
+    return unit > 0.0 && isfinite(unit) ? unit : 1.0;
+}
+
+static void write_fit(const writer *w)
+{
+    if (w->piece->conductance != 0.0) {
+        fputs("* mechanical resistance [N s/m] that fits the damping of the time steps to that of the film; its inverse is "
+              "written\n",
+              w->out);
+        dea_part_value(w->out, "r_fit", 1.0 / w->piece->conductance);
+        fputs("RFIT edge 0 {r_fit}\n", w->out);
+    }
+}
+
+/* Pivots are the largest elements (pivrel=1): with smaller ones the velocity of a spring's end, the difference of two fluxes over
+ * a step, is taken from the row that rounds it most, by 1e-16 u/h, which no tolerance of a velocity allows for.
+ *
+ * The steps are as long as they may be, the step control of the library is off: its errors would follow no order. The library
+ * takes a corner at the print interval, with a first step of the Euler rule behind it, which would damp a ring: with mass that
+ * interval is short. */
+static void write_analysis(const writer *w)
+{
+    const dea_mobility_piece *p = w->piece;
+    const dea_mobility_vectors vectors = dea_mobility_vectors_of(w->mobility);
+    const double speed = p->scale / p->step;
+    /* rounding of the velocity: of that of a ring, or where no mass holds it, of differences of u over a step */
+    const double ring = p->mass > 0.0 ? 1e-14 * sqrt(p->force * p->scale / p->mass) : 1e-11 * speed;
+    const double noise = w->mobility->displaced ? 0.0 : ring;
+    fputs(".options method=trap trtol=1e30 itl4=50 pivtol=1e-60 pivrel=1 reltol=", w->out);
+    dea_part_number(w->out, p->tolerance);
+    fputs(" vntol=", w->out);
+    dea_part_number(w->out, p->loose * (1e-11 * fmin(speed, p->scale) + noise));
+    fputs(" abstol=", w->out);
+    dea_part_number(w->out, p->loose * current_tolerance(w));
+    fputs(" chgtol=1e-30\n.save", w->out);
+    for (size_t i = 1; i < vectors.count; i++) {
+        const char *name = vectors.names[i];
+        const char *mark = strchr(name, '#');
+        if (mark) {
+            fprintf(w->out, " i(%.*s)", (int)(mark - name), name);
+        } else {
+            fprintf(w->out, " v(%s)", name);
+        }
+    }
+    fputs("\n.tran ", w->out);
+    dea_part_number(w->out, p->mass > 0.0 ? 0.01 * p->step : p->step);
+    fputc(' ', w->out);
+    dea_part_number(w->out, p->to - p->from);
+    fputs(" 0 ", w->out);
+    dea_part_number(w->out, p->step);
+    fputs(" uic\n.end\n", w->out);
+}
+
+static void write_piece(writer *w)
+{
+    const dea_mobility_piece *p = w->piece;
+    const bool series = w->dynamics->series > 0.0;
+    const dea_cards_numbers numbers = {p->start, p->mass, series ? port_unit(w) : 1.0};
+    fputs("* moving dielectric elastomer actuator, numbers in units in which they are of size 1\n", w->out);
+    dea_cards_write_numbers(&w->cards, &numbers);
+    dea_cards_write_network(&w->cards);
+    write_source(w, series ? "source" : "film");
+    write_fit(w);
+    fputs(".ic", w->out);
+    dea_cards_write_start(&w->cards, &numbers, dea_segment_voltage(p->signal, &p->signal->segments[p->segment], p->from));
+    fputc('\n', w->out);
+    write_analysis(w);
+}
+
+/* Closes the stream; on DEA_OK its text belongs to the caller. */
+static dea_status finish(FILE *out, bool ready, char **text, dea_error *error)
+{
+    const bool whole = dea_text_close(out);
+    if (!ready || !whole) {
+        free(*text);
+        *text = NULL;
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
+    }
+    return DEA_OK;
+}
+
+dea_status dea_mobility_write(const dea_mobility *mobility, const dea_mobility_piece *piece, char **text, dea_error *error)
+{
+    size_t length = 0;
+    *text = NULL;
+    writer w = {.mobility = mobility, .dynamics = mobility->dynamics, .piece = piece, .out = open_memstream(text, &length)};
+    const dea_cards_form form = engine_form();
+    const bool ready = w.out && dea_cards_open(mobility, &form, w.out, &w.cards);
+    if (ready) {
+        write_piece(&w);
+    }
+    dea_cards_close(&w.cards);
+    return finish(w.out, ready, text, error);
+}
+
+static bool is_linear(const dea_mobility *mobility)
+{
+    return !isnan(mobility->stiffness);
+}
+
+static void add_vector(dea_mobility_vectors *vectors, const char *format, size_t index)
+{
+    char *name = vectors->names[vectors->count++];
+    const char *number = strchr(format, '%');
+    snprintf(name, DEA_MOBILITY_NAME, "%.*s", (int)(number ? number - format : (ptrdiff_t)strlen(format)), format);
+    if (number) {
+        const size_t used = strlen(name);
+        snprintf(name + used, DEA_MOBILITY_NAME - used, "%zu%s", index, number + 1);
+    }
+}
+
+dea_mobility_vectors dea_mobility_vectors_of(const dea_mobility *mobility)
+{
+    const bool linear = is_linear(mobility);
+    dea_mobility_vectors vectors = {.count = 0};
+    add_vector(&vectors, "time", 0);
+    add_vector(&vectors, linear ? "lspring#branch" : "disp", 0);
+    if (!mobility->displaced) {
+        add_vector(&vectors, "edge", 0);
+    }
+    for (size_t i = 1; i <= dea_dynamics_states(mobility->dynamics); i++) {
+        add_vector(&vectors, linear ? "lbranch%#branch" : "z%", i);
+    }
+    if (mobility->dynamics->series > 0.0) {
+        add_vector(&vectors, "charge", 0);
+    }
+    return vectors;
+}
+
+dea_mobility_state dea_mobility_read(const dea_mobility *mobility, const double *const *columns, size_t index)
+{
+    const dea_dynamics *d = mobility->dynamics;
+    const double k = mobility->stiffness;
+    const double first = columns[1][index];
+    const size_t next = mobility->displaced ? 2 : 3;
+    dea_mobility_state state = {.u = is_linear(mobility) ? first / k : first};
+    state.v = mobility->displaced ? 0.0 : columns[2][index];
+    for (size_t i = 0; i < dea_dynamics_states(d); i++) {
+        const double value = columns[next + i][index];
+        state.z[i] = is_linear(mobility) ? first - value / d->branches[i].share : value;
+    }
+    if (d->series > 0.0) {
+        state.charge = mobility->rest * columns[next + dea_dynamics_states(d)][index];
+    }
+    return state;
+}
+
+dea_status dea_mobility_write_small(dea_dynamics *dynamics, const dea_mobility_bias *bias, const dea_mobility_band *band,
+                                    char **text, dea_error *error)
+{
+    size_t length = 0;
+    const bool series = dynamics->series > 0.0;
+    const dea_cards_form form = engine_form();
+    *text = NULL;
+    FILE *out = open_memstream(text, &length);
+    if (!out) {
+        return finish(out, false, text, error);
+    }
+    fputs("* dielectric elastomer actuator about its bias\n", out);
+    dea_cards_write_small(dynamics, bias, &form, out);
+    fprintf(out, "VSOURCE %s 0 dc 0 ac 1\n%s.save v(disp) %s\n.ac ", series ? "source" : "film", form.dialect->ac,
+            series ? "v(film)" : "i(vsource)");
+    if (band->points_per_decade > 0) {
+        fprintf(out, "dec %zu ", band->points_per_decade);
+    } else {
+        fprintf(out, "lin %zu ", band->count > 1 ? band->count : 1);
+    }
+    dea_part_number(out, band->from);
+    fputc(' ', out);
+    dea_part_number(out, band->to);
+    fputs("\n.end\n", out);
+    return finish(out, true, text, error);
+}

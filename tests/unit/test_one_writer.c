@@ -1,0 +1,198 @@
+/* The engine `ngspice` runs the very text that is exported: byte for byte from the first line of the network to its last, over
+ * models, laws, ports and studies. What comes before are its numbers, in the units of each, what comes after the deck. */
+#include "scenes.h"
+
+#include <stdlib.h>
+
+#include "engine/ngspice/deck.h"
+#include "engine/ngspice/moving.h"
+#include "netlist/export.h"
+#include "netlist/netlist.h"
+
+typedef struct film {
+    const char *law;
+    double constants[DEA_LAW_CONSTANTS];
+    size_t entries;
+} film;
+
+static const film films[] = {
+    {"yeoh", {178426.0, -6023.0, 4234.0}, 1},
+    {"neo_hookean", {44e3}, 1},
+    {"mooney_rivlin", {16e3, 7.3e3}, 1},
+    {"gent", {45e3, 120.0}, 1},
+    {"ogden", {43.4e3, 1.445, 84.2, 4.248, -2.4e3, -1.5}, 3},
+    {"arruda_boyce", {40e3, 5.99}, 1},
+};
+enum { FILMS = sizeof films / sizeof *films, MODELS = 4, WITH_MASS = 1, WITH_DAMPER = 2, WITH_BRANCHES = 4, WITH_SERIES = 8, WITH_LEAK = 16, WAYS = 32 };
+
+static const char *const models[MODELS] = {"lumped", "lame", "coverage", "ring"};
+
+/* One of the ways in which a film can be built into a circuit. */
+static dea_scene scene_of(const film *f, const char *model, dea_kind kind, int way)
+{
+    dea_scene scene = paper_scene(kind, 1.3, 0.45, (double)NAN);
+    scene.material.law = dea_law_find(f->law);
+    assert_non_null(scene.material.law);
+    memcpy(scene.material.constants, f->constants, sizeof f->constants);
+    scene.material.entry_count = f->entries;
+    scene.models[0] = dea_model_find(model);
+    scene.material.density = way & WITH_MASS ? 1080.0 : (double)NAN;
+    scene.material.retardation = way & WITH_DAMPER ? 2e-4 : (double)NAN;
+    scene.material.prony_count = way & WITH_BRANCHES ? 2 : 0;
+    scene.material.prony[0] = (dea_prony){0.1, 5e-3};
+    scene.material.prony[1] = (dea_prony){0.05, 0.2};
+    scene.drive.series_resistance = way & WITH_SERIES ? 1e5 : (double)NAN;
+    scene.drive.leakage_resistance = way & WITH_LEAK ? 1e11 : (double)NAN;
+    return scene;
+}
+
+/* From the first line of the network to its last; the caller frees it. */
+static char *network_in(const char *text)
+{
+    const char *begin = strstr(text, DEA_CARDS_BEGIN), *end = begin ? strstr(begin, DEA_CARDS_END) : NULL;
+    assert_non_null(end);
+    assert_true(end > begin + strlen(DEA_CARDS_BEGIN));
+    return strndup(begin, (size_t)(end - begin));
+}
+
+static char *exported(const dea_scene *scene)
+{
+    char *text = NULL;
+    size_t length;
+    dea_error error = {0};
+    dea_export export = {.scene = scene, .dialect = dea_dialect_find("ngspice"), .analogy = dea_analogy_at(0)};
+    export.out = open_memstream(&text, &length);
+    assert_non_null(export.out);
+    const dea_status status = dea_export_netlist(&export, &error);
+    assert_int_equal(fclose(export.out), 0);
+    if (status != DEA_OK) {
+        fail_msg("%s", error.message);
+    }
+    return text;
+}
+
+/* Frees both. */
+static void assert_one_text(char *ours, char *theirs, const char *what)
+{
+    char *engine = network_in(ours), *file = network_in(theirs);
+    if (strcmp(engine, file) != 0) {
+        print_error("%s\n---\n%s\n", engine, file);
+        fail_msg("%s: the engine runs another network than is exported", what);
+    }
+    free(engine);
+    free(file);
+    free(ours);
+    free(theirs);
+}
+
+static char *transient_of(const dea_scene *scene)
+{
+    dea_units units;
+    dea_scene inside;
+    dea_dynamics dynamics;
+    dea_mobility mobility;
+    dea_signal signal;
+    char *text = NULL;
+    assert_int_equal(dea_ngspice_units(scene, scene->models[0], &units, NULL), DEA_OK);
+    assert_true(units.length != 1.0 && units.voltage != 1.0);
+    assert_int_equal(dea_units_enter(&units, scene, &inside, NULL), DEA_OK);
+    assert_int_equal(dea_mobility_prepare(&inside, inside.models[0], dea_analogy_at(0), &dynamics, &mobility, NULL), DEA_OK);
+    assert_int_equal(dea_signal_open(&inside, &signal, NULL), DEA_OK);
+    const dea_mobility_piece piece = {
+        .signal = &signal, .to = inside.transient.until, .step = 1.0, .parts = 1.0, .loose = 1.0, .scale = 1.0, .force = 1.0, .mass = dynamics.mass};
+    assert_int_equal(dea_mobility_write(&mobility, &piece, &text, NULL), DEA_OK);
+    dea_signal_close(&signal);
+    dea_mobility_close(&mobility);
+    dea_dynamics_close(&dynamics);
+    dea_units_leave(&inside);
+    return text;
+}
+
+static void transients_are_one_text(void **state)
+{
+    (void)state;
+    for (int n = 0; n < FILMS * MODELS * WAYS; n += n % WAYS % 3 + 1) {
+        char what[80];
+        const film *f = &films[n / WAYS % FILMS];
+        const char *model = models[n / WAYS / FILMS];
+        dea_scene scene = scene_of(f, model, n % 2 ? DEA_LENS : DEA_DOT, n % WAYS);
+        scene.study = DEA_STUDY_TRANSIENT;
+        scene.transient = (dea_transient){.until = 0.02, .every = 1e-3};
+        scene.drive.waveform =
+            (dea_waveform){.kind = DEA_WAVE_STEP, .step = {1e-3, (double)NAN, 700.0, 1e-4}, .period = (double)NAN};
+        scene.accuracy = 1e-3;
+        snprintf(what, sizeof what, "transient %d of %s, %s", n, f->law, model);
+        assert_one_text(transient_of(&scene), exported(&scene), what);
+    }
+}
+
+static char *response_of(const dea_scene *scene)
+{
+    const dea_units units = {1024.0, 4096.0, 0x1p-20, 0x1p-10, 128.0};
+    dea_scene inside;
+    dea_dynamics dynamics;
+    dea_mobility_bias bias = {0};
+    char *text = NULL;
+    assert_int_equal(dea_units_enter(&units, scene, &inside, NULL), DEA_OK);
+    assert_int_equal(dea_dynamics_open(&inside, inside.models[0], &dynamics, NULL), DEA_OK);
+    bias.voltage = inside.ac.bias / (1.0 + dynamics.series * dynamics.conductance);
+    assert_true(dea_dynamics_equilibrium(&dynamics, bias.voltage, &bias.u));
+    const dea_mobility_band band = {.from = inside.ac.from, .to = inside.ac.to, .points_per_decade = 3};
+    assert_int_equal(dea_mobility_write_small(&dynamics, &bias, &band, &text, NULL), DEA_OK);
+    dea_dynamics_close(&dynamics);
+    dea_units_leave(&inside);
+    return text;
+}
+
+static void frequency_responses_are_one_text(void **state)
+{
+    (void)state;
+    for (int n = 0; n < FILMS * MODELS * WAYS; n += n % WAYS % 5 + 1) {
+        char what[80];
+        const film *f = &films[n / WAYS % FILMS];
+        const char *model = models[n / WAYS / FILMS];
+        dea_scene scene = scene_of(f, model, n % 2 ? DEA_LENS : DEA_DOT, n % WAYS);
+        scene.study = DEA_STUDY_AC;
+        scene.ac = (dea_ac){.from = 10.0, .to = 2000.0, .points_per_decade = 3, .bias = 500.0};
+        snprintf(what, sizeof what, "response %d of %s, %s", n, f->law, model);
+        assert_one_text(response_of(&scene), exported(&scene), what);
+    }
+}
+
+static void sweeps_are_one_text(void **state)
+{
+    (void)state;
+    enum { POINTS = 5 };
+    for (int n = 0; n < FILMS * MODELS * 3; n++) {
+        char what[80];
+        const film *f = &films[n / 3 % FILMS];
+        const char *model = models[n / 3 / FILMS];
+        dea_scene scene = scene_of(f, model, n % 2 ? DEA_LENS : DEA_DOT, 0);
+        double *const fields[] = {&scene.drive.voltage, &scene.actuator.coverage, &scene.actuator.prestretch};
+        double values[POINTS];
+        dea_axis axis;
+        scene.drive.voltage = 500.0;
+        for (int k = 0; k < POINTS; k++) {
+            values[k] = *fields[n % 3] * (1.0 + 0.02 * k);
+        }
+        add_axis(&scene, &axis, fields[n % 3], values, POINTS);
+        dea_network network;
+        char *text = NULL;
+        assert_int_equal(dea_network_build(&scene, scene.models[0], &axis, &network, NULL), DEA_OK);
+        const dea_netlist_study study = {.axis = &axis, .count = POINTS, .force_scale = 1.0, .length_scale = 1.0};
+        assert_int_equal(dea_netlist_write(&network, &study, &text, NULL), DEA_OK);
+        snprintf(what, sizeof what, "sweep %d of %s, %s", n, f->law, model);
+        assert_one_text(text, exported(&scene), what);
+        dea_network_free(&network);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(transients_are_one_text),
+        cmocka_unit_test(frequency_responses_are_one_text),
+        cmocka_unit_test(sweeps_are_one_text),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "network/dynamics.h"
+#include "network/swing.h"
 #include "needs/probes.h"
 #include "study/study.h"
 
@@ -29,12 +29,12 @@ static void compare(const dea_scene *scene, const dea_model *model, const dea_mo
     nearness->compared++;
 }
 
-/* The swing of the whole film, relaxed and undamped: branches and dampers change it and the membrane's alike. */
+/* The swing of a film that has one, relaxed and undamped: branches and dampers change it and the membrane's alike. */
 static dea_status compare_swings(const dea_scene *scene, const dea_model *model, dea_nearness *nearness, dea_error *error)
 {
     dea_dynamics dynamics;
     dea_status status = dea_dynamics_open(scene, model, &dynamics, error);
-    if (status == DEA_OK && dynamics.mass > 0.0) {
+    if (status == DEA_OK && !isnan(dea_swing_of(&dynamics, 0.0, 0.0).frequency)) {
         const double omega = sqrt(dea_dynamics_stiffness(&dynamics, 0.0, 0.0, true) / dynamics.mass);
         const double deviation = omega / (2.0 * DEA_PI * dea_point_resonance(scene, &dynamics.point)) - 1.0;
         nearness->slow = fmin(nearness->slow, deviation); /* of a NAN and a number the number */

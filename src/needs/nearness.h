@@ -9,7 +9,7 @@ typedef struct dea_nearness {
     size_t compared;  /* probes at which both models have a strain and it is not 0 */
     size_t unlike;    /* probes at which one of both has pulled in */
     double low, high; /* least and largest relative deviation of the strain from the membrane's [1], over the compared ones */
-    double slow, fast; /* least and largest relative deviation of the first resonance from the membrane's [1]; NAN: no mass, or statics */
+    double slow, fast; /* least and largest relative deviation of the first resonance from the membrane's [1]; NAN: no swing, or statics */
     bool whole;        /* the probes are all points of the study */
 } dea_nearness;
 

@@ -100,6 +100,7 @@ static dea_status law_check(dea_reader *reader, const dea_holder *holder)
 static dea_status sheet_check(dea_reader *reader)
 {
     const dea_scene *scene = reader->scene;
+    const dea_study *study = dea_study_of(scene); /* statics alone have no current in it */
     const size_t sheet = offsetof(dea_scene, electrode.sheet_resistance);
     const bool currents = dea_study_of(scene)->timed || dea_study_of(scene)->phasors;
     for (size_t i = 0; i < scene->model_count && currents; i++) {

@@ -18,7 +18,7 @@
 enum { DEGREE_MAX = 16, NODES_MAX = DEGREE_MAX + 1, ROUNDS_MAX = 24, STEPS_MAX = 12 };
 
 /* Degrees, one after the other until the error is small enough. */
-static const int degrees[] = {4, 6, 8, 11, DEGREE_MAX};
+static const int degrees[] = {4, 5, 6, 8, 11, DEGREE_MAX};
 enum { DEGREES = sizeof degrees / sizeof *degrees };
 
 typedef double lanes __attribute__((vector_size(8 * DEA_LANES)));
@@ -267,7 +267,8 @@ typedef struct findings {
     lanes area[NODES_MAX];     /* lambda_1 lambda_2 at the nodes [1] */
     lanes slack[NODES_MAX];    /* nominal hoop stress there, turned over [Pa] */
     lanes stress;              /* smallest nominal stress of the disc, and s1 at the nodes [Pa]: s1 is least at an end or at s2 */
-    lanes spread;              /* int (lambda_1 lambda_2 - mean)^2 R dR over R_a^2/2 */
+    lanes far;                 /* lambda_1 lambda_2 where D would be 0, nearly [1] */
+    lanes spread;              /* int (lambda_1 lambda_2 - far)^2 R dR over R_a^2/2: smooth where D is small */
     lanes coefficients[3][3];  /* the last three, from the last on, of r, of Q/s11 and of what spread is the sum of */
 } findings;
 
@@ -288,9 +289,9 @@ DEA_INLINE void measure_body(const batch *b, findings *f)
     lanes rate[NODES_MAX], traces[3][NODES_MAX];
     ask(b, &at);
     const lanes k = b->dot ? 0.0 * b->k : b->k, l = pre + b->edge;
-    const lanes mean = pre * pre - b->square * b->edge * (2.0 * pre + b->edge) / b->rest; /* of l1 l2 over the annulus, which its ends fix */
     f->stress = tension + at.p1[n + 1] - (b->dot ? b->k * l * l * l : 0.0 * k);
     f->spread = 0.0 * k;
+    lanes falls = f->spread;
     for (int j = 0; j <= n; j++) {
         look(b, &at, j, &nodes[j]);
         rate[j] = (nodes[j].r - 2.0) / b->d[j];
@@ -299,13 +300,15 @@ DEA_INLINE void measure_body(const batch *b, findings *f)
         lower(&f->stress, &s1);
         f->slack[j] = -s2;
         f->area[j] = area;
+        falls = j == 0 ? (nodes[j].l1 + nodes[j].l2 * (1.0 - nodes[j].r)) / nodes[j].r : falls; /* d(l1 l2)/dD at the frame */
     }
+    f->far = f->area[0] - b->d[0] * falls;
     for (int j = 0; j <= n; j++) {
         lanes psi, more;
         sum_from(b->rule, j, rate, &psi);
         psi *= -b->edge;
         grow(&psi, &more);
-        const lanes off = (nodes[j].l1 * nodes[j].l2 - mean) / b->d[j];
+        const lanes off = (f->area[j] - f->far) / b->d[j];
         traces[0][j] = nodes[j].r;
         traces[1][j] = nodes[j].q / nodes[j].s11;
         traces[2][j] = 2.0 * off * off * (1.0 + more) * b->d[n] * b->edge;
@@ -447,12 +450,13 @@ static void go_on(traveller *t, const batch *b, const findings *f, size_t l)
     }
 }
 
-/* Error that the last coefficients of a function leave: they fall by their ratio from one to the next. */
+/* Error that the last coefficients of a function leave in its integral: they fall by their ratio from one to the next, and the next
+ * but one is the first that the nodes take for another, T_(n+2) for T_(n-2), whose mean is no more than a third. */
 static double tail(const double *last)
 {
     const double first = fabs(last[0] / last[1]), second = fabs(last[0] / last[2]);
     const double fall = fmin(1.0, fmax(first * first, second));
-    return isfinite(fall) ? fabs(last[0]) * fall : fabs(last[0]);
+    return isfinite(fall) ? fabs(last[0]) * fall / 3.0 : fabs(last[0]);
 }
 
 /* Estimated relative error of strain and capacitance: what the sums leave out, over the share of its stiffness that the film has
@@ -515,7 +519,7 @@ static double largest(const rule *r, const lanes *values, size_t l)
     return best;
 }
 
-/* int (l1 l2)^2 R dR of the annulus is mean^2 and what it varies by. */
+/* (l1 l2)^2 = far (2 l1 l2 - far) + (l1 l2 - far)^2, and the mean of l1 l2 over the annulus is what the radii of its ends make it. */
 static void fill(const rule *r, const traveller *t, const findings *f, size_t l, dea_row *row)
 {
     const dea_point *point = t->point;
@@ -524,7 +528,8 @@ static void fill(const rule *r, const traveller *t, const findings *f, size_t l,
     const double b = point->coverage, rest = (1.0 - b) * (1.0 + b), strain = t->here.edge / film->prestretch;
     const double stretch = film->prestretch + t->here.edge;
     const double mean = 1.0 - b * b * strain * (2.0 + strain) / rest; /* over lambda_pre^2 */
-    const double annulus = mean * mean + b * b / rest * f->spread[l] / (film->square * film->square);
+    const double far = f->far[l] / film->square;
+    const double annulus = far * (2.0 * mean - far) + b * b / rest * f->spread[l] / (film->square * film->square);
     dea_field_fill(point,
                    (dea_field_found){.strain = strain,
                                      .edge_force = (dot ? stretch : f->radial[l]) * stretch * stretch,
@@ -575,8 +580,8 @@ static int first_degree(const dea_point *point, double load, double accuracy)
 {
     const dea_film *film = &point->film;
     const double rest = (1.0 - point->coverage) * (1.0 + point->coverage);
-    const double fall = fmin(0.5, 0.7 * load * film->square * rest / (2.0 * film->w11));
-    const double wanted = log(4.0 * accuracy) / log(fall) - 2.0;
+    const double fall = fmin(0.5, load * film->square * rest / (2.0 * film->w11));
+    const double wanted = log(3.0 * accuracy) / log(fall) - 2.0;
     int first = 0;
     while (first + 1 < DEGREES && degrees[first] < wanted) {
         first++;

@@ -3,15 +3,14 @@
 #include "expression/formula.h"
 #include "network/hyperelastic.h"
 
-static void solve(const dea_point *point, double accuracy, dea_row *row)
+static double free_edge(const dea_point *point)
 {
-    (void)accuracy;
-    const double pressure = dea_point_pressure(point);
-    double strain;
-    if (!dea_film_balance(point, 0.0, pressure, &strain)) {
-        dea_row_refuse(row, DEA_STATE_PULL_IN);
-        return;
-    }
+    (void)point;
+    return 0.0;
+}
+
+static void fill(const dea_point *point, double pressure, double strain, dea_row *row)
+{
     const double stretch = 1.0 + strain;
     const double force = pressure * stretch * stretch * stretch * dea_point_cross_section(point); /* A(lambda_a) eps E^2 */
     dea_row_fill(row, point,
@@ -20,6 +19,17 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
                              .stretch = point->film.square * stretch * stretch,
                              .capacitance = dea_point_disc_capacitance(point, strain),
                              .taut = true});
+}
+
+static void solve_many(const dea_point *points, size_t count, double accuracy, dea_row *rows)
+{
+    (void)accuracy;
+    dea_film_balances_solve(points, count, free_edge, fill, rows);
+}
+
+static void solve(const dea_point *point, double accuracy, dea_row *row)
+{
+    solve_many(point, 1, accuracy, row);
 }
 
 /* The disc alone as a spring: the bias force is in its measure from the pre-stretch. */
@@ -48,5 +58,6 @@ const dea_model dea_model_constant_force = {
     .leaves_out = "loss of bias force; an upper bound",
     .lens = false,
     .solve = solve,
+    .solve_many = solve_many,
     .network = build,
 };

@@ -35,19 +35,17 @@ static double capacitance_of(const dea_point *point, double strain)
     return dea_point_full_capacitance(point) * (1.0 - b * b - 4.0 * b * b * push_of_lens(b, strain));
 }
 
-static void solve(const dea_point *point, double accuracy, dea_row *row)
+/* Strain that the passive film gives back per strain of the active one. */
+static double ratio_of(const dea_point *point)
 {
-    (void)accuracy;
-    const bool dot = point->kind == DEA_DOT;
     const double b = point->coverage;
-    const double ratio = dot ? b / (1.0 - b) : (1.0 - b) / b;
-    const double pressure = dea_point_pressure(point);
-    double active; /* strain of the electroded film */
-    if (!dea_film_balance(point, ratio, pressure, &active)) {
-        dea_row_refuse(row, DEA_STATE_PULL_IN);
-        return;
-    }
-    const double passive = -ratio * active;
+    return point->kind == DEA_DOT ? b / (1.0 - b) : (1.0 - b) / b;
+}
+
+static void fill(const dea_point *point, double pressure, double active, dea_row *row)
+{
+    const bool dot = point->kind == DEA_DOT;
+    const double passive = -ratio_of(point) * active;
     const double strain = dot ? active : passive;
     const double stretch = 1.0 + active;
     const double square = stretch * stretch;
@@ -59,6 +57,17 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
                              .stretch = point->film.square * square,
                              .capacitance = capacitance_of(point, strain),
                              .taut = taut});
+}
+
+static void solve_many(const dea_point *points, size_t count, double accuracy, dea_row *rows)
+{
+    (void)accuracy;
+    dea_film_balances_solve(points, count, ratio_of, fill, rows);
+}
+
+static void solve(const dea_point *point, double accuracy, dea_row *row)
+{
+    solve_many(point, 1, accuracy, row);
 }
 
 /* s int_0^1 (1 + e t)^4/(1 + s t) dt with e = -B s/(1 - B), by quadrature: right for all B, also where that is a symbol, as long
@@ -201,6 +210,7 @@ const dea_model dea_model_coverage = {
     .lens = true,
     .edge = true,
     .solve = solve,
+    .solve_many = solve_many,
     .along = along,
     .network = build,
     .dynamic = true,

@@ -2,6 +2,7 @@
 #include "model/film_balance.h"
 
 #include "model/path.h"
+#include "support/lanes.h"
 
 typedef struct balance {
     double load;  /* N = sigma_A - sigma_P [Pa] */
@@ -76,74 +77,206 @@ static double rest_curve(const film_pair *pair)
     return (pair->skin ? film + pair->share * pair->skin->curvature : film) + 2.0 * pair->load * pair->turn;
 }
 
-/* Halley's iteration from the second-order answer; false where it does not settle. Convergence is cubic, so the step after the
- * next one is foreseen as step^4/last^3, and where that is below rounding the present step was the last one needed. */
-static bool halley(const film_pair *pair, double m, double stiffness, double *strain, balance *at)
+/* Films abreast on their way to a root. */
+typedef struct walkers {
+    const dea_film *film, *skin; /* as of a pair, as what follows */
+    double share[DEA_LANES], spring[DEA_LANES], turn[DEA_LANES];
+    double ratio[DEA_LANES], m[DEA_LANES], end[DEA_LANES];
+    double stiffness[DEA_LANES], curvature[DEA_LANES]; /* dN/de and d2N/de2 at rest */
+    double strain[DEA_LANES], last[DEA_LANES];
+    double load[DEA_LANES], slope[DEA_LANES], curve[DEA_LANES]; /* of N where it was evaluated last */
+    double live[DEA_LANES];                                     /* 1: goes on, 0: has come to its end */
+    double root[DEA_LANES];                                     /* 1: that is a root */
+    double fold[DEA_LANES], clear[DEA_LANES];                   /* (1 + e) dN/de - 4 N there; 1: no fold can lie before */
+} walkers;
+
+/* The second-order answer: N = K e + c e^2/2 + ..., m (1 + e)^4 = m (1 + 4 e + 6 e^2 + ...). */
+DEA_INLINE void set_off(walkers *w)
 {
-    const double end = end_of(pair);
-    /* N = K e + c e^2/2 + ..., m (1 + e)^4 = m (1 + 4 e + 6 e^2 + ...) */
-    const double bend = 0.5 * rest_curve(pair) - 6.0 * m;
-    const double linear = m / (stiffness - 4.0 * m);
-    double e = linear / (1.0 + bend * linear / (stiffness - 4.0 * m));
-    double last = e;
-    for (int i = 0; i < 12; i++) {
-        if (!(e >= 0.0 && e < end)) {
-            return false;
-        }
+    DEA_EACH_LANE(l)
+    {
+        const double room = w->stiffness[l] - 4.0 * w->m[l];
+        const double bend = 0.5 * w->curvature[l] - 6.0 * w->m[l];
+        const double linear = w->m[l] / room;
+        w->strain[l] = w->last[l] = linear / (1.0 + bend * linear / room);
+        w->root[l] = 0.0;
+        w->live[l] = (w->strain[l] >= 0.0) & (w->strain[l] < w->end[l]) ? 1.0 : 0.0;
+    }
+}
+
+static void add_skin(const walkers *w, const double *strains, const dea_changes *changes)
+{
+    double value[DEA_LANES], slope[DEA_LANES], curve[DEA_LANES];
+    dea_film_changes(w->skin, DEA_LANES, strains, &(dea_changes){value, slope, curve});
+    DEA_EACH_LANE(l)
+    {
+        changes->value[l] += w->share[l] * value[l];
+        changes->slope[l] += w->share[l] * slope[l];
+        changes->curve[l] += w->share[l] * curve[l];
+    }
+}
+
+/* One step of Halley's iteration. Convergence is cubic, so the step after the next one is foreseen as step^4/last^3, and where that
+ * is below rounding the present step was the last one needed. */
+DEA_INLINE void step_on(walkers *w)
+{
+    double strains[2 * DEA_LANES], value[2 * DEA_LANES], slope[2 * DEA_LANES], curve[2 * DEA_LANES];
+    const dea_changes changes = {value, slope, curve};
+    DEA_EACH_LANE(l)
+    {
+        strains[l] = w->strain[l];
+        strains[DEA_LANES + l] = -w->ratio[l] * w->strain[l];
+    }
+    dea_film_changes(w->film, 2 * DEA_LANES, strains, &changes);
+    if (w->skin) {
+        add_skin(w, strains, &changes);
+    }
+    DEA_EACH_LANE(l)
+    {
+        const double e = w->strain[l], last = w->last[l], ratio = w->ratio[l], m = w->m[l];
         const double square = (1.0 + e) * (1.0 + e);
-        *at = balance_at(pair, e);
-        const double residual = at->load - m * square * square;
-        const double slope = at->slope - 4.0 * m * square * (1.0 + e);
-        const double curve = at->curve - 12.0 * m * square;
-        const double step = -2.0 * residual * slope / (2.0 * slope * slope - residual * curve);
-        *strain = e += step;
-        const bool is_root =
-            fabs(residual) <= 2.0 * fabs(slope * step); /* at a fold steps are short, too, but the residual is not */
-        if (is_root && fabs(step) <= 1e-3 * fabs(e) && step * step * step * step <= 1e-16 * fabs(e * last * last * last)) {
-            return e >= 0.0 && e < end;
-        }
-        last = step;
+        const double spring = w->spring[l], turn = w->turn[l] * e;
+        const double load = value[l] - value[DEA_LANES + l] + spring * e * (1.0 + turn);
+        const double first = slope[l] + ratio * slope[DEA_LANES + l] + spring * (1.0 + 2.0 * turn);
+        const double second = curve[l] - ratio * ratio * curve[DEA_LANES + l] + 2.0 * spring * w->turn[l];
+        const double residual = load - m * square * square;
+        const double steep = first - 4.0 * m * square * (1.0 + e);
+        const double bent = second - 12.0 * m * square;
+        const double step = -2.0 * residual * steep / (2.0 * steep * steep - residual * bent);
+        const double next = e + step, cube = last * last * last;
+        const bool live = w->live[l] > 0.0, inside = (next >= 0.0) & (next < w->end[l]);
+        const bool is_root = fabs(residual) <= 2.0 * fabs(steep * step); /* at a fold steps are short, too, but the residual is not */
+        const bool small = (fabs(step) <= 1e-3 * fabs(next)) & (step * step * step * step <= 1e-16 * fabs(next * cube));
+        const bool done = is_root & small;
+        w->load[l] = live ? load : w->load[l];
+        w->slope[l] = live ? first : w->slope[l];
+        w->curve[l] = live ? second : w->curve[l];
+        w->strain[l] = live ? next : e;
+        w->last[l] = live ? step : last;
+        w->root[l] = live & done & inside ? 1.0 : w->root[l];
+        w->live[l] = live & inside & !done ? 1.0 : 0.0;
     }
-    return false;
 }
 
-/* True where `fold` keeps far from zero all the way from rest to e, near which @p at was taken: over so short a way two values
- * and two tangents of it that stay within a factor of two leave no room for a fold between. Spares the samples of
+DEA_INLINE bool any_lives(const walkers *w)
+{
+    double sum = 0.0;
+    DEA_EACH_LANE(l)
+    {
+        sum += w->live[l];
+    }
+    return sum > 0.0;
+}
+
+/* Notes where `fold` keeps far from zero all the way from rest to the root, next to which N was evaluated: over so short a way two
+ * values and two tangents of it that stay within a factor of two leave no room for a fold between. Spares the samples of
  * dea_path_grows(). */
-static bool cannot_fold(const film_pair *pair, double stiffness, double e, const balance *at)
+DEA_INLINE void look_for_folds(walkers *w)
 {
-    const double slope_at_rest = rest_curve(pair) - 3.0 * stiffness;
-    const double slope_at_end = (1.0 + e) * at->curve - 3.0 * at->slope;
-    const double tangent_at_rest = stiffness + slope_at_rest * e;
-    const double tangent_at_end = at->fold - slope_at_end * e;
-    const double half = 0.5 * (stiffness > at->fold ? stiffness : at->fold);
-    return e <= 0.15 / (1.0 + pair->ratio) && tangent_at_rest > half && tangent_at_end > half && stiffness > half &&
-           at->fold > half;
+    DEA_EACH_LANE(l)
+    {
+        const double e = w->strain[l], ratio = w->ratio[l], stiffness = w->stiffness[l];
+        const double fold = (1.0 + e) * w->slope[l] - 4.0 * w->load[l];
+        const double slope_at_rest = w->curvature[l] - 3.0 * stiffness;
+        const double slope_at_end = (1.0 + e) * w->curve[l] - 3.0 * w->slope[l];
+        const double tangent_at_rest = stiffness + slope_at_rest * e;
+        const double tangent_at_end = fold - slope_at_end * e;
+        const double half = 0.5 * (stiffness > fold ? stiffness : fold);
+        const bool far = (tangent_at_rest > half) & (tangent_at_end > half) & (stiffness > half) & (fold > half);
+        w->fold[l] = fold;
+        w->clear[l] = far & (e * (1.0 + ratio) <= 0.15) ? 1.0 : 0.0;
+    }
 }
 
-bool dea_film_balance(const dea_point *point, double ratio, double m, double *strain)
+DEA_INLINE void settle_body(walkers *w)
 {
-    if (m == 0.0) {
-        *strain = 0.0;
-        return true;
+    set_off(w);
+    for (int i = 0; i < 12 && any_lives(w); i++) {
+        step_on(w);
     }
-    const bool skinned = point->skin_share > 0.0;
+    look_for_folds(w);
+}
+
+DEA_LANES_DISPATCH(settle, settle_body, (walkers *w), (w))
+
+/* True where the root of a lane is the first from rest: U grows all the way to it. */
+static bool is_first(const walkers *w, size_t l, const dea_path *path)
+{
+    return w->root[l] > 0.0 && w->fold[l] > 0.0 && (w->clear[l] > 0.0 || dea_path_grows(path, w->strain[l]));
+}
+
+static film_pair pair_of(const dea_point *point, double ratio)
+{
     const double turn = point->kind == DEA_DOT ? 1.0 : -ratio;
-    const film_pair pair = {.film = &point->film,
-                            .ratio = ratio,
-                            .skin = skinned ? &point->skin : NULL,
-                            .share = point->skin_share * point->film.square,
-                            .load = point->load * dea_point_divide(point) / dea_point_cross_section(point) * fabs(turn),
-                            .turn = turn};
-    const double stiffness = rest_slope(&pair);
-    if (!(stiffness > 0.0) || !isfinite(m)) {
-        return false;
+    return (film_pair){.film = &point->film,
+                       .ratio = ratio,
+                       .skin = point->skin_share > 0.0 ? &point->skin : NULL,
+                       .share = point->skin_share * point->film.square,
+                       .load = point->load * dea_point_divide(point) / dea_point_cross_section(point) * fabs(turn),
+                       .turn = turn};
+}
+
+/* Strains of up to DEA_LANES films of as many points, each with its own ratio, under the pressures m; false where there is none. */
+static void find(const dea_point *points, size_t count, const double *ratio, const double *m, double *strain, bool *found)
+{
+    walkers w = {.film = &points[0].film, .skin = points[0].skin_share > 0.0 ? &points[0].skin : NULL};
+    DEA_EACH_LANE(l)
+    {
+        const size_t from = l < count ? l : 0; /* an idle lane does what the first does */
+        const film_pair pair = pair_of(&points[from], ratio[from]);
+        w.share[l] = pair.share;
+        w.spring[l] = pair.load;
+        w.turn[l] = pair.turn;
+        w.ratio[l] = ratio[from];
+        w.m[l] = m[from];
+        w.stiffness[l] = rest_slope(&pair);
+        w.curvature[l] = rest_curve(&pair);
+        w.end[l] = end_of(&pair);
     }
-    const dea_path path = {place_at, &pair, stiffness, end_of(&pair), 1.0 / (1.0 + ratio)};
-    balance at;
-    if (halley(&pair, m, stiffness, strain, &at) && at.fold > 0.0 &&
-        (cannot_fold(&pair, stiffness, *strain, &at) || dea_path_grows(&path, *strain))) {
-        return true; /* U grows all the way from rest to this root, so it is the first */
+    settle(&w);
+    for (size_t l = 0; l < count; l++) {
+        const film_pair pair = pair_of(&points[l], ratio[l]);
+        const dea_path path = {place_at, &pair, w.stiffness[l], w.end[l], 1.0 / (1.0 + ratio[l])};
+        strain[l] = w.strain[l];
+        if (m[l] == 0.0) {
+            strain[l] = 0.0;
+            found[l] = true;
+        } else if (!(w.stiffness[l] > 0.0) || !isfinite(m[l])) {
+            found[l] = false;
+        } else {
+            found[l] = is_first(&w, l, &path) || dea_path_trace(&path, m[l], &strain[l]);
+        }
     }
-    return dea_path_trace(&path, m, strain);
+}
+
+/* Points from the first on that can go abreast: each may have a skin of its own, which then goes alone. */
+static size_t abreast(const dea_point *points, size_t count)
+{
+    size_t some = 1;
+    while (some < count && some < DEA_LANES && points[0].skin_share == 0.0 && points[some].skin_share == 0.0) {
+        some++;
+    }
+    return some;
+}
+
+void dea_film_balances_solve(const dea_point *points, size_t count, double (*ratio)(const dea_point *point),
+                             void (*fill)(const dea_point *point, double pressure, double strain, dea_row *row), dea_row *rows)
+{
+    for (size_t from = 0, some; from < count; from += some) {
+        some = abreast(points + from, count - from);
+        double ratios[DEA_LANES], pressures[DEA_LANES], strains[DEA_LANES];
+        bool found[DEA_LANES];
+        for (size_t l = 0; l < some; l++) {
+            ratios[l] = ratio(&points[from + l]);
+            pressures[l] = dea_point_pressure(&points[from + l]);
+        }
+        find(&points[from], some, ratios, pressures, strains, found);
+        for (size_t l = 0; l < some; l++) {
+            if (found[l]) {
+                fill(&points[from + l], pressures[l], strains[l], &rows[from + l]);
+            } else {
+                dea_row_refuse(&rows[from + l], DEA_STATE_PULL_IN);
+            }
+        }
+    }
 }

@@ -11,9 +11,10 @@
 
 #include "model/models.h"
 
-/* Strain e of the active film of a point, with its skin, that is connected to rest under the pressure m = eps lambda_pre^4 (U/H)^2
- * [Pa]. False where there is none: pull-in. */
-bool dea_film_balance(const dea_point *point, double ratio, double m, double *strain);
+/* Rows of points of one film from the strains of their active films that are connected to rest: @p ratio gives the ratio of a point,
+ * @p fill its row from pressure and strain. Where there is no such strain the row is pull-in. No row depends on other points. */
+void dea_film_balances_solve(const dea_point *points, size_t count, double (*ratio)(const dea_point *point),
+                             void (*fill)(const dea_point *point, double pressure, double strain, dea_row *row), dea_row *rows);
 
 /* m = eps lambda_pre^4 (U/H)^2 [Pa], the Maxwell stress at the pre-stretch. */
 static inline double dea_point_pressure(const dea_point *point)

@@ -29,7 +29,7 @@ static dea_status refuse_models(const dea_scene *scene, dea_error *error)
 
 static dea_status refuse_runs(const dea_scene *scene, dea_error *error)
 {
-    if (!scene->models[0]->dynamic || scene->models[0]->membrane) {
+    if (!scene->models[0]->dynamic) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is one of statics alone: --model lumped has a time domain",
                         scene->models[0]->name);
     }

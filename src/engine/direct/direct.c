@@ -85,8 +85,9 @@ static void solve_abreast(const visit_state *state, dea_scene *here, const dea_l
     for (size_t from = 0; from < line->count; from += MANY) {
         const size_t some = line->count - from < MANY ? line->count - from : MANY;
         const size_t count = gather(state, here, line, from, some, points, number);
-        state->model->solve_many(points, count, here->accuracy, rows);
-        for (size_t i = 0; i < count; i++) {
+        const bool in_place = line->stride == 1 && count == some;
+        state->model->solve_many(points, count, here->accuracy, in_place ? &state->rows[line->row + from] : rows);
+        for (size_t i = 0; i < count && !in_place; i++) {
             state->rows[line->row + number[i] * line->stride] = rows[i];
         }
     }

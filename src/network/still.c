@@ -324,13 +324,41 @@ void dea_still_fill(const dea_still *still, const double *u, dea_row *row)
                              .taut = film->tension > slack}); /* the disc is uniform */
 }
 
-/* Newton's step of a finer mesh at the solution of a coarser one, of the edge, relative. */
-static double edge_error(const dea_still *coarse, const double *u, const dea_still *fine)
+static double relative(double a, double b)
+{
+    return a == b ? 0.0 : fabs(a - b) / fabs(b);
+}
+
+double dea_still_apart(const dea_still *coarse, const double *u, const dea_still *fine, const double *v, dea_row *row)
+{
+    double better[DEA_RINGS_NODES];
+    dea_row other;
+    if (!dea_still_step(fine, 1.0, v, better)) {
+        return INFINITY;
+    }
+    for (size_t n = 0; n < fine->rings.node_count; n++) {
+        better[n] += v[n];
+    }
+    dea_still_fill(coarse, u, row);
+    dea_still_fill(fine, better, &other);
+    return fmax(fmax(relative(row->strain, other.strain), relative(row->force, other.force)),
+                fmax(relative(row->field, other.field), relative(row->capacitance, other.capacitance)));
+}
+
+/* A row may be off by several times what the strain is: the mesh is chosen by the strain, and by this share of the row. */
+static const double row_share = 0.15;
+
+/* Of a coarser mesh at its solution by a finer one: Newton's step of the edge, relative, or what it makes of the row. */
+static double mesh_error(const dea_still *coarse, const double *u, const dea_still *fine)
 {
     double matrix[DEA_RINGS_NODES * DEA_RINGS_NODES], v[DEA_RINGS_NODES], step[DEA_RINGS_NODES];
+    dea_row row;
     dea_rings_transfer(coarse->rings.mesh, fine->rings.mesh, matrix);
     dea_rings_move(matrix, coarse->rings.node_count, u, fine->rings.node_count, v);
-    return dea_still_step(fine, 1.0, v, step) ? fabs(step[fine->rings.edge] / v[fine->rings.edge]) : (double)INFINITY;
+    if (!dea_still_step(fine, 1.0, v, step)) {
+        return INFINITY;
+    }
+    return fmax(fabs(step[fine->rings.edge] / v[fine->rings.edge]), row_share * dea_still_apart(coarse, u, fine, v, &row));
 }
 
 dea_rings_mesh dea_still_mesh(const dea_point *point, double accuracy, double *error)
@@ -343,7 +371,7 @@ dea_rings_mesh dea_still_mesh(const dea_point *point, double accuracy, double *e
         dea_still_open(point, (dea_rings_mesh){1, degree, true}, &still);
         dea_still_open(point, (dea_rings_mesh){1, degree + 2, true}, &fine);
         if (dea_still_climb(&still, u) == DEA_STATE_OK) {
-            *error = still.pressure == 0.0 ? 0.0 : edge_error(&still, u, &fine);
+            *error = still.pressure == 0.0 ? 0.0 : mesh_error(&still, u, &fine);
         }
         if (*error <= accuracy) {
             return still.rings.mesh;

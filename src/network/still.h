@@ -18,6 +18,9 @@ void dea_still_open(const dea_point *point, dea_rings_mesh mesh, dea_still *stil
  * definite (a pivot <= 0: the film is not stable), a ring has no stress or is no longer elliptic (ds_1/dlambda_1 <= 0); then @p step is undefined. */
 bool dea_still_step(const dea_still *still, double share, const double *u, double *step);
 
+/* Fills the row of a mesh at u; returns how far it is, relative, from that of a finer mesh behind Newton's step from @p v, the same
+ * place on it; inf where that has no step. */
+double dea_still_apart(const dea_still *coarse, const double *u, const dea_still *fine, const double *v, dea_row *row);
 /* Follows the equilibrium from rest as the load grows; on DEA_STATE_OK @p u holds it under the full load, good to rounding.
  * DEA_STATE_PULL_IN: it folds, or the film ends, before that. */
 dea_state dea_still_climb(const dea_still *still, double *u);

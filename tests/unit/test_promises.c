@@ -285,7 +285,8 @@ static void a_mean_that_is_off_is_found(void **state)
 static double accuracy_of(const dea_engine *engine, const dea_scene *scene, int turn)
 {
     const bool slow = scene->study == DEA_STUDY_TRANSIENT && strcmp(engine->name, "direct") != 0;
-    return turn == 0 ? 1e-2 : slow ? 1e-4 : best_accuracy(engine, scene);
+    const bool rings = scene->models[0]->membrane && strcmp(engine->name, "ngspice") == 0;
+    return turn == 0 ? 1e-2 : slow ? 1e-4 : rings ? 1e-6 : best_accuracy(engine, scene);
 }
 
 static void engines_keep_their_promises_on_random_scenes(void **state)
@@ -320,7 +321,7 @@ static const struct {
     const char *text;
 } hard_to_keep[] = {
     /* a lens so deep in slack that its force follows the strain twenty times */
-    {DEA_STATE_SLACK, 5, 1,
+    {DEA_STATE_SLACK, 6, 0,
      "actuator: {kind: lens, frame_radius: 0.037987516999655614 m, coverage: 0.34203059175942685,\n"
      "  film_thickness: 0.00026563453542893762 m, prestretch: 3.9298411033839291}\n"
      "material: {yeoh: {C1: 630479.30409754871 Pa, C2: 12070.152719188161 Pa, C3: 0 Pa}, permittivity: 8.1616038585472808}\n"

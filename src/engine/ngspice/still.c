@@ -94,18 +94,18 @@ static bool is_connected(const line_job *job, const double *u)
 /* Fills the row of the placed point where displacements over r are its answer. */
 static bool accept(line_job *job, size_t i, const double *const *columns, size_t index)
 {
-    double u[DEA_RINGS_NODES], v[DEA_RINGS_NODES], step[DEA_RINGS_NODES];
+    double u[DEA_RINGS_NODES], v[DEA_RINGS_NODES];
+    dea_row own;
     cut(job);
     const dea_rings *coarse = &job->coarse.rings, *fine = &job->fine.rings;
     for (size_t n = 0; n < coarse->node_count; n++) {
         u[n] = columns ? columns[n][index] * job->point.frame_radius : 0.0;
     }
     dea_rings_move(job->transfer, coarse->node_count, u, fine->node_count, v);
-    if (!dea_still_step(&job->fine, 1.0, v, step) || !(fabs(step[fine->edge]) <= answer_share * job->accuracy * fabs(v[fine->edge])) ||
-        !is_connected(job, u)) {
+    if (!(dea_still_apart(&job->coarse, u, &job->fine, v, &own) <= answer_share * job->accuracy) || !is_connected(job, u)) {
         return false;
     }
-    dea_still_fill(&job->coarse, u, row_at(job, i));
+    *row_at(job, i) = own;
     return true;
 }
 

@@ -112,7 +112,7 @@ DEA_API double dea_electrode_mass(const dea_scene *scene);
 DEA_API double dea_point_mass(const dea_scene *scene, const dea_point *point);
 
 /** First in-plane radial resonance of the exact membrane at rest, undamped and relaxed, with what dea_point_mass() counts [Hz]; NAN
- * without density or where the film has no stiffness (physics: section 5, with electrodes). */
+ * without density, where the film has no stiffness, and with a skin or a load (physics: section 5, with electrodes). */
 DEA_API double dea_point_resonance(const dea_scene *scene, const dea_point *point);
 
 /** Focal length [m] of a plano-convex cap of liquid of fixed volume, V = pi h (3 a^2 + h^2)/6, over an aperture of radius

@@ -153,7 +153,10 @@ double dea_point_resonance(const dea_scene *scene, const dea_point *point)
     static const double bessel_root = 3.8317059702075123156; /* of J1 */
     enum { SCAN = 64 };
     const double l0 = point->film.prestretch, f = point->frame_radius / l0, a = point->coverage * f;
-    const double areal = isnan(scene->actuator.electrode_mass) ? 0.0 : scene->actuator.electrode_mass;
+    const double areal = dea_electrode_mass(scene);
+    if (point->skin_share > 0.0 || point->load > 0.0 || scene->load.mass > 0.0) {
+        return (double)NAN; /* the two regions have one modulus no more, or the edge a mass of its own */
+    }
     const double bare = scene->material.density, coated = bare + areal * l0 * l0 / point->film_thickness;
     const double disc = point->kind == DEA_DOT ? coated : bare, annulus = point->kind == DEA_DOT ? bare : coated;
     const double pace[2] = {sqrt(disc / point->film.w11), sqrt(annulus / point->film.w11)};

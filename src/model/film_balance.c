@@ -79,8 +79,8 @@ static double rest_curve(const film_pair *pair)
 
 /* Films abreast on their way to a root. */
 typedef struct walkers {
-    const dea_film *film, *skin; /* as of a pair */
-    double share[DEA_LANES], spring[DEA_LANES], turn[DEA_LANES]; /* spring: load of the pair [Pa] */
+    const dea_film *film, *skin; /* as of a pair, as what follows */
+    double share[DEA_LANES], spring[DEA_LANES], turn[DEA_LANES];
     double ratio[DEA_LANES], m[DEA_LANES], end[DEA_LANES];
     double stiffness[DEA_LANES], curvature[DEA_LANES]; /* dN/de and d2N/de2 at rest */
     double strain[DEA_LANES], last[DEA_LANES];
@@ -135,10 +135,10 @@ DEA_INLINE void step_on(walkers *w)
     {
         const double e = w->strain[l], last = w->last[l], ratio = w->ratio[l], m = w->m[l];
         const double square = (1.0 + e) * (1.0 + e);
-        const double spring = w->spring[l], turn = w->turn[l];
-        const double load = value[l] - value[DEA_LANES + l] + spring * e * (1.0 + turn * e);
-        const double first = slope[l] + ratio * slope[DEA_LANES + l] + spring * (1.0 + 2.0 * turn * e);
-        const double second = curve[l] - ratio * ratio * curve[DEA_LANES + l] + 2.0 * spring * turn;
+        const double spring = w->spring[l], turn = w->turn[l] * e;
+        const double load = value[l] - value[DEA_LANES + l] + spring * e * (1.0 + turn);
+        const double first = slope[l] + ratio * slope[DEA_LANES + l] + spring * (1.0 + 2.0 * turn);
+        const double second = curve[l] - ratio * ratio * curve[DEA_LANES + l] + 2.0 * spring * w->turn[l];
         const double residual = load - m * square * square;
         const double steep = first - 4.0 * m * square * (1.0 + e);
         const double bent = second - 12.0 * m * square;
@@ -207,15 +207,12 @@ static bool is_first(const walkers *w, size_t l, const dea_path *path)
 
 static film_pair pair_of(const dea_point *point, double ratio)
 {
-    const bool skinned = point->skin_share > 0.0;
     const double turn = point->kind == DEA_DOT ? 1.0 : -ratio;
     return (film_pair){.film = &point->film,
                        .ratio = ratio,
-                       .skin = skinned ? &point->skin : NULL,
+                       .skin = point->skin_share > 0.0 ? &point->skin : NULL,
                        .share = point->skin_share * point->film.square,
-                       .load = point->load != 0.0
-                                   ? point->load * dea_point_divide(point) / dea_point_cross_section(point) * fabs(turn)
-                                   : 0.0,
+                       .load = point->load * dea_point_divide(point) / dea_point_cross_section(point) * fabs(turn),
                        .turn = turn};
 }
 

@@ -16,7 +16,7 @@ static dea_status refuse_models(const dea_scene *scene, dea_error *error)
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "a netlist holds one model, the scene has %zu: choose one, --model %s",
                         scene->model_count, scene->models[0]->name);
     }
-    if (scene->models[0]->membrane && scene->study == DEA_STUDY_TRANSIENT) {
+    if (scene->models[0]->membrane && dea_study_of(scene)->timed) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the motion of the model %s is no netlist: --as subckt is its part",
                         scene->models[0]->name);
     }
@@ -29,7 +29,7 @@ static dea_status refuse_models(const dea_scene *scene, dea_error *error)
 
 static dea_status refuse_runs(const dea_scene *scene, dea_error *error)
 {
-    if (!scene->models[0]->dynamic || scene->models[0]->membrane) {
+    if (!scene->models[0]->dynamic) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is one of statics alone: --model lumped has a time domain",
                         scene->models[0]->name);
     }

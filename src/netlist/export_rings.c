@@ -76,9 +76,9 @@ static void write_band(const dea_export *export, size_t edge)
             edge, edge, edge, edge, edge, edge);
     fputs(export->dialect->ac, export->out);
     fprintf(export->out, last > 0 ? ".ac dec %zu " : ".ac lin %zu ", last > 0 ? scene->ac.points_per_decade : 1);
-    dea_export_number(export->out, scene->ac.from);
+    dea_part_number(export->out, scene->ac.from);
     fputc(' ', export->out);
-    dea_export_number(export->out, dea_layout_place(scene, last));
+    dea_part_number(export->out, dea_layout_place(scene, last));
     fputs("\n.end\n", export->out);
 }
 

@@ -159,11 +159,12 @@ static bool is_used(const dea_scene *scene, const dea_key *key)
         const char *path;
         bool used;
     } parts[] = {
-        {"drive.waveform.period", wave},
+        {"drive.waveform.period", wave && !wave->once},
         {"drive.waveform.", wave && begins_with(key->path, wave->path) && key->path[strlen(wave->path)] == '.'},
         {"study.transient.average.", false},
         {dea_study_of(scene)->path, true},
         {"study.", false},
+        {"electrode.", scene->electrode.law},
         {"material.prony.", false},
         {"", true},
     };

@@ -34,7 +34,7 @@ static const dea_key keys[] = {
 static dea_status mass_check(dea_reader *reader)
 {
     const dea_scene *scene = reader->scene;
-    const bool light = isnan(scene->material.density) && !(scene->actuator.electrode_mass > 0.0);
+    const bool light = isnan(scene->material.density) && !(dea_electrode_mass(scene) > 0.0);
     return light ? dea_place_fail(&dea_tree_find(reader->root, MODES)->place, reader->error, "material.density",
                                   "missing, and modes need a mass; accepted: a density > 0, e.g. 1080 kg/m^3")
                  : DEA_OK;

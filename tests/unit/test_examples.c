@@ -343,6 +343,28 @@ static void soft_film_without_pre_stretch_pulls_in_at_the_voltage_of_a_free_edge
     assert_int_equal(states[DEA_STATE_FAILED], 0);
 }
 
+/* More film shares the skin; force and charge count five times. */
+static void a_stack_strains_more_between_the_same_electrodes(void **state)
+{
+    (void)state;
+    run_example("stack");
+    const dea_row *film = row_at("field", 1.0, 4500.0), *five = row_at("field", 5.0, 4500.0);
+    const double bare = 0.0450329722; /* without a skin (physics, section 8) */
+    assert_true(film->strain < five->strain && five->strain < bare);
+    assert_relative(bare - film->strain, 5.0 * (bare - five->strain), 0.2);
+    assert_relative(five->force, 5.0 * film->force, 0.03);
+}
+
+/* What the film gives up goes into the spring: the force on the edge is that of the free film less its own stiffness. */
+static void a_bias_spring_takes_what_the_film_leaves(void **state)
+{
+    (void)state;
+    run_example("bias-spring");
+    const dea_row *stiff = row_at("field", 1e4, 4500.0), *soft = row_at("field", 1.0, 4500.0);
+    assert_relative(soft->strain, 0.0450329722, 2e-3);
+    assert_relative(stiff->displacement, stiff->force / (1e4 + soft->force / soft->displacement), 0.02);
+}
+
 static void vhb_follows_the_closed_form_of_a_neo_hookean(void **state)
 {
     const double c1 = 15.36e3 / 2.0;
@@ -386,8 +408,8 @@ static void sample_data_gives_back_the_constants_it_was_made_from(void **state)
     assert_int_equal(unlink(path), 0);
 }
 
-/* Runs a moving or a local example by the program, with both pictures; calls @p take with the cells of each row. */
-static size_t run_rows(const char *name, void (*take)(char *const *cells, size_t count))
+/* Runs a moving or a local example by the program, with both pictures; calls @p row with the cells of each. */
+static size_t run_rows(const char *name, void (*row)(char *const *cells, size_t count))
 {
     char words[2 * PATH_LENGTH], path[PATH_LENGTH], line[LINE_LENGTH];
     size_t rows = 0;
@@ -407,7 +429,7 @@ static size_t run_rows(const char *name, void (*take)(char *const *cells, size_t
         for (char *cell = strtok(line, ",\n"); cell && count < 32; cell = strtok(NULL, ",\n")) {
             cells[count++] = cell;
         }
-        take(cells, count);
+        row(cells, count);
     }
     assert_int_equal(fclose(file), 0);
     return rows;
@@ -614,6 +636,8 @@ int main(void)
         cmocka_unit_test(lens_shrinks_as_the_reference_strains_say),
         cmocka_unit_test(every_point_of_the_map_balances_its_stresses),
         cmocka_unit_test(soft_film_without_pre_stretch_pulls_in_at_the_voltage_of_a_free_edge),
+        cmocka_unit_test(a_stack_strains_more_between_the_same_electrodes),
+        cmocka_unit_test(a_bias_spring_takes_what_the_film_leaves),
         cmocka_unit_test(vhb_follows_the_closed_form_of_a_neo_hookean),
         cmocka_unit_test(sample_data_gives_back_the_constants_it_was_made_from),
         cmocka_unit_test(modes_are_those_of_the_table),

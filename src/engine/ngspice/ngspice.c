@@ -236,7 +236,7 @@ const dea_engine dea_engine_ngspice = {
     .omits = ~0u,
     .costs = {[DEA_STUDY_SWEEP] = {0, 4e-6, 1e-5, 1e-4},
               [DEA_STUDY_TRANSIENT] = {[DEA_FORM_LINEAR] = 0.1, [DEA_FORM_HYPERELASTIC] = 0.2},
-              [DEA_STUDY_AC] = {[DEA_FORM_LINEAR] = 1e-2, [DEA_FORM_HYPERELASTIC] = 1e-2}},
+              [DEA_STUDY_AC] = {[DEA_FORM_LINEAR] = 1e-2, [DEA_FORM_HYPERELASTIC] = 1e-2, [DEA_FORM_MEMBRANE] = 0.1}},
     .library = dea_ngspice_name,
     .refuses = refuses,
     .begin = begin,

@@ -187,25 +187,15 @@ DEA_INLINE void reach_of(const batch *b, const lanes *weights, const lanes *z, l
     *out = sum;
 }
 
-/* One step of Newton. */
-DEA_INLINE void step_body(batch *b)
+/* Residuals along the film, and y = held + fall y_edge. */
+DEA_INLINE void along(const batch *b, const node *nodes, lanes *residual, lanes *fall, lanes *held)
 {
     const int n = b->rule->degree;
-    answers at;
-    node nodes[NODES_MAX];
-    lanes q[NODES_MAX], dq[NODES_MAX], residual[NODES_MAX], fall[NODES_MAX], held[NODES_MAX];
-    ask(b, &at);
-    lanes psi = 0.0 * b->edge, gain = psi;
+    lanes q[NODES_MAX], dq[NODES_MAX], driven[NODES_MAX];
     for (int j = 0; j <= n; j++) {
-        look(b, &at, j, &nodes[j]);
         q[j] = nodes[j].q;
         dq[j] = nodes[j].dq;
-        gain += b->rule->sums[0][j] * nodes[j].r;
-        psi += b->rule->sums[0][j] * ((nodes[j].r - 2.0) / b->d[j]);
     }
-    psi *= b->edge;
-    /* residuals along the film, and y = held + fall y_edge */
-    lanes driven[NODES_MAX];
     for (int j = 0; j <= n; j++) {
         lanes sum, half;
         sum_from(b->rule, j, q, &sum);
@@ -221,6 +211,24 @@ DEA_INLINE void step_body(batch *b)
         sum_from(b->rule, j, driven, &sum);
         held[j] = residual[j] - fall[j] * b->edge * sum;
     }
+}
+
+/* One step of Newton. */
+DEA_INLINE void step_body(batch *b)
+{
+    const int n = b->rule->degree;
+    answers at;
+    node nodes[NODES_MAX];
+    lanes residual[NODES_MAX], fall[NODES_MAX], held[NODES_MAX];
+    ask(b, &at);
+    lanes psi = 0.0 * b->edge, gain = psi;
+    for (int j = 0; j <= n; j++) {
+        look(b, &at, j, &nodes[j]);
+        gain += b->rule->sums[0][j] * nodes[j].r;
+        psi += b->rule->sums[0][j] * ((nodes[j].r - 2.0) / b->d[j]);
+    }
+    psi *= b->edge;
+    along(b, nodes, residual, fall, held);
     /* the frame: int de/D - ln(1/B) = 1/2 ln(D_edge/D_frame) - Psi/2 - ln(1/B), D_edge = D_frame + int D' de, with r for D'; and
      * what that leaves out as long as D' is not r, by D' - r = -(d rho/de)/s11 */
     lanes more, weights[NODES_MAX], free_z[NODES_MAX], held_z[NODES_MAX], free_reach, held_reach;

@@ -171,7 +171,9 @@ static void write_tolerances(writer *w)
     const double speed = scale / w->step;
     const double velocity = 1e-11 * fmin(speed, scale) + 2e-12 * speed;
     const double least = fmin(1e-11 * scale, 1e-11 * force);
-    const double voltage = w->analogy->loop ? least : fmin(velocity, 1e-11 * scale + 2e-12 * speed);
+    const double free = 1e-7 * scale; /* the velocity is a difference of displacements over a step: it hears what they are open by */
+    const double held = w->analogy->loop ? least : fmin(velocity, 1e-11 * scale + 2e-12 * speed);
+    const double voltage = w->mobility.displaced ? free : held;
     const double current = w->analogy->loop ? 1e-11 * speed : 1e-10 * force;
     fprintf(w->out, "* tolerances of one time step\n%s reltol=1e-7 abstol=", w->dialect->solver);
     dea_part_number(w->out, current);

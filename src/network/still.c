@@ -348,17 +348,26 @@ double dea_still_apart(const dea_still *coarse, const double *u, const dea_still
 /* A row may be off by several times what the strain is: the mesh is chosen by the strain, and by this share of the row. */
 static const double row_share = 0.15;
 
-/* Of a coarser mesh at its solution by a finer one: Newton's step of the edge, relative, or what it makes of the row. */
-static double mesh_error(const dea_still *coarse, const double *u, const dea_still *fine)
+/* Of a mesh at its solution by one of so many degrees more: Newton's step of the edge, relative, or what it makes of the row. */
+static double finer_error(const dea_still *still, const double *u, size_t more)
 {
+    const dea_rings_mesh mesh = still->rings.mesh;
     double matrix[DEA_RINGS_NODES * DEA_RINGS_NODES], v[DEA_RINGS_NODES], step[DEA_RINGS_NODES];
     dea_row row;
-    dea_rings_transfer(coarse->rings.mesh, fine->rings.mesh, matrix);
-    dea_rings_move(matrix, coarse->rings.node_count, u, fine->rings.node_count, v);
-    if (!dea_still_step(fine, 1.0, v, step)) {
+    dea_still fine;
+    dea_still_open(still->point, (dea_rings_mesh){mesh.disc, mesh.annulus + more, mesh.logarithmic}, &fine);
+    dea_rings_transfer(mesh, fine.rings.mesh, matrix);
+    dea_rings_move(matrix, still->rings.node_count, u, fine.rings.node_count, v);
+    if (!dea_still_step(&fine, 1.0, v, step)) {
         return INFINITY;
     }
-    return fmax(fabs(step[fine->rings.edge] / v[fine->rings.edge]), row_share * dea_still_apart(coarse, u, fine, v, &row));
+    return fmax(fabs(step[fine.rings.edge] / v[fine.rings.edge]), row_share * dea_still_apart(still, u, &fine, v, &row));
+}
+
+/* By two: errors of meshes that converge slowly rise and fall with the degree, and two of them may agree by chance. */
+double dea_still_error(const dea_still *still, const double *u)
+{
+    return still->pressure == 0.0 ? 0.0 : fmax(finer_error(still, u, 1), finer_error(still, u, 2));
 }
 
 dea_rings_mesh dea_still_mesh(const dea_point *point, double accuracy, double *error)
@@ -367,11 +376,10 @@ dea_rings_mesh dea_still_mesh(const dea_point *point, double accuracy, double *e
     double u[DEA_RINGS_NODES];
     *error = (double)INFINITY;
     for (size_t degree = 2; degree + 2 <= DEA_RINGS_DEGREE; degree++) {
-        dea_still still, fine;
+        dea_still still;
         dea_still_open(point, (dea_rings_mesh){1, degree, true}, &still);
-        dea_still_open(point, (dea_rings_mesh){1, degree + 2, true}, &fine);
         if (dea_still_climb(&still, u) == DEA_STATE_OK) {
-            *error = still.pressure == 0.0 ? 0.0 : mesh_error(&still, u, &fine);
+            *error = dea_still_error(&still, u);
         }
         if (*error <= accuracy) {
             return still.rings.mesh;

@@ -35,6 +35,10 @@ double dea_still_strain(const dea_still *still, const double *u);
 /* Fills the row of an equilibrium; its state says slack or breakdown. */
 void dea_still_fill(const dea_still *still, const double *u, dea_row *row);
 
+/* What meshes of one and of two degrees more make of the equilibrium @p u, the larger: of the edge's displacement, relative, and a
+ * share of that of its row. */
+double dea_still_error(const dea_still *still, const double *u);
+
 /* Coarsest mesh on which the edge's displacement is good to @p accuracy, relative, by the Newton step of a mesh two degrees finer,
  * which is *error: of a film that has an equilibrium, the nodes of its annulus evenly in ln R. Degree 0: there is none, or none so
  * good. */

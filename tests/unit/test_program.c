@@ -245,7 +245,7 @@ static void bash_completes(void **state)
         {"fit only", "only.csv"},
         {"export --as kic", "kicad"},
         {"export --dialect x", "xyce"},
-        {"init ''", "dot lens transient ac sweep"},
+        {"init ''", "dot lens transient ac modes profile sweep"},
         {"materials vhb-4910-", "vhb-4910-neo-hookean"},
         {"completion ''", "bash zsh fish"},
         {"check --resu", ""},

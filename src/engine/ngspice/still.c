@@ -105,6 +105,10 @@ static bool accept(line_job *job, size_t i, const double *const *columns, size_t
     if (!(dea_still_apart(&job->coarse, u, &job->fine, v, &own) <= answer_share * job->accuracy) || !is_connected(job, u)) {
         return false;
     }
+    /* past a limit meshes converge slowly, and two may agree by chance */
+    if (own.state != DEA_STATE_OK && !(dea_still_error(&job->coarse, u) <= answer_share * job->accuracy)) {
+        return false;
+    }
     *row_at(job, i) = own;
     return true;
 }

@@ -39,9 +39,9 @@ static const dea_operation_row rows[DEA_OPERATIONS] = {
     [DEA_LN] = {"ln", 1, 3, false, "ln(@)", "max(@,1e-6)", FUNCTIONS(LN)},
     [DEA_EXP] = {"exp", 1, 3, false, "exp(@)", "min(@,80)", true, FUNCTIONS(EXP)},
     [DEA_SQRT] = {"sqrt", 1, 3, false, "sqrt(@)", "max(@,1e-12)", FUNCTIONS(SQRT)},
-    [DEA_LOG1P] = {"log1p", 1, 3, false, "(2*atanh((@)/(2+(@))))", "max(@,-0.999999)", FUNCTIONS(LOG1P)},
-    [DEA_EXPM1] = {"expm1", 1, 3, false, "(2*sinh(0.5*(@))*exp(0.5*(@)))", "min(@,80)", FUNCTIONS(EXPM1)},
-    [DEA_POW] = {"pow", 2, 3, false, "pow(@,#)", "max(@,1e-6)", true, FUNCTIONS(POW)},
+    [DEA_LOG1P] = {"log1p", 1, 3, false, "(2*atanh((@)/(2+(@))))", "max(min(@,1e3),-0.999999)", .inner = true, FUNCTIONS(LOG1P)},
+    [DEA_EXPM1] = {"expm1", 1, 3, false, "(2*sinh(0.5*(@))*exp(0.5*(@)))", "max(min(@,80),-80)", FUNCTIONS(EXPM1)},
+    [DEA_POW] = {"pow", 2, 3, false, "pow(@,#)", "max(min(@,1e4),1e-6)", true, true, FUNCTIONS(POW)},
     [DEA_POSITIVE] = {"positive", 1, 3, false, "max(@,1e-6)", NULL, true, FUNCTIONS(POSITIVE)},
 };
 

@@ -61,6 +61,8 @@ typedef struct dea_operation_row {
         *held; /* what stands for the operand `@` where it moves, NULL: itself. An iterate can leave the range of the solution */
     bool afresh; /* the value at u is that of the operands there: the sum of rest and change has lost the digits of what falls to
                     a hundredth of it, or the range */
+    bool inner;  /* its text stays within what uses it: a simulator's iteration follows nodes along their tangents, and that of a
+                    logarithm as a node of its own leads the exponential behind it astray */
     double (*value)(double x, double y);
     dea_expr (*derivative)(dea_pool *pool, dea_expr own, dea_expr a, dea_expr b, dea_expr da, dea_expr db);
     dea_expr (*change)(dea_pool *pool, dea_expr rest, const dea_operand_change *a, const dea_operand_change *b);

@@ -99,7 +99,7 @@ void dea_part_text_share(dea_part_text *text)
     text->dividing = true;
     for (int i = 0; i < text->pool->count; i++) {
         const dea_term *term = &text->pool->terms[i];
-        text->nodal[i] = text->moves[i] && term->operation >= DEA_ADD && !is_scaled(text, term);
+        text->nodal[i] = text->moves[i] && term->operation >= DEA_ADD && !dea_operation_of(term->operation)->inner && !is_scaled(text, term);
     }
 }
 

@@ -1,6 +1,7 @@
 #include "netlist/dialect.h"
 
 #include <ctype.h>
+#include <ctype.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -167,10 +168,15 @@ void dea_dialect_wrap(FILE *out, const char *text)
 {
     while (*text) {
         size_t left = strcspn(text, "\n");
+        size_t name = isalpha((unsigned char)*text) ? strcspn(text, " \n") : 0;
         const bool comment = *text == '*';
+        for (size_t i = 0; i < name; i++) {
+            fputc(toupper((unsigned char)text[i]), out);
+        }
         do {
             const size_t length = comment ? left : piece(text, left);
-            fwrite(text, 1, length, out);
+            fwrite(text + name, 1, length - name, out);
+            name = 0;
             text += length;
             left -= length;
             fputs(left > 0 ? "\n+ " : "\n", out);

@@ -52,7 +52,8 @@ void dea_dialect_operation(const dea_dialect *dialect, FILE *out, dea_operation 
 enum { DEA_COMMENT_LENGTH = 120 };
 void dea_dialect_comment(FILE *out, const char *text);
 
-/* Writes @p text, lines of cards, with those past DEA_CARD_LENGTH continued behind a `+`. */
+/* Writes @p text, lines of cards, with those past DEA_CARD_LENGTH continued behind a `+`, and names of elements in capitals: an
+ * editor of circuits refuses others. */
 enum { DEA_CARD_LENGTH = 120 };
 void dea_dialect_wrap(FILE *out, const char *text);
 

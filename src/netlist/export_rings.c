@@ -72,7 +72,7 @@ static void write_band(const dea_export *export, size_t edge)
     const size_t last = dea_layout_of(scene).rows - 1;
     fprintf(export->out,
             "* results: displacement v(u%zu) [m] and velocity v(v%zu) [m/s] per volt, input admittance -v(current) [S]\n"
-            "Hcurrent current 0 Vsource 1\n.print ac vm(u%zu) vp(u%zu) vm(v%zu) vp(v%zu) vm(current) vp(current)\n",
+            "HCURRENT current 0 VSOURCE 1\n.print ac vm(u%zu) vp(u%zu) vm(v%zu) vp(v%zu) vm(current) vp(current)\n",
             edge, edge, edge, edge, edge, edge);
     fputs(export->dialect->ac, export->out);
     fprintf(export->out, last > 0 ? ".ac dec %zu " : ".ac lin %zu ", last > 0 ? scene->ac.points_per_decade : 1);

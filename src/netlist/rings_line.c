@@ -77,7 +77,7 @@ static void write_edge(const writer *w)
     fputs("* displacement of the edge [m]\n", w->out);
     if (!w->text.moves[w->symbols.frame_radius]) {
         char radius[DEA_PART_NAME];
-        fprintf(w->out, "Eedge edge 0 u%zu 0 {%s}\n", w->cards.edge,
+        fprintf(w->out, "EEDGE edge 0 u%zu 0 {%s}\n", w->cards.edge,
                 dea_part_text_parameter(&w->text, w->symbols.frame_radius, radius));
         return;
     }

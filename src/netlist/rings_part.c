@@ -269,7 +269,7 @@ static void write_branches(const writer *w, int a, size_t number)
     for (size_t i = 1; i <= w->part->branches; i++) {
         char z[2 * NAME];
         snprintf(z, sizeof z, "z%zu%s", i, s.text);
-        fprintf(w->out, "G%s 0 %s %s %s 1\nC%s %s 0 {c_relax%zu}\nGb%s 0 %s %s %s {share%zu}\n", z, z, s.text, z, z, z, i, z, x.text,
+        fprintf(w->out, "G%s 0 %s %s %s 1\nC%s %s 0 {c_relax%zu}\nGB%s 0 %s %s %s {share%zu}\n", z, z, s.text, z, z, z, i, z, x.text,
                 s.text, z, i);
     }
 }
@@ -292,12 +292,12 @@ static void write_ring(const writer *w, size_t index)
     snprintf(factor, sizeof factor, "%s*newton", parameter(w, ring->along).text);
     write_sum(w, ring, label_of("f", number).text, factor, false, true);
     if (components(ring) == 2) {
-        fprintf(w->out, "Gg%zu %s 0 g%zu 0 {%s*newton}\n", number, velocity_node(w, ring->node).text, number,
+        fprintf(w->out, "GG%zu %s 0 g%zu 0 {%s*newton}\n", number, velocity_node(w, ring->node).text, number,
                 parameter(w, ring->across).text);
     }
     if (ring->electroded) {
         source(w, label_of("h", number).text, p->swell);
-        fprintf(w->out, "Gh%zu 0 swell h%zu 0 {%s}\n", number, number, parameter(w, p->weights[index]).text);
+        fprintf(w->out, "GH%zu 0 swell h%zu 0 {%s}\n", number, number, parameter(w, p->weights[index]).text);
     }
     if (index == electrode_ring(&p->cards)) {
         source(w, "stretched", p->field);
@@ -309,9 +309,9 @@ static void write_ring(const writer *w, size_t index)
 static void write_node(const writer *w, size_t node)
 {
     const label v = velocity_node(w, node), u = displacement_node(w, node);
-    fprintf(w->out, "Gdisp%zu 0 %s %s 0 1e6\nCdisp%zu %s 0 1\nGdrift%zu %s 0 %s 0 1e-9\nGsafe%zu %s 0 %s 0 {hold}\n", node, u.text, v.text,
+    fprintf(w->out, "GDISP%zu 0 %s %s 0 1e6\nCDISP%zu %s 0 1\nGDRIFT%zu %s 0 %s 0 1e-9\nGSAFE%zu %s 0 %s 0 {hold}\n", node, u.text, v.text,
             node, u.text, node, u.text, u.text, node, v.text, u.text);
-    fprintf(w->out, "Emass%zu ma%zu 0 %s 0 1e-6\nCmass%zu ma%zu mb%zu {%s+1e-24*k_rest}\nVmass%zu mb%zu 0 0\nFmass%zu %s 0 Vmass%zu {f_mass}\n",
+    fprintf(w->out, "EMASS%zu ma%zu 0 %s 0 1e-6\nCMASS%zu ma%zu mb%zu {%s+1e-24*k_rest}\nVMASS%zu mb%zu 0 0\nFMASS%zu %s 0 VMASS%zu {f_mass}\n",
             node, node, v.text, node, node, node, parameter(w, w->part->masses[node - 1]).text, node, node, node, v.text, node);
 }
 
@@ -333,7 +333,7 @@ void dea_rings_part_write(const dea_rings_part *part, dea_part_text *text)
             cards->node_count, cards->mesh.disc, cards->mesh.annulus);
     fputs("* to 1e-5 and 1e-3, for coverages 0.15 to 0.85 and pre-stretches 1.1 to 1.3\n", w.out);
     fputs(".param per_r={1e-6/radius}\n.param newton={6.283185307179586e6*many*layer*thick*radius/(stretch*stretch)}\n.param hold={1-ok}\n"
-          ".param f_mass={1e6*many}\nRswell swell 0 1\n",
+          ".param f_mass={1e6*many}\nRSWELL swell 0 1\n",
           w.out);
     for (size_t n = 1; n <= cards->node_count; n++) {
         write_node(&w, n);

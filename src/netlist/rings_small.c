@@ -68,10 +68,10 @@ static void write_branches(FILE *out, const dea_dynamics *film, size_t number)
     for (int a = 0; a < 2; a++) {
         const char *stress = stress_names[a], *viscous = viscous_names[a];
         for (size_t i = 0; i < film->branch_count; i++) {
-            fprintf(out, "Gz%s%zu_%zu 0 z%s%zu_%zu %s%zu z%s%zu_%zu 1\n", viscous, number, i + 1, viscous, number, i + 1, viscous,
+            fprintf(out, "GZ%s%zu_%zu 0 z%s%zu_%zu %s%zu z%s%zu_%zu 1\n", viscous, number, i + 1, viscous, number, i + 1, viscous,
                     number, viscous, number, i + 1);
-            fprintf(out, "Cz%s%zu_%zu z%s%zu_%zu 0 {tau%zu}\n", viscous, number, i + 1, viscous, number, i + 1, i + 1);
-            fprintf(out, "Gr%s%zu_%zu 0 %s%zu %s%zu z%s%zu_%zu {share%zu}\n", viscous, number, i + 1, stress, number, viscous,
+            fprintf(out, "CZ%s%zu_%zu z%s%zu_%zu 0 {tau%zu}\n", viscous, number, i + 1, viscous, number, i + 1, i + 1);
+            fprintf(out, "GR%s%zu_%zu 0 %s%zu %s%zu z%s%zu_%zu {share%zu}\n", viscous, number, i + 1, stress, number, viscous,
                     number, viscous, number, i + 1, i + 1);
         }
     }
@@ -103,7 +103,7 @@ static void write_ring(FILE *out, const dea_rings_small *s, size_t index, const 
             const double slope = a == 0 ? ring->radial[i] : ring->hoop[i];
             const size_t node = ring->first + i + 1;
             if (slope != 0.0) {
-                fprintf(out, "Gf%s%zu_%zu v%zu 0 %s%zu 0 ", stress_names[a], number, node, node, stress_names[a], number);
+                fprintf(out, "GF%s%zu_%zu v%zu 0 %s%zu 0 ", stress_names[a], number, node, node, stress_names[a], number);
                 dea_part_number(out, lever_size * slope);
                 fputc('\n', out);
             }
@@ -117,16 +117,16 @@ static void write_node(FILE *out, const dea_rings_small *s, size_t index, double
     fprintf(out, "* node %zu at R = %.6g m: mass [kg], displacement, transduction 2 phi U [N/V]\n", n,
             s->membrane->rings.radii[index]);
     if (s->membrane->masses[index] > 0.0) {
-        fprintf(out, "Cm%zu v%zu 0 ", n, n);
+        fprintf(out, "CM%zu v%zu 0 ", n, n);
         dea_part_number(out, s->membrane->masses[index]);
         fputc('\n', out);
     }
-    fprintf(out, "Gu%zu 0 u%zu v%zu 0 1\nCu%zu u%zu 0 1\n", n, n, n, n, n);
-    fprintf(out, "Gp%zu 0 v%zu film 0 ", n, n);
+    fprintf(out, "GU%zu 0 u%zu v%zu 0 1\nCU%zu u%zu 0 1\n", n, n, n, n, n);
+    fprintf(out, "GP%zu 0 v%zu film 0 ", n, n);
     dea_part_number(out, transduction);
-    fprintf(out, "\nGi%zu film 0 v%zu 0 ", n, n);
+    fprintf(out, "\nGI%zu film 0 v%zu 0 ", n, n);
     dea_part_number(out, transduction);
-    fprintf(out, "\nGq%zu 0 motion u%zu 0 ", n, n);
+    fprintf(out, "\nGQ%zu 0 motion u%zu 0 ", n, n);
     dea_part_number(out, transduction);
     fputc('\n', out);
 }
@@ -134,17 +134,17 @@ static void write_node(FILE *out, const dea_rings_small *s, size_t index, double
 static void write_port(FILE *out, const dea_dynamics *film, double capacitance)
 {
     fputs("* source of 1 V, resistances [Ohm], capacitance of the film at the bias [F]\n", out);
-    fputs(film->series > 0.0 ? "Vsource source 0 dc 0 ac 1\n" : "Vsource film 0 dc 0 ac 1\n", out);
+    fputs(film->series > 0.0 ? "VSOURCE source 0 dc 0 ac 1\n" : "VSOURCE film 0 dc 0 ac 1\n", out);
     if (film->series > 0.0) {
         dea_part_value(out, "r_series", film->series);
-        fputs("Rseries source film {r_series}\n", out);
+        fputs("RSERIES source film {r_series}\n", out);
     }
     if (film->conductance > 0.0) {
         dea_part_value(out, "r_leak", 1.0 / film->conductance);
-        fputs("Rleak film 0 {r_leak}\n", out);
+        fputs("RLEAK film 0 {r_leak}\n", out);
     }
     dea_part_value(out, "c_film", capacitance);
-    fputs("Cfilm film 0 {c_film}\nRmotion motion 0 1\n", out);
+    fputs("CFILM film 0 {c_film}\nRMOTION motion 0 1\n", out);
 }
 
 void dea_rings_small_write(const dea_rings_small *small, FILE *out)

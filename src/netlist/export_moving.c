@@ -297,6 +297,9 @@ static dea_status write_transient(writer *w, dea_error *error)
         dea_part_text_root(&w->cards.text, "capacity");
         dea_part_text_use_aside(&w->cards.text, w->mobility.network.capacitance);
     }
+    if (w->cards.text.exhausted) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
+    }
     dea_export_head(w->export, w->analogy->meaning);
     if (w->export->note[0]) {
         dea_dialect_comment(w->out, w->export->note);

@@ -285,8 +285,7 @@ static void a_mean_that_is_off_is_found(void **state)
 static double accuracy_of(const dea_engine *engine, const dea_scene *scene, int turn)
 {
     const bool slow = scene->study == DEA_STUDY_TRANSIENT && strcmp(engine->name, "direct") != 0;
-    const bool rings = scene->models[0]->membrane && strcmp(engine->name, "ngspice") == 0;
-    return turn == 0 ? 1e-2 : slow ? 1e-4 : rings ? 1e-6 : best_accuracy(engine, scene);
+    return turn == 0 ? 1e-2 : slow ? 1e-4 : best_accuracy(engine, scene);
 }
 
 static void engines_keep_their_promises_on_random_scenes(void **state)

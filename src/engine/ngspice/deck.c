@@ -92,7 +92,8 @@ static void write_fit(const writer *w)
 }
 
 /* Pivots are the largest elements (pivrel=1): with smaller ones the velocity of a spring's end, the difference of two fluxes over
- * a step, is taken from the row that rounds it most, by 1e-16 u/h, which no tolerance of a velocity allows for.
+ * a step, is taken from the row that rounds it most, by 1e-16 u/h, which no tolerance of a velocity allows for. A film that follows
+ * its voltage has no such node: there the order of the largest elements has made matrices singular.
  *
  * The steps are as long as they may be, the step control of the library is off: its errors would follow no order. The library
  * takes a corner at the print interval, with a first step of the Euler rule behind it, which would damp a ring: with mass that
@@ -105,7 +106,7 @@ static void write_analysis(const writer *w)
     /* rounding of the velocity: of that of a ring, or where no mass holds it, of differences of u over a step */
     const double ring = p->mass > 0.0 ? 1e-14 * sqrt(p->force * p->scale / p->mass) : 1e-11 * speed;
     const double noise = w->mobility->displaced ? 0.0 : ring;
-    fputs(".options method=trap trtol=1e30 itl4=50 pivtol=1e-60 pivrel=1 reltol=", w->out);
+    fprintf(w->out, ".options method=trap trtol=1e30 itl4=50 pivtol=1e-60 pivrel=%s reltol=", w->mobility->displaced ? "0.3" : "1");
     dea_part_number(w->out, p->tolerance);
     fputs(" vntol=", w->out);
     dea_part_number(w->out, p->loose * (1e-11 * fmin(speed, p->scale) + noise));

@@ -323,12 +323,12 @@ double dea_dynamics_stiffness(dea_dynamics *dynamics, double u, double voltage, 
     return held_slope(dynamics, &e, share, NULL) - e.push_slope * voltage * voltage;
 }
 
-double dea_dynamics_hold(dea_dynamics *dynamics, double u, double voltage)
+double dea_dynamics_hold(dea_dynamics *dynamics, double u, double voltage, const double *z)
 {
     const dea_edge e = dea_dynamics_edge(dynamics, u);
     const double pull = 2.0 * e.push * voltage; /* dF/dU */
     const double charge = dynamics->series > 0.0 ? pull * pull / e.capacitance : 0.0;
-    return dea_dynamics_stiffness(dynamics, u, voltage, false) + charge;
+    return dea_edge_held_slope(dynamics, &e, z) - e.push_slope * voltage * voltage + charge;
 }
 
 double dea_dynamics_scale(dea_dynamics *dynamics, double voltage)

@@ -87,9 +87,9 @@ static inline size_t dea_dynamics_states(const dea_dynamics *dynamics)
 bool dea_dynamics_equilibrium(const dea_dynamics *dynamics, double voltage, double *u);
 /* Net stiffness of the relaxed film dR/du - dF/du at u under film voltage U [N/m]; relaxed false: with the branches held. */
 double dea_dynamics_stiffness(dea_dynamics *dynamics, double u, double voltage, bool relaxed);
-/* Stiffness with the branches held that a film without mass and damper stays by: behind a series resistance its charge holds it,
+/* Stiffness with the branches held at z that a film without mass and damper stays by: behind a series resistance its charge holds it,
  * which cannot jump, so that it passes the fold of the voltage: dR/du - dF/du at constant U, and (2 phi U)^2/C more [N/m]. */
-double dea_dynamics_hold(dea_dynamics *dynamics, double u, double voltage);
+double dea_dynamics_hold(dea_dynamics *dynamics, double u, double voltage, const double *z);
 /* A displacement that is large for this film under that voltage: its size for tolerances [m], > 0. */
 double dea_dynamics_scale(dea_dynamics *dynamics, double voltage);
 

@@ -410,7 +410,7 @@ static void enter_segment(runner *r, double time, double next)
 static bool is_possible(const runner *r, const node *n)
 {
     dea_dynamics *d = r->route->dynamics;
-    return is_inside(d, n) && (!dea_dynamics_is_free(d) || dea_dynamics_hold(d, n->moment.u, n->moment.voltage) > 0.0);
+    return is_inside(d, n) && (!dea_dynamics_is_free(d) || dea_dynamics_hold(d, n->moment.u, n->moment.voltage, n->state.z) > 0.0);
 }
 
 /* Why the run ends: the film has lost its stability there or, unless its charge holds it, will find no equilibrium, or another
@@ -420,7 +420,7 @@ static dea_state verdict(const runner *r)
     dea_dynamics *d = r->route->dynamics;
     const dea_segment *segment = &r->route->signal->segments[r->segment];
     const double rest = dea_dynamics_stiffness(d, 0.0, 0.0, false);
-    const double here = dea_dynamics_hold(d, r->last.moment.u, r->last.moment.voltage);
+    const double here = dea_dynamics_hold(d, r->last.moment.u, r->last.moment.voltage, r->last.state.z);
     double u;
     const double most = fmin(r->route->voltage, fmax(fabs(segment->start), fabs(segment->end)));
     const double voltage = d->series > 0.0 ? fmax(most, fabs(r->last.moment.voltage)) : most;

@@ -100,7 +100,7 @@ DEA_INLINE void set_off(walkers *w)
         const double linear = w->m[l] / room;
         w->strain[l] = w->last[l] = linear / (1.0 + bend * linear / room);
         w->root[l] = 0.0;
-        w->live[l] = (w->strain[l] >= 0.0) & (w->strain[l] < w->end[l]) ? 1.0 : 0.0;
+        w->live[l] = ((w->strain[l] >= 0.0) & (w->strain[l] < w->end[l])) ? 1.0 : 0.0;
     }
 }
 
@@ -153,8 +153,8 @@ DEA_INLINE void step_on(walkers *w)
         w->curve[l] = live ? second : w->curve[l];
         w->strain[l] = live ? next : e;
         w->last[l] = live ? step : last;
-        w->root[l] = live & done & inside ? 1.0 : w->root[l];
-        w->live[l] = live & inside & !done ? 1.0 : 0.0;
+        w->root[l] = (live & done & inside) ? 1.0 : w->root[l];
+        w->live[l] = (live & inside & !done) ? 1.0 : 0.0;
     }
 }
 
@@ -184,7 +184,7 @@ DEA_INLINE void look_for_folds(walkers *w)
         const double half = 0.5 * (stiffness > fold ? stiffness : fold);
         const bool far = (tangent_at_rest > half) & (tangent_at_end > half) & (stiffness > half) & (fold > half);
         w->fold[l] = fold;
-        w->clear[l] = far & (e * (1.0 + ratio) <= 0.15) ? 1.0 : 0.0;
+        w->clear[l] = (far & (e * (1.0 + ratio) <= 0.15)) ? 1.0 : 0.0;
     }
 }
 

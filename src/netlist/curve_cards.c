@@ -53,8 +53,8 @@ static void write_sines(const dea_curve_cards *c, const dea_segment *segment)
         const double turns = tone->frequency * (from - segment->origin);
         const double phase = 360.0 * (turns - floor(turns)) + tone->phase * 180.0 / DEA_PI;
         const double numbers[] = {i > 0 ? 0.0 : curve->offset, tone->amplitude, tone->frequency, from - c->begin, 0.0, phase};
-        char plus[24], minus[24] = "0";
-        char name[24] = "SOURCE";
+        char plus[32], minus[32] = "0";
+        char name[32] = "SOURCE";
         snprintf(plus, sizeof plus, "%.20s", c->node);
         if (i > 0) {
             snprintf(name, sizeof name, "WAVE%zu", i);

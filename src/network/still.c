@@ -119,8 +119,8 @@ bool dea_still_step(const dea_still *still, double share, const double *u, doubl
             return false;
         }
         const dea_biaxial s = stress_of(still, ring, e, share);
-        if (!(s.w11 > 0.0)) {
-            return false; /* no longer elliptic: the film thins within a place, and no mesh tells how far */
+        if (!ring->disc && !(s.w11 > 0.0)) {
+            return false; /* no longer elliptic: the film thins within a place, and no mesh tells how far (the disc stays uniform) */
         }
         add_ring(still, ring, &s, n, step, k);
     }

@@ -209,8 +209,8 @@ static void a_law_is_one_entry_in_statics(void **state)
         assert_relative(((const dea_row *)(const void *)a.bytes)->strain, balanced(4000.0), 1e-9);
         for (int kind = DEA_DOT; kind <= DEA_LENS; kind++) {
             answer ring;
-            const dea_scene membrane = fung_scene(kind, 4000.0);
-            scene.actuator.kind = kind;
+            const dea_scene membrane = fung_scene((dea_kind)kind, 4000.0);
+            scene.actuator.kind = (dea_kind)kind;
             scene.models[0] = dea_model_find("ring");
             run(&scene, engines[e], &ring);
             assert_relative(((const dea_row *)(const void *)ring.bytes)->strain, solve_direct(&membrane, "field").strain, 1e-3);

@@ -108,7 +108,7 @@ static void a_sweep_goes_on_behind_points_without_equilibrium(void **state)
 {
     double values[] = {1000.0, 4000.0, 20000.0, 4500.0};
     dea_axis axis;
-    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, 500.0);
+    dea_scene scene = paper_scene(DEA_LENS, 1.2, 0.5, 500.0);
     (void)state;
     scene.models[0] = dea_model_find("field");
     scene.accuracy = 1e-9;
@@ -117,7 +117,7 @@ static void a_sweep_goes_on_behind_points_without_equilibrium(void **state)
     assert_int_equal(list.rows[0].state, DEA_STATE_OK);
     assert_int_equal(list.rows[2].state, DEA_STATE_PULL_IN);
     assert_true(isnan(list.rows[2].strain));
-    assert_true(is_close(list.rows[3].strain, 0.0450329722, 0.0, 1e-9));
+    assert_true(is_close(list.rows[3].strain, -0.03741631, 0.0, 6e-9));
 }
 
 static dea_status take_responses(void *user, size_t first, const void *points, size_t count, dea_error *error)

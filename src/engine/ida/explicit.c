@@ -5,9 +5,6 @@
 
 #include "engine/ida/flight.h"
 
-/* Error test failures of one step after which a run is given up: a step that outgrew its stability is far too long. */
-enum { MOST_FAILS = 30 };
-
 /* Steps that tell how many more will be. */
 static const double enough = 20000.0;
 
@@ -91,19 +88,8 @@ static bool begin(explicit_run *run)
     for (int i = 0; i < run->audited; i++) {
         NV_DATA_S(run->tolerance)[n + i] = 1e-4 * flight->scene->accuracy;
     }
-    run->ark = sun->ARKStepCreate(rates, NULL, 0.0, run->w, sun->context);
-    if (!run->ark) {
-        return false;
-    }
-#if SUNDIALS_VERSION_MAJOR < 7
-    sun->ARKStepSetErrHandlerFn(run->ark, dea_sundials_ignore, NULL);
-    sun->ARKStepSetErrorBias(run->ark, 1.0); /* as SUNDIALS 7 has it */
-#endif
-    return sun->DEA_ARK(SetMaxStep)(run->ark, longest_step(flight)) == ARK_SUCCESS &&
-           sun->DEA_ARK(SetUserData)(run->ark, run) == ARK_SUCCESS &&
-           sun->DEA_ARK(SetMaxErrTestFails)(run->ark, MOST_FAILS) == ARK_SUCCESS &&
-           sun->ARKStepSetTableNum(run->ark, ARKODE_DIRK_NONE, ARKODE_VERNER_8_5_6) == ARK_SUCCESS &&
-           sun->DEA_ARK(SVtolerances)(run->ark, flight->tolerance, run->tolerance) == ARK_SUCCESS;
+    run->ark = dea_sundials_verner(sun, rates, run->w, flight->tolerance, run->tolerance, longest_step(flight), run);
+    return run->ark != NULL;
 }
 
 /* True where the ring will take more steps than there are, told from those so far; they get longer as it decays. */

@@ -59,3 +59,27 @@ void dea_integrator_close(dea_integrator *m)
     }
     *m = (dea_integrator){0};
 }
+
+/* Error test failures of one step after which a run is given up: a step that outgrew its stability is far too long. */
+enum { MOST_FAILS = 30 };
+
+void *dea_sundials_verner(const dea_sundials *sun, ARKRhsFn rates, N_Vector w, double relative, N_Vector absolute, double longest,
+                          void *user)
+{
+    void *ark = sun->ARKStepCreate(rates, NULL, 0.0, w, sun->context);
+    if (!ark) {
+        return NULL;
+    }
+#if SUNDIALS_VERSION_MAJOR < 7
+    sun->ARKStepSetErrHandlerFn(ark, dea_sundials_ignore, NULL);
+    sun->ARKStepSetErrorBias(ark, 1.0); /* as SUNDIALS 7 has it */
+#endif
+    if (sun->DEA_ARK(SetMaxStep)(ark, longest) != ARK_SUCCESS || sun->DEA_ARK(SetUserData)(ark, user) != ARK_SUCCESS ||
+        sun->DEA_ARK(SetMaxErrTestFails)(ark, MOST_FAILS) != ARK_SUCCESS ||
+        sun->ARKStepSetTableNum(ark, ARKODE_DIRK_NONE, ARKODE_VERNER_8_5_6) != ARK_SUCCESS ||
+        sun->DEA_ARK(SVtolerances)(ark, relative, absolute) != ARK_SUCCESS) {
+        sun->DEA_ARK(Free)(&ark);
+        return NULL;
+    }
+    return ark;
+}

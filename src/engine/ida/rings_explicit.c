@@ -5,9 +5,6 @@
 
 #include "engine/ida/rings_flight.h"
 
-/* Error test failures of one step after which a run is given up: a step that outgrew its stability is far too long. */
-enum { MOST_FAILS = 30 };
-
 /* Steps that tell how many more will be. */
 static const double enough = 5000.0;
 
@@ -88,19 +85,8 @@ static bool begin(explicit_run *run)
     for (size_t i = 0; i < run->audited; i++) {
         NV_DATA_S(run->tolerances)[count + i] = 1e-2 * f->scene->accuracy;
     }
-    run->ark = sun->ARKStepCreate(rates_of, NULL, 0.0, run->w, sun->context);
-    if (!run->ark) {
-        return false;
-    }
-#if SUNDIALS_VERSION_MAJOR < 7
-    sun->ARKStepSetErrHandlerFn(run->ark, dea_sundials_ignore, NULL);
-    sun->ARKStepSetErrorBias(run->ark, 1.0); /* as SUNDIALS 7 has it */
-#endif
-    return sun->DEA_ARK(SetMaxStep)(run->ark, longest_step(f)) == ARK_SUCCESS &&
-           sun->DEA_ARK(SetUserData)(run->ark, run) == ARK_SUCCESS &&
-           sun->DEA_ARK(SetMaxErrTestFails)(run->ark, MOST_FAILS) == ARK_SUCCESS &&
-           sun->ARKStepSetTableNum(run->ark, ARKODE_DIRK_NONE, ARKODE_VERNER_8_5_6) == ARK_SUCCESS &&
-           sun->DEA_ARK(SVtolerances)(run->ark, f->tolerance, run->tolerances) == ARK_SUCCESS;
+    run->ark = dea_sundials_verner(sun, rates_of, run->w, f->tolerance, run->tolerances, longest_step(f), run);
+    return run->ark != NULL;
 }
 
 /* The first end of a window behind a time of the segment, at the most @p to. */

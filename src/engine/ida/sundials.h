@@ -78,6 +78,11 @@ dea_status dea_integrator_open(const dea_sundials *sun, sunindextype n, IDAResFn
                                dea_error *error);
 void dea_integrator_close(dea_integrator *integrator);
 
+/* Verner's explicit Runge-Kutta method of order 6 from time 0 and @p w on, with its tolerances and longest step; the caller ends it
+ * with DEA_ARK(Free). NULL without memory. */
+void *dea_sundials_verner(const dea_sundials *sun, ARKRhsFn rates, N_Vector w, double relative, N_Vector absolute, double longest,
+                          void *user);
+
 /* The two kinds of static problem; both fill the row, `failed` where nothing converged. */
 struct dea_balance;
 typedef struct dea_ramp dea_ramp;

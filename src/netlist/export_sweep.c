@@ -193,8 +193,10 @@ static dea_status write_membrane(line_text *l, dea_error *error)
 static dea_status write_line(line_text *l, dea_error *error)
 {
     FILE *out = l->w->out;
-    if (!dea_still_cards_open(&l->network, symbol_at(l, l->from), l->w->dialect, out, &l->cards)) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
+    const dea_still_line line = {l->scene, l->scene->models[0], l->axis, symbol_at(l, l->from)};
+    const dea_status status = dea_still_cards_open(&line, false, l->w->dialect, out, &l->cards, error);
+    if (status != DEA_OK) {
+        return status;
     }
     write_place(l);
     fprintf(out, ".subckt line%zu k edge\n", l->w->lines);

@@ -6,40 +6,69 @@
 #include "netlist/mobility.h"
 #include "support/text.h"
 
-bool dea_still_cards_open(dea_network *network, double symbol, const dea_dialect *dialect, FILE *out, dea_still_cards *cards)
+static void evaluate(dea_still_cards *cards, double symbol, double u)
 {
+    dea_quantities *q = &cards->quantities;
+    q->values[0] = symbol;
+    dea_pool_values_at(&cards->network.pool, &(dea_point_values){q->values, &u, q->count + 1, 1}, cards->values);
+}
+
+/* Every expression that a card writes, as often as it does. */
+static void declare(dea_still_cards *cards)
+{
+    dea_part_text *text = &cards->text;
+    dea_part_text_move_symbol(text, 0);
+    dea_part_text_share(text);
+    dea_part_text_call(text, &cards->network);
+    dea_part_text_root(text, "force");
+    dea_part_text_use(text, cards->load);
+    dea_part_text_root(text, "spring");
+    dea_part_text_use(text, cards->elastic);
+}
+
+dea_status dea_still_cards_open(const dea_still_line *line, bool numbers, const dea_dialect *dialect, FILE *out,
+                                dea_still_cards *cards, dea_error *error)
+{
+    dea_network *network = &cards->network;
     dea_pool *pool = &network->pool;
-    *cards = (dea_still_cards){.network = network};
+    *cards = (dea_still_cards){0};
+    const dea_status status =
+        dea_network_build_named(line->scene, line->model, line->axis, &cards->quantities, network, error);
+    if (status != DEA_OK) {
+        return status;
+    }
     dea_network_gather(network);
     cards->elastic = dea_expr_gathered(pool, dea_network_elastic(network));
     cards->load = dea_expr_gathered(pool, dea_network_load(network));
     cards->values = calloc((size_t)pool->count + 1, sizeof *cards->values);
     if (!dea_part_text_open(&cards->text, pool, dialect, out) || !cards->values) {
-        return false;
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
     }
-    static const char *const symbols[] = {"v(axis)"};
-    dea_pool_values(pool, symbol, 0.0, cards->values);
+    cards->symbols[0] = "v(axis)";
+    for (int i = 1; i <= cards->quantities.count; i++) {
+        cards->symbols[i] = cards->quantities.names[i];
+    }
+    evaluate(cards, line->first, 0.0);
     cards->text.node = "v(edge)";
-    cards->text.symbols = symbols;
-    cards->text.values = cards->values;
-    dea_part_text_move_symbol(&cards->text, 0);
-    dea_part_text_share(&cards->text);
-    dea_part_text_call(&cards->text, network);
-    dea_part_text_root(&cards->text, "force");
-    dea_part_text_use(&cards->text, cards->load);
-    dea_part_text_root(&cards->text, "spring");
-    dea_part_text_use(&cards->text, cards->elastic);
-    return !cards->text.exhausted;
+    cards->text.symbols = cards->symbols;
+    cards->text.values = numbers ? cards->values : NULL;
+    declare(cards);
+    return cards->text.exhausted ? dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written") : DEA_OK;
 }
 
 void dea_still_cards_close(dea_still_cards *cards)
 {
     dea_part_text_close(&cards->text);
+    dea_network_free(&cards->network);
     free(cards->values);
+    cards->values = NULL;
 }
 
 void dea_still_cards_write_numbers(dea_still_cards *cards)
 {
+    if (!cards->text.values) {
+        dea_cards_write_quantities(&cards->quantities, cards->text.out);
+    }
     dea_part_text_parameters(&cards->text);
 }
 
@@ -49,8 +78,8 @@ void dea_still_cards_write_network(dea_still_cards *cards, size_t ramp)
     const dea_part_text *text = &cards->text;
     FILE *out = text->out;
     fputs(DEA_CARDS_BEGIN, out);
-    for (int i = 0; i < cards->network->element_count; i++) {
-        fprintf(out, "* %s: %s\n", cards->network->elements[i].name, cards->network->elements[i].meaning);
+    for (int i = 0; i < cards->network.element_count; i++) {
+        fprintf(out, "* %s: %s\n", cards->network.elements[i].name, cards->network.elements[i].meaning);
     }
     dea_part_text_nodes(&cards->text);
     fputs("* elastic force of all springs [N], from the edge to the frame\n", out);
@@ -69,7 +98,7 @@ void dea_still_cards_write_network(dea_still_cards *cards, size_t ramp)
 
 void dea_still_cards_write_start(dea_still_cards *cards, const char *inside, double symbol, double u)
 {
-    dea_pool_values(&cards->network->pool, symbol, u, cards->values);
+    evaluate(cards, symbol, u);
     dea_part_text_start(&cards->text, inside, cards->values);
 }
 
@@ -137,22 +166,25 @@ static void write_all(dea_still_cards *cards, const dea_netlist_study *study)
     fprintf(out, ".dc VINDEX %zu %zu 1\n.end\n", study->ramp ? 0 : study->from, last);
 }
 
-dea_status dea_netlist_write(dea_network *network, const dea_netlist_study *study, char **text, dea_error *error)
+dea_status dea_netlist_write(const dea_netlist_study *study, char **text, dea_error *error)
 {
+    const dea_still_line line = {study->scene, study->model, study->axis, first_of(study)};
     size_t length = 0;
-    dea_still_cards cards = {.network = NULL};
+    dea_still_cards cards = {0};
     *text = NULL;
     FILE *out = open_memstream(text, &length);
-    const bool ready = out && dea_still_cards_open(network, first_of(study), dea_dialect_find("ngspice"), out, &cards);
-    if (ready) {
+    dea_status status = out ? dea_still_cards_open(&line, true, dea_dialect_find("ngspice"), out, &cards, error) : DEA_ERROR_MEMORY;
+    if (status == DEA_OK) {
         write_all(&cards, study);
     }
     const bool written = dea_text_close(out);
     dea_still_cards_close(&cards);
-    if (!ready || !written) {
+    if (!written) {
+        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
+    }
+    if (status != DEA_OK) {
         free(*text);
         *text = NULL;
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
     }
-    return DEA_OK;
+    return status;
 }

@@ -388,17 +388,28 @@ static void lift(dea_quantities *quantities, dea_pool *pool, const char *name, d
     }
 }
 
+/* Moduli of a law, of the film or of its skin. */
+static void lift_law(dea_quantities *quantities, dea_pool *pool, const dea_law *law, const char *whose, dea_expr *constants)
+{
+    char own[DEA_QUANTITY_NAME], name[2 * DEA_QUANTITY_NAME];
+    for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
+        if (law->constants[i % law->constant_count].modulus) {
+            dea_constant_name(law, i, own);
+            snprintf(name, sizeof name, "%s%s", whose, own);
+            lift(quantities, pool, name, &constants[i]);
+        }
+    }
+}
+
 static void lift_all(dea_quantities *quantities, dea_symbols *s, bool modulus)
 {
-    char name[DEA_QUANTITY_NAME];
     lift(quantities, s->pool, "frame_radius", &s->frame_radius);
     lift(quantities, s->pool, "film_thickness", &s->film_thickness);
     lift(quantities, s->pool, "permittivity", &s->permittivity);
-    for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
-        if (s->law->constants[i % s->law->constant_count].modulus) {
-            dea_constant_name(s->law, i, name);
-            lift(quantities, s->pool, name, &s->constants[i]);
-        }
+    lift(quantities, s->pool, "load_stiffness", &s->load);
+    lift_law(quantities, s->pool, s->law, "", s->constants);
+    if (s->skin) {
+        lift_law(quantities, s->pool, s->skin, "skin_", s->skin_constants);
     }
     if (modulus) {
         lift(quantities, s->pool, "modulus", &s->modulus);

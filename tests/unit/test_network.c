@@ -760,10 +760,10 @@ static void judge_of_netlists_finds_what_it_forbids(void **state)
     }
 }
 
-static char *netlist_of(dea_network *network, const dea_netlist_study *study)
+static char *netlist_of(const dea_netlist_study *study)
 {
     char *text = NULL;
-    assert_int_equal(dea_netlist_write(network, study, &text, NULL), DEA_OK);
+    assert_int_equal(dea_netlist_write(study, &text, NULL), DEA_OK);
     assert_non_null(text);
     return text;
 }
@@ -792,19 +792,19 @@ static void netlist_of_any_line_is_plain_and_complete(void **state)
         axis.uniform = i % 3 == 0;
         const bool ramp = i % 5 == 0;
         const size_t count = i % 7 == 0 ? 1 : 30;
-        dea_network network = network_of(&scene, model, ramp ? NULL : &axis);
-        const dea_netlist_study study = {.axis = ramp ? NULL : &axis,
+        const dea_netlist_study study = {.scene = &scene,
+                                         .model = dea_model_find(model),
+                                         .axis = ramp ? NULL : &axis,
                                          .from = 5,
                                          .count = count,
                                          .ramp = ramp ? 50 : 0,
                                          .force_scale = 1e-3,
                                          .length_scale = 1e-2};
-        char *text = netlist_of(&network, &study);
+        char *text = netlist_of(&study);
         assert_null(strstr(text, "secret"));
         assert_null(strstr(text, ".control"));
         check_netlist(text);
         free(text);
-        dea_network_free(&network);
     }
 }
 
@@ -815,8 +815,9 @@ static void netlist_names_its_elements(void **state)
     const dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.4, 4500.0);
     for (size_t i = 0; i < NETWORK_MODELS; i++) {
         dea_network network = network_of(&scene, network_models[i], NULL);
-        const dea_netlist_study study = {.count = 1, .force_scale = 1.0, .length_scale = 1.0};
-        char *text = netlist_of(&network, &study);
+        const dea_netlist_study study = {
+            .scene = &scene, .model = dea_model_find(network_models[i]), .count = 1, .force_scale = 1.0, .length_scale = 1.0};
+        char *text = netlist_of(&study);
         for (int k = 0; k < network.element_count; k++) {
             char line[512];
             snprintf(line, sizeof line, "\n* %s: %s\n", network.elements[k].name, network.elements[k].meaning);

@@ -93,13 +93,13 @@ static bool accept(line_job *job, size_t i, double u)
 }
 
 /* Solves the network of one point with its load growing from rest in so many steps; *accepted says whether its answer passes. */
-static dea_status climb(line_job *job, size_t i, dea_network *network, size_t steps, bool *accepted, dea_error *error)
+static dea_status climb(line_job *job, size_t i, const dea_scene *here, size_t steps, bool *accepted, dea_error *error)
 {
     char *netlist = NULL;
     dea_ngspice_result result = {0};
-    dea_netlist_study study = {.ramp = steps};
+    dea_netlist_study study = {.scene = here, .model = job->state->model, .ramp = steps};
     set_scales(job, i, &study);
-    dea_status status = dea_netlist_write(network, &study, &netlist, error);
+    dea_status status = dea_netlist_write(&study, &netlist, error);
     if (status == DEA_OK) {
         status = dea_ngspice_run(job->state->library, netlist, "edge", &result, error);
     }
@@ -131,13 +131,11 @@ static dea_status solve_alone(void *user, size_t i, dea_error *error)
     if (job->line->axis) {
         dea_axis_set(job->line->axis, &here, symbol);
     }
-    dea_network network;
     bool accepted = false;
-    dea_status status = dea_network_build(&here, job->state->model, NULL, &network, error);
+    dea_status status = DEA_OK;
     for (size_t steps = RAMP_STEPS; status == DEA_OK && !accepted && steps <= RAMP_STEPS_MOST; steps *= RAMP_REFINED) {
-        status = climb(job, i, &network, steps, &accepted, error);
+        status = climb(job, i, &here, steps, &accepted, error);
     }
-    dea_network_free(&network);
     return status;
 }
 
@@ -145,9 +143,13 @@ static dea_status solve_alone(void *user, size_t i, dea_error *error)
 static dea_status sweep_circuit(line_job *job, size_t from, size_t count, dea_ngspice_result *result, dea_error *error)
 {
     char *netlist;
-    dea_netlist_study study = {.axis = job->line->axis, .from = job->line->from + from, .count = count};
+    dea_netlist_study study = {.scene = job->scene,
+                               .model = job->state->model,
+                               .axis = job->line->axis,
+                               .from = job->line->from + from,
+                               .count = count};
     set_scales(job, from, &study);
-    dea_status status = dea_netlist_write(&job->network, &study, &netlist, error);
+    dea_status status = dea_netlist_write(&study, &netlist, error);
     if (status == DEA_OK) {
         status = dea_ngspice_run(job->state->library, netlist, "edge", result, error);
         free(netlist);

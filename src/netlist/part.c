@@ -185,7 +185,7 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
         if (!p->rings) {
             return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is made");
         }
-        const dea_rings_numbers numbers = {dea_expr_symbol(pool, RHO), dea_expr_symbol(pool, AREAL), dea_expr_symbol(pool, DAMP)};
+        const dea_rings_numbers numbers = {dea_expr_symbol(pool, RHO), dea_expr_symbol(pool, AREAL), dea_expr_symbol(pool, DAMP), 1e6, 0.0};
         dea_rings_part_make(&symbols, &numbers, p->branches, p->rings);
     }
     p->taut = calloc((size_t)network->tension_count + 1, sizeof *p->taut);

@@ -41,9 +41,6 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
     if (!model->network && !model->membrane) {
         return "it has no network form that ngspice could solve";
     }
-    if (model->membrane && (scene->load.stiffness > 0.0 || scene->load.mass > 0.0)) {
-        return "its rings of film carry no load";
-    }
     if (model->membrane && dea_study_of(scene)->timed) {
         return "it does not step the membrane in time";
     }

@@ -353,32 +353,6 @@ dea_status dea_export_transient(dea_export *export, dea_error *error)
     return status;
 }
 
-/* One card for the grid of the scene; its last frequency need not lie on it and has a card of its own in ngspice. */
-static void write_band(const writer *w)
-{
-    const dea_scene *scene = w->export->scene;
-    const size_t last = dea_layout_of(scene).rows - 1;
-    fputs("* results: displacement v(disp) [m] and velocity v(edge) [m/s] per volt, input admittance -v(current) [S]\n"
-          "HCURRENT current 0 VSOURCE 1\n"
-          ".print ac vm(disp) vp(disp) vm(edge) vp(edge) vm(current) vp(current)\n",
-          w->out);
-    fputs(w->export->dialect->ac, w->out);
-    if (last > 0) {
-        fprintf(w->out, ".ac dec %zu ", scene->ac.points_per_decade);
-        dea_part_number(w->out, scene->ac.from);
-        fputc(' ', w->out);
-        dea_part_number(w->out, dea_layout_place(scene, last));
-        fputc('\n', w->out);
-    } else {
-        fputs(".ac lin 1 ", w->out);
-        dea_part_number(w->out, scene->ac.from);
-        fputc(' ', w->out);
-        dea_part_number(w->out, scene->ac.from);
-        fputc('\n', w->out);
-    }
-    fputs(".end\n", w->out);
-}
-
 dea_status dea_export_ac(dea_export *export, dea_error *error)
 {
     if (export->scene->models[0]->membrane) {
@@ -399,7 +373,7 @@ dea_status dea_export_ac(dea_export *export, dea_error *error)
         dea_export_head(export, meaning);
         dea_cards_write_small(&w.dynamics, &bias, &form, w.out);
         fprintf(w.out, "* source of 1 V\nVSOURCE %s 0 dc 0 ac 1\n", w.dynamics.series > 0.0 ? "source" : "film");
-        write_band(&w);
+        dea_export_band(export, "disp", "edge");
     }
     dea_dynamics_close(&w.dynamics);
     return status;

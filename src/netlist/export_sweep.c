@@ -9,7 +9,7 @@
 #include "netlist/netlist.h"
 #include "netlist/rings_line.h"
 #include "network/balance.h"
-#include "support/text.h"
+#include "support/memory_text.h"
 
 /* Most lines of one netlist, most values of an axis that is not uniform, and most steps from one point to the next. */
 enum { MOST_LINES = 2000, MOST_LIST = 400, MOST_PARTS = 64, NAMES_A_LINE = 6 };
@@ -341,23 +341,20 @@ static dea_status refuse(const dea_export *export, dea_error *error)
 static dea_status write_lines(writer *w, dea_error *error)
 {
     const dea_scene *scene = w->export->scene;
-    char *names = NULL;
-    size_t length;
-    w->names = open_memstream(&names, &length);
-    if (!w->names) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
+    dea_memory_text names;
+    dea_status status = dea_memory_text_begin(&names, error);
+    w->names = names.out;
+    if (status == DEA_OK) {
+        status = dea_lines_visit(scene, 0, dea_scene_point_count(scene), visit_line, w, error);
     }
-    dea_status status = dea_lines_visit(scene, 0, dea_scene_point_count(scene), visit_line, w, error);
-    if (!dea_text_close(w->names) && status == DEA_OK) {
-        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
-    }
+    status = dea_memory_text_end(&names, status, error);
     if (status == DEA_OK && w->written == 0) {
         status = dea_fail(error, DEA_ERROR_UNSUPPORTED, "no point of the sweep has an equilibrium");
     }
     if (status == DEA_OK) {
-        write_analysis(w, names);
+        write_analysis(w, names.text);
     }
-    free(names);
+    free(names.text);
     return status;
 }
 

@@ -720,3 +720,16 @@ void dea_cards_write_small(dea_dynamics *d, const dea_mobility_bias *bias, const
     close_loop(&c);
     fputs(DEA_CARDS_END, out);
 }
+
+void dea_cards_write_band(const dea_mobility_band *band, FILE *out)
+{
+    if (band->points_per_decade > 0) {
+        fprintf(out, ".ac dec %zu ", band->points_per_decade);
+    } else {
+        fprintf(out, ".ac lin %zu ", band->count > 1 ? band->count : 1);
+    }
+    dea_part_number(out, band->from);
+    fputc(' ', out);
+    dea_part_number(out, band->to);
+    fputs("\n.end\n", out);
+}

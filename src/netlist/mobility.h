@@ -136,6 +136,15 @@ typedef struct dea_mobility_bias {
 /* Its numbers and its network; the source of the port is not among them. v(disp) is the displacement. */
 void dea_cards_write_small(dea_dynamics *dynamics, const dea_mobility_bias *bias, const dea_cards_form *form, FILE *out);
 
+/* Frequencies: points_per_decade of a decade from `from` on; or, where they are 0, `count` evenly, or one alone. */
+typedef struct dea_mobility_band {
+    double from, to; /* [Hz] */
+    size_t points_per_decade, count;
+} dea_mobility_band;
+
+/* Its analysis, and the end of the netlist. */
+void dea_cards_write_band(const dea_mobility_band *band, FILE *out);
+
 /* First and last line of every network. */
 #define DEA_CARDS_BEGIN "* the network\n"
 #define DEA_CARDS_END "* end of the network\n"

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "netlist/mobility.h"
-#include "support/text.h"
+#include "support/memory_text.h"
 
 static void evaluate(dea_still_cards *cards, double symbol, double u)
 {
@@ -169,22 +169,17 @@ static void write_all(dea_still_cards *cards, const dea_netlist_study *study)
 dea_status dea_netlist_write(const dea_netlist_study *study, char **text, dea_error *error)
 {
     const dea_still_line line = {study->scene, study->model, study->axis, first_of(study)};
-    size_t length = 0;
     dea_still_cards cards = {0};
-    *text = NULL;
-    FILE *out = open_memstream(text, &length);
-    dea_status status = out ? dea_still_cards_open(&line, true, dea_dialect_find("ngspice"), out, &cards, error) : DEA_ERROR_MEMORY;
+    dea_memory_text memory;
+    dea_status status = dea_memory_text_begin(&memory, error);
+    if (status == DEA_OK) {
+        status = dea_still_cards_open(&line, true, dea_dialect_find("ngspice"), memory.out, &cards, error);
+    }
     if (status == DEA_OK) {
         write_all(&cards, study);
     }
-    const bool written = dea_text_close(out);
     dea_still_cards_close(&cards);
-    if (!written) {
-        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
-    }
-    if (status != DEA_OK) {
-        free(*text);
-        *text = NULL;
-    }
+    status = dea_memory_text_end(&memory, status, error);
+    *text = memory.text;
     return status;
 }

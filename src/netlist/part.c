@@ -10,7 +10,7 @@
 #include "model/models.h"
 #include "netlist/mobility.h"
 #include "netlist/rings_part.h"
-#include "support/text.h"
+#include "support/memory_text.h"
 
 /* The symbols of a part's network: parameters that the checks of the subcircuit have put into their ranges. */
 enum {
@@ -686,10 +686,10 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "a circuit part has no skin of its electrodes");
     }
     const size_t branches = defaults->material.prony_count;
-    char *text = NULL;
-    size_t length = 0;
+    dea_memory_text text;
+    dea_status status = dea_memory_text_begin(&text, error);
     part p = {.dialect = dialect,
-              .out = open_memstream(&text, &length),
+              .out = text.out,
               .kind = defaults->actuator.kind,
               .law = defaults->material.law,
               .constants = constants_in_use(&defaults->material),
@@ -697,18 +697,14 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
               .branches = branches > PART_BRANCHES ? branches : PART_BRANCHES};
     p.elements = (dea_dynamics){.model = model, .linear = p.linear, .softens = true, .branch_count = p.branches, .mass = 1.0, .retardation = 1.0};
     p.film = (dea_mobility){.dynamics = &p.elements, .stiffness = p.linear ? 1.0 : (double)NAN};
-    if (!p.out) {
-        return tell_memory(error);
-    }
-    dea_status status = write_part(&p, defaults, model, name, error);
-    const bool whole = dea_text_close(p.out);
-    if (status == DEA_OK && !whole) {
-        status = tell_memory(error);
-    }
     if (status == DEA_OK) {
-        dea_dialect_wrap(out, text);
+        status = write_part(&p, defaults, model, name, error);
     }
-    free(text);
+    status = dea_memory_text_end(&text, status, error);
+    if (status == DEA_OK) {
+        dea_dialect_wrap(out, text.text);
+    }
+    free(text.text);
     dea_cards_close(&p.cards);
     dea_mobility_close(&p.film);
     free(p.rings);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "netlist/curve_cards.h"
-#include "support/text.h"
+#include "support/memory_text.h"
 
 /* The engine's text: numbers, in the analogy in which nothing but nodes is added. */
 static dea_cards_form engine_form(void)
@@ -144,32 +144,25 @@ static void write_piece(writer *w)
     write_analysis(w);
 }
 
-/* Closes the stream; on DEA_OK its text belongs to the caller. */
-static dea_status finish(FILE *out, bool ready, char **text, dea_error *error)
-{
-    const bool whole = dea_text_close(out);
-    if (!ready || !whole) {
-        free(*text);
-        *text = NULL;
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
-    }
-    return DEA_OK;
-}
-
 dea_status dea_mobility_write(const dea_mobility *mobility, const dea_mobility_piece *piece, char **text, dea_error *error)
 {
-    size_t length = 0;
-    *text = NULL;
-    writer w = {.mobility = mobility, .dynamics = mobility->dynamics, .piece = piece, .out = open_memstream(text, &length)};
     const dea_cards_form form = engine_form();
-    bool ready = w.out && dea_cards_open(mobility, &form, w.out, &w.cards);
-    if (ready) {
+    dea_memory_text memory;
+    dea_status status = dea_memory_text_begin(&memory, error);
+    writer w = {.mobility = mobility, .dynamics = mobility->dynamics, .piece = piece, .out = memory.out};
+    if (status == DEA_OK && dea_cards_open(mobility, &form, w.out, &w.cards)) {
         dea_cards_declare(&w.cards);
         write_piece(&w);
+    } else {
+        w.cards.text.exhausted = true;
     }
-    ready = ready && !w.cards.text.exhausted;
+    if (status == DEA_OK && w.cards.text.exhausted) {
+        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
+    }
     dea_cards_close(&w.cards);
-    return finish(w.out, ready, text, error);
+    status = dea_memory_text_end(&memory, status, error);
+    *text = memory.text;
+    return status;
 }
 
 static bool is_linear(const dea_mobility *mobility)
@@ -227,26 +220,18 @@ dea_mobility_state dea_mobility_read(const dea_mobility *mobility, const double 
 dea_status dea_mobility_write_small(dea_dynamics *dynamics, const dea_mobility_bias *bias, const dea_mobility_band *band,
                                     char **text, dea_error *error)
 {
-    size_t length = 0;
     const bool series = dynamics->series > 0.0;
     const dea_cards_form form = engine_form();
-    *text = NULL;
-    FILE *out = open_memstream(text, &length);
-    if (!out) {
-        return finish(out, false, text, error);
+    dea_memory_text memory;
+    dea_status status = dea_memory_text_begin(&memory, error);
+    if (status == DEA_OK) {
+        fputs("* dielectric elastomer actuator about its bias\n", memory.out);
+        dea_cards_write_small(dynamics, bias, &form, memory.out);
+        fprintf(memory.out, "VSOURCE %s 0 dc 0 ac 1\n%s.save v(disp) %s\n", series ? "source" : "film", form.dialect->ac,
+                series ? "v(film)" : "i(vsource)");
+        dea_cards_write_band(band, memory.out);
     }
-    fputs("* dielectric elastomer actuator about its bias\n", out);
-    dea_cards_write_small(dynamics, bias, &form, out);
-    fprintf(out, "VSOURCE %s 0 dc 0 ac 1\n%s.save v(disp) %s\n.ac ", series ? "source" : "film", form.dialect->ac,
-            series ? "v(film)" : "i(vsource)");
-    if (band->points_per_decade > 0) {
-        fprintf(out, "dec %zu ", band->points_per_decade);
-    } else {
-        fprintf(out, "lin %zu ", band->count > 1 ? band->count : 1);
-    }
-    dea_part_number(out, band->from);
-    fputc(' ', out);
-    dea_part_number(out, band->to);
-    fputs("\n.end\n", out);
-    return finish(out, true, text, error);
+    status = dea_memory_text_end(&memory, status, error);
+    *text = memory.text;
+    return status;
 }

@@ -21,12 +21,6 @@ typedef struct dea_mobility_piece {
     dea_mobility_state start;
 } dea_mobility_piece;
 
-/* Frequencies: points_per_decade of a decade from `from` on; or, where they are 0, `count` evenly, or one alone. */
-typedef struct dea_mobility_band {
-    double from, to; /* [Hz] */
-    size_t points_per_decade, count;
-} dea_mobility_band;
-
 /* Most vectors of a run: time, displacement, velocity, charge, branches. */
 enum { DEA_MOBILITY_VECTORS = 4 + DEA_RELAXED_MAX, DEA_MOBILITY_NAME = 24 };
 

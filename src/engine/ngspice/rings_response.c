@@ -7,10 +7,9 @@
 
 #include "deaspice/measures.h"
 #include "engine/ngspice/moving.h"
-#include "netlist/part_text.h"
 #include "engine/ngspice/deck.h"
 #include "netlist/rings_small.h"
-#include "support/text.h"
+#include "support/memory_text.h"
 
 /* The library rounds the number of steps between two frequencies down: a last one that rounding leaves short would be lost. */
 static const double grid = 1e-13;
@@ -34,26 +33,17 @@ typedef struct answer {
 static dea_status write_netlist(const response *r, const dea_mobility_band *band, char **text, dea_error *error)
 {
     const dea_rings_small small = {&r->membrane, r->u, r->voltage};
-    size_t length = 0;
-    *text = NULL;
-    FILE *out = open_memstream(text, &length);
-    if (out) {
-        fputs("* membrane about its bias\n", out);
-        dea_rings_small_write(&small, out);
-        fprintf(out, ".options noopac pivtol=1e-60\n.save v(u%zu) v(film) v(motion)\n.ac ", r->membrane.rings.edge + 1);
-        fprintf(out, band->points_per_decade > 0 ? "dec %zu " : "lin %zu ",
-                band->points_per_decade > 0 ? band->points_per_decade : band->count > 1 ? band->count : 1);
-        dea_part_number(out, band->from);
-        fputc(' ', out);
-        dea_part_number(out, band->to);
-        fputs("\n.end\n", out);
+    dea_memory_text memory;
+    dea_status status = dea_memory_text_begin(&memory, error);
+    if (status == DEA_OK) {
+        fputs("* membrane about its bias\n", memory.out);
+        dea_rings_small_write(&small, memory.out);
+        fprintf(memory.out, ".options noopac pivtol=1e-60\n.save v(u%zu) v(film) v(motion)\n", r->membrane.rings.edge + 1);
+        dea_cards_write_band(band, memory.out);
     }
-    if (!dea_text_close(out) || !*text) {
-        free(*text);
-        *text = NULL;
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
-    }
-    return DEA_OK;
+    status = dea_memory_text_end(&memory, status, error);
+    *text = memory.text;
+    return status;
 }
 
 static double complex vector_at(const dea_ngspice_table *table, int vector, size_t index)

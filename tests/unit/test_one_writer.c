@@ -4,6 +4,7 @@
 
 #include <stdlib.h>
 
+#include "engine/ngspice/bands.h"
 #include "engine/ngspice/deck.h"
 #include "engine/ngspice/moving.h"
 #include "netlist/export.h"
@@ -133,14 +134,15 @@ static char *response_of(const dea_scene *scene)
     const dea_units units = {1024.0, 4096.0, 0x1p-20, 0x1p-10, 128.0};
     dea_scene inside;
     dea_dynamics dynamics;
-    dea_mobility_bias bias = {0};
+    dea_biased_film biased = {.dynamics = &dynamics};
     char *text = NULL;
     assert_int_equal(dea_units_enter(&units, scene, &inside, NULL), DEA_OK);
     assert_int_equal(dea_dynamics_open(&inside, inside.models[0], &dynamics, NULL), DEA_OK);
-    bias.voltage = inside.ac.bias / (1.0 + dynamics.series * dynamics.conductance);
-    assert_true(dea_dynamics_equilibrium(&dynamics, bias.voltage, &bias.u));
+    biased.bias.voltage = inside.ac.bias / (1.0 + dynamics.series * dynamics.conductance);
+    assert_true(dea_dynamics_equilibrium(&dynamics, biased.bias.voltage, &biased.bias.u));
+    const dea_bands bands = dea_bands_of_film(&biased, &inside, NULL);
     const dea_mobility_band band = {.from = inside.ac.from, .to = inside.ac.to, .points_per_decade = 3};
-    assert_int_equal(dea_mobility_write_small(&dynamics, &bias, &band, &text, NULL), DEA_OK);
+    assert_int_equal(dea_bands_write(&bands, &band, &text, NULL), DEA_OK);
     dea_dynamics_close(&dynamics);
     dea_units_leave(&inside);
     return text;

@@ -216,22 +216,3 @@ dea_mobility_state dea_mobility_read(const dea_mobility *mobility, const double 
     }
     return state;
 }
-
-dea_status dea_mobility_write_small(dea_dynamics *dynamics, const dea_mobility_bias *bias, const dea_mobility_band *band,
-                                    char **text, dea_error *error)
-{
-    const bool series = dynamics->series > 0.0;
-    const dea_cards_form form = engine_form();
-    dea_memory_text memory;
-    dea_status status = dea_memory_text_begin(&memory, error);
-    if (status == DEA_OK) {
-        fputs("* dielectric elastomer actuator about its bias\n", memory.out);
-        dea_cards_write_small(dynamics, bias, &form, memory.out);
-        fprintf(memory.out, "VSOURCE %s 0 dc 0 ac 1\n%s.save v(disp) %s\n", series ? "source" : "film", form.dialect->ac,
-                series ? "v(film)" : "i(vsource)");
-        dea_cards_write_band(band, memory.out);
-    }
-    status = dea_memory_text_end(&memory, status, error);
-    *text = memory.text;
-    return status;
-}

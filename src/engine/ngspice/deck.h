@@ -38,9 +38,4 @@ dea_mobility_vectors dea_mobility_vectors_of(const dea_mobility *mobility);
 /* The states of point @p index from columns in the order of the vectors. */
 dea_mobility_state dea_mobility_read(const dea_mobility *mobility, const double *const *columns, size_t index);
 
-/* Small-signal netlist about a bias, over a band; on DEA_OK the caller frees *text. Its vectors are `disp` and, with a series
- * resistance, `film`, else `vsource#branch`; the source has 1 V. */
-dea_status dea_mobility_write_small(dea_dynamics *dynamics, const dea_mobility_bias *bias, const dea_mobility_band *band,
-                                    char **text, dea_error *error);
-
 #endif

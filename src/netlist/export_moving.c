@@ -98,7 +98,6 @@ static void write_curves(const writer *w, const char *node)
 {
     const dea_curve_cards cards = {.out = w->out,
                                    .dialect = w->dialect,
-                                   .number = dea_part_number,
                                    .signal = &w->signal,
                                    .count = w->signal.count,
                                    .node = node};

@@ -449,9 +449,7 @@ static void write_hyperelastic_numbers(const dea_cards *c, const dea_mobility_st
 
 static void write_resistors(const dea_cards *c)
 {
-    if (c->form.cures) {
-        fputs("* conductance of the leakage [S], 0 without a resistance\nGLEAK p n p n {leak}\n", c->out);
-    } else if (c->dynamics->conductance > 0.0) {
+    if (c->dynamics->conductance > 0.0) {
         fputs("* leakage resistance of the film [Ohm]\nRLEAK film 0 {r_leak}\n", c->out);
     }
     if (c->dynamics->series > 0.0) {
@@ -469,6 +467,13 @@ static void write_resistor_numbers(const dea_cards *c, double unit)
     }
 }
 
+void dea_cards_write_capacitor(const dea_cures *cures, FILE *out)
+{
+    fprintf(out, "CFILM film plate {c_rest}\nGSENSE plate 0 plate 0 %.15g\nGFILM p n plate 0 {i_film}\n"
+                 "* conductance of the leakage [S], 0 without a resistance\nGLEAK p n p n {leak}\n",
+            cures->sense);
+}
+
 /* The film of a part: its current is that of a capacitor, without a gain, so that what a simulator adds to nodes and pivots (gmin,
  * rshunt, cshunt) stays what it is. v(plate) makes it a voltage; fed back into v(film), it leaves the capacitor its whole voltage. A
  * conductance has no noise, as a resistor would. The force is a node to be read. */
@@ -483,7 +488,7 @@ static void write_part_film(dea_cards *c)
     fputc('/', c->out);
     write_parameter(c, "c_rest");
     end_source(c);
-    fprintf(c->out, "CFILM film plate {c_rest}\nGSENSE plate 0 plate 0 %.15g\nGFILM p n plate 0 {i_film}\n", c->form.cures->sense);
+    dea_cards_write_capacitor(c->form.cures, c->out);
     fputs("* electrostatic force [N] onto the edge, (1/2) U^2 dC/du, Eq. 21\n", c->out);
     begin_source(c, DEA_VOLTAGE, "FORCE", "force", "0");
     write_parameter(c, "ok");

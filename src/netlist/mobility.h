@@ -127,6 +127,9 @@ double dea_cards_film_voltage(dea_cards *cards, const dea_cards_numbers *numbers
  * the operating point. */
 void dea_cards_write_integral(const dea_cures *cures, const char *node, const char *from, const char *to, FILE *out);
 
+/* The film of a part at its pins behind v(film), the charge over that at rest, and its leakage. */
+void dea_cards_write_capacitor(const dea_cures *cures, FILE *out);
+
 /* A small-signal network about an equilibrium. */
 typedef struct dea_mobility_bias {
     double u;       /* [m] */

@@ -373,7 +373,26 @@ static int write_checks(const part *p, const form *of)
     return count;
 }
 
-/* What is written beside the network; its own text is declared behind it. */
+/* What is written beside the network of one node; its own text is declared behind it. */
+static void declare_node(part *p)
+{
+    dea_part_text *text = &p->cards.text;
+    dea_part_text_root(text, "field");
+    dea_part_text_use(text, p->field);
+    dea_part_text_root(text, "mass");
+    dea_part_text_use(text, p->mass);
+    if (p->linear) {
+        dea_part_text_root(text, "rest");
+        dea_part_text_use(text, p->push_slope);
+    }
+    for (int i = 0; i < p->film.network.tension_count; i++) {
+        dea_part_text_root(text, "taut");
+        dea_part_text_use(text, p->taut[i]);
+        dea_part_text_use(text, p->loosen[i]);
+    }
+    dea_cards_declare(&p->cards);
+}
+
 static void declare(part *p)
 {
     dea_part_text *text = &p->cards.text;
@@ -381,25 +400,25 @@ static void declare(part *p)
     const struct {
         const char *root;
         dea_expr ref;
-    } all[] = {{"capacity", p->c_rest}, {"stiffness", p->k_rest}, {"field", p->field}, {"mass", p->mass},
-               {"size", p->divide},     {"size", p->width},       {"rest", p->push_slope}};
-    const size_t count = sizeof all / sizeof *all - !p->linear;
-    dea_part_text_call(text, network);
-    for (size_t i = 0; i < count; i++) {
+    } all[] = {{"capacity", p->c_rest}, {"stiffness", p->k_rest}, {"size", p->divide}, {"size", p->width}};
+    if (p->rings) {
+        dea_rings_part_declare(p->rings, text);
+    } else {
+        dea_part_text_call(text, network);
+    }
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         dea_part_text_root(text, all[i].root);
         dea_part_text_use(text, all[i].ref);
     }
+    dea_part_text_root(text, "range");
     for (int i = 0; i < network->range_count; i++) {
         if (is_made(p, network->range[i])) {
             dea_part_text_use(text, network->range[i]);
         }
     }
-    for (int i = 0; i < network->tension_count; i++) {
-        dea_part_text_root(text, "taut");
-        dea_part_text_use(text, p->taut[i]);
-        dea_part_text_use(text, p->loosen[i]);
+    if (!p->rings) {
+        declare_node(p);
     }
-    dea_cards_declare(&p->cards);
 }
 
 /* Names for what a designer knows by name. */
@@ -423,27 +442,29 @@ static void give_names(part *p)
     dea_part_text_name(text, p->film.push, "push", "force on the edge per square of the voltage, (1/2) dC/du [N/V^2], Eq. 21");
 }
 
-/* Of branch i: a branch without a share follows at once, since its state would only be one more pole. */
-static void write_relaxation_time(const part *p, size_t i)
-{
-    line(p, ".param c_relax%zu={relax%zu*min(part%zu*1e30,1)+1e-30}", i, i, i);
-}
-
 /* Numbers of the network that are not its own. A film without mass and damper keeps 1 ns of damping: its edge would have no velocity
- * at an edge of the voltage otherwise. */
+ * at an edge of the voltage otherwise. A branch without a share follows at once: its state would only be one more pole. */
 static void write_numbers(const part *p)
 {
     const dea_cures *cures = &dea_part_cures;
     const char *reach = p->linear ? "1e6" : "0.99e6"; /* of the way [um/m] */
-    char k[DEA_PART_NAME];
-    (void)dea_part_text_parameter(&p->cards.text, p->k_rest, k);
     line(p, ".param per_um={1e-6/r_a}\n.param u_low={-%s*r_a}\n.param u_high={%s*r_ring}", reach, reach);
     line(p, "* what holds the edge where a parameter is out of its range [N/um]\n.param hold={1-ok}");
-    line(p, ".param still={max(1-m_film*1e30,0)*max(1-retard*1e30,0)}\n.param damp={retard+1e-9*still}");
-    line(p, ".param inertia={m_film+%.15g*%s}\n.param f_mass={%.15g*many}", cures->lightest, k, 1.0 / cures->inertia);
+    line(p, ".param still={max(1-rho*1e30,0)*max(1-areal*1e30,0)*max(1-retard*1e30,0)}\n.param damp={retard+1e-9*still}");
+    line(p, ".param f_mass={%.15g*many}", 1.0 / cures->inertia);
     for (size_t i = 1; i <= p->branches; i++) {
-        write_relaxation_time(p, i);
+        line(p, ".param c_relax%zu={relax%zu*min(part%zu*1e30,1)+1e-30}", i, i, i);
     }
+    line(p, ".param i_film={%.15g*many}\n.param leak={many*r_leak/(r_leak*r_leak+1e-30)}", cures->sense);
+}
+
+/* Those of a film of one node. */
+static void write_node_numbers(const part *p)
+{
+    const dea_cures *cures = &dea_part_cures;
+    char k[DEA_PART_NAME];
+    (void)dea_part_text_parameter(&p->cards.text, p->k_rest, k);
+    line(p, ".param inertia={m_film+%.15g*%s}", cures->lightest, k);
     if (p->linear) {
         line(p, "* springs of film and branches [N/um], damper [N s/m]");
         line(p, ".param k_um={many*%s/%.15g}\n.param r_damp={many*damp*%s}", k, cures->per_metre, k);
@@ -454,19 +475,35 @@ static void write_numbers(const part *p)
         line(p, "* areas in um^2, stop behind the reach of the film [N/um]");
         line(p, ".param a_um={1e6*many}\n.param r_damp={damp*a_um}\n.param k_stop={%.15g*many*%s}", cures->stop, k);
     }
-    line(p, ".param i_film={%.15g*many}\n.param leak={many*r_leak/(r_leak*r_leak+1e-30)}", cures->sense);
+}
+
+/* Node of what is positive while all of the film is taut, t0, t1, ... each the least so far. */
+static void write_tautness(const part *p, char node[24])
+{
+    for (int i = 0; i < p->film.network.tension_count; i++) {
+        char name[24], text[64] = "[]+[]*v(p,n)*v(p,n)";
+        if (i > 0) {
+            snprintf(text, sizeof text, "min(v(%s),[]+[]*v(p,n)*v(p,n))", node);
+        }
+        snprintf(name, sizeof name, "taut%d", i);
+        snprintf(node, 24, "t%d", i);
+        source(p, DEA_VOLTAGE, name, node, "0", text, p->taut[i], p->loosen[i]);
+    }
 }
 
 /* v(bad) and v(slack) rise from 0 to 1 within a millionth of what they watch. */
 static void write_outputs(const part *p)
 {
-    line(p, "* to be read: strain [1], true field [V/um]");
+    char taut[24] = "tension", text[64];
+    line(p, "* to be read: strain [1], true field [V/um], of rings at r_a");
     line(p, "ESTRAIN strain 0 u 0 {per_um}");
-    source(p, DEA_VOLTAGE, "field", "field", "0", "[ok]*1e-6*[]*v(p,n)", p->field);
+    source(p, DEA_VOLTAGE, "field", "field", "0", p->rings ? "[ok]*v(stretched)*v(p,n)" : "[ok]*1e-6*[]*v(p,n)", p->field);
     line(p, "* capacitance [pF] and charge [nC] of all films side by side");
     line(p, ".param c_scale={1e12*many}\n.param q_scale={1e9*many*c_rest}\nESTORED q 0 film plate {q_scale}");
-    source(p, DEA_VOLTAGE, "capacity", "c", "0", "[c_scale]*[]", p->film.network.capacitance);
-    line(p, "* bad = 1: a parameter out of its range, or no stable equilibrium of the relaxed film here (pull-in)");
+    source(p, DEA_VOLTAGE, "capacity", "c", "0", p->rings ? "[c_scale]*[c_rest]*(1+v(swell))" : "[c_scale]*[]",
+           p->film.network.capacitance);
+    line(p, "* bad = 1: a parameter out of its range, the edge past centre or frame, or of linear springs no stable equilibrium of the");
+    line(p, "* relaxed film here (pull-in)");
     source(p, DEA_VOLTAGE, "outside", "outside", "0", "max(v(u)-[u_high],[u_low]-v(u))");
     if (p->linear) {
         source(p, DEA_VOLTAGE, "net", "net", "0", "([]-[]*v(p,n)*v(p,n))/[k_rest]", p->k_rest, p->push_slope);
@@ -475,17 +512,10 @@ static void write_outputs(const part *p)
         source(p, DEA_VOLTAGE, "bad", "bad", "0", "min(max(1-[ok],max(1e3*v(outside),0)),1)");
     }
     line(p, "* slack = 1: a region lost its tension, the film wrinkles");
-    for (int i = 0; i < p->film.network.tension_count; i++) {
-        char name[24], node[24], text[64] = "[]+[]*v(p,n)*v(p,n)";
-        snprintf(name, sizeof name, "taut%d", i);
-        snprintf(node, sizeof node, "t%d", i);
-        if (i > 0) {
-            snprintf(text, sizeof text, "min(v(t%d),[]+[]*v(p,n)*v(p,n))", i - 1);
-        }
-        source(p, DEA_VOLTAGE, name, node, "0", text, p->taut[i], p->loosen[i]);
+    if (!p->rings) {
+        write_tautness(p, taut);
     }
-    char text[64];
-    snprintf(text, sizeof text, "1-min(max(1e6*v(t%d),0),1)", p->film.network.tension_count - 1);
+    snprintf(text, sizeof text, "1-min(max(1e6*v(%s),0),1)", taut);
     source(p, DEA_VOLTAGE, "slack", "slack", "0", text);
 }
 
@@ -499,60 +529,31 @@ static void write_optics(const part *p)
            "[f_height]*((1+v(strain))*(1+v(strain))+[flat]*v(eta)*v(eta))/max(v(eta),1e-3)");
 }
 
-/* What is declared of the membrane: the numbers at rest, the ranges, the rings. */
-static void declare_rings(part *p)
-{
-    const dea_expr all[] = {p->c_rest, p->k_rest, p->divide, p->width};
-    dea_rings_part_declare(p->rings, &p->cards.text);
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-        dea_part_text_use(&p->cards.text, all[i]);
-    }
-    for (int i = 0; i < p->film.network.range_count; i++) {
-        if (is_made(p, p->film.network.range[i])) {
-            dea_part_text_use(&p->cards.text, p->film.network.range[i]);
-        }
-    }
-}
-
-/* Film and outputs of the membrane; v(swell) = C/c_rest - 1. */
+/* The membrane and its film; v(swell) = C/c_rest - 1. */
 static void write_rings(part *p)
 {
-    line(p, ".param still={max(1-rho*1e30,0)*max(1-areal*1e30,0)*max(1-retard*1e30,0)}\n.param damp={retard+1e-9*still}");
-    for (size_t i = 1; i <= p->branches; i++) {
-        write_relaxation_time(p, i);
-    }
     dea_rings_part_write(p->rings, &p->cards.text);
     line(p, "* film: v(film) = charge/c_rest on a capacitor of c_rest; v(plate) is its current [mA]");
     source(p, DEA_VOLTAGE, "charge", "film", "0", "v(plate)+[ok]*v(p,n)*(1+v(swell))");
-    line(p, ".param i_film={1e-3*many}\ncfilm film plate {c_rest}\ngsense plate 0 plate 0 1e-3\ngfilm p n plate 0 {i_film}");
-    line(p, ".param leak={many*r_leak/(r_leak*r_leak+1e-30)}\ngleak p n p n {leak}");
-    line(p, "* to be read: strain [1], force [N], true field at r_a [V/um], capacitance [pF], charge [nC]");
-    char name[DEA_PART_NAME];
-    line(p, ".param per_um={1e-6/%s}\nestrain strain 0 u 0 {per_um}", dea_part_text_parameter(&p->cards.text, p->divide, name));
+    dea_cards_write_capacitor(&dea_part_cures, p->out);
     source(p, DEA_VOLTAGE, "force", "force", "0", "[ok]*v(pull)*v(p,n)*v(p,n)");
-    source(p, DEA_VOLTAGE, "field", "field", "0", "[ok]*v(stretched)*v(p,n)");
-    line(p, ".param c_scale={1e12*many*c_rest}\n.param q_scale={1e9*many*c_rest}\nestored q 0 film plate {q_scale}");
-    source(p, DEA_VOLTAGE, "capacity", "c", "0", "[c_scale]*(1+v(swell))");
-    line(p, "* bad = 1: a parameter out of its range, or the edge past centre or frame; slack = 1: the film wrinkles");
-    line(p, ".param u_low={-0.99e6*r_a}\n.param u_high={0.99e6*r_ring}");
-    source(p, DEA_VOLTAGE, "bad", "bad", "0", "min(max(1-[ok],max(1e3*(v(u)-[u_high]),1e3*([u_low]-v(u)))),1)");
-    source(p, DEA_VOLTAGE, "slack", "slack", "0", "1-min(max(1e6*v(tension),0),1)");
 }
 
 static void write_body(part *p, const form *of)
 {
-    (p->rings ? declare_rings : declare)(p);
+    declare(p);
     give_names(p);
     const int checks = write_checks(p, of);
     dea_part_text_parameters(&p->cards.text);
     check_ranges(p, checks);
+    write_numbers(p);
     if (p->rings) {
         write_rings(p);
     } else {
-        write_numbers(p);
+        write_node_numbers(p);
         dea_cards_write_network(&p->cards);
-        write_outputs(p);
     }
+    write_outputs(p);
     if (p->kind == DEA_LENS) {
         write_optics(p);
     }

@@ -85,8 +85,7 @@ void dea_rings_part_write(const dea_rings_part *part, dea_part_text *text)
     fprintf(w.out, "* the membrane as %zu moving nodes, degrees of disc and annulus %zu and %zu; strain good to 1e-8 at rest, first modes\n",
             m->cards.node_count, m->cards.mesh.disc, m->cards.mesh.annulus);
     fputs("* to 1e-5 and 1e-3, for coverages 0.15 to 0.85 and pre-stretches 1.1 to 1.3\n", w.out);
-    fputs(".param per_r={1e-6/radius}\n.param newton={6.283185307179586e6*many*layer*thick*radius/(stretch*stretch)}\n.param hold={1-ok}\n"
-          ".param f_mass={1e6*many}\n",
+    fputs(".param per_r={1e-6/radius}\n.param newton={6.283185307179586e6*many*layer*thick*radius/(stretch*stretch)}\n",
           w.out);
     for (size_t n = 1; n <= m->cards.node_count; n++) {
         write_node(&w, m, n);

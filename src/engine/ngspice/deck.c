@@ -45,8 +45,7 @@ void dea_deck_source(FILE *out, const dea_mobility_piece *p, const char *node)
     if (segment->sine) {
         const dea_curve_cards cards = {.out = out,
                                        .dialect = engine_form().dialect,
-                                       .number = dea_part_number,
-                                       .signal = p->signal,
+                                           .signal = p->signal,
                                        .first = p->segment,
                                        .count = 1,
                                        .begin = p->from,

@@ -10,6 +10,7 @@
 #include "study/study.h"
 
 static const double safety = 1.5;       /* bound over the largest error of the probes */
+static const double still_share = 1e-3; /* of the model error: accuracy of answers at rest and in frequency */
 static const double coarsest = 0.1;     /* accuracy of the first runs that a model is judged by, or the model error [1] */
 static const double fine_share = 0.03;  /* of that: accuracy of the second ones */
 
@@ -28,7 +29,7 @@ static size_t most_probes(const dea_scene *scene)
 
 static dea_row row_of(const dea_scene *scene, const dea_model *model)
 {
-    return dea_probe_row(scene, model, 1e-3 * scene->model_error);
+    return dea_probe_row(scene, model, still_share * scene->model_error);
 }
 
 /* Relative error of the strain; infinite where the states differ. */
@@ -170,6 +171,9 @@ static double response_error(const dea_response *a, const dea_response *b, size_
     double change = 0.0;
     for (size_t i = 0; i < count; i++) {
         const double turns[2] = {a[i].displacement_phase - b[i].displacement_phase, a[i].impedance_phase - b[i].impedance_phase};
+        if (a[i].state != b[i].state) {
+            return (double)INFINITY;
+        }
         const double here[] = {fabs(a[i].displacement / b[i].displacement - 1.0), fabs(a[i].impedance / b[i].impedance - 1.0),
                                fabs(remainder(turns[0], 360.0)) * DEA_PI / 180.0,
                                fabs(remainder(turns[1], 360.0)) * DEA_PI / 180.0};
@@ -184,9 +188,10 @@ static double response_error(const dea_response *a, const dea_response *b, size_
 static dea_status respond(const dea_scene *scene, const dea_model *model, dea_response **responses, dea_error *error)
 {
     const dea_engine *engine = NULL;
+    dea_scene here = *scene; /* borrows what the scene owns */
+    here.accuracy = still_share * scene->model_error;
     for (size_t i = 0; i < dea_engine_count() && !engine; i++) {
-        const dea_engine *here = dea_engine_at(i);
-        engine = here->ac && !here->isolated ? here : NULL;
+        engine = dea_engine_at(i)->ac && !dea_engine_at(i)->isolated ? dea_engine_at(i) : NULL;
     }
     *responses = malloc(dea_layout_of(scene).rows * sizeof **responses);
     if (!*responses || !engine) {
@@ -195,7 +200,7 @@ static dea_status respond(const dea_scene *scene, const dea_model *model, dea_re
     void *session = NULL;
     dea_status status = engine->begin(&session, error);
     if (status == DEA_OK) {
-        status = engine->ac(session, scene, model, *responses, NULL, error);
+        status = engine->ac(session, &here, model, *responses, NULL, error);
         engine->end(session);
     }
     return status;

@@ -7,6 +7,9 @@
 #include "support/gauss.h"
 #include "support/lapack.h"
 
+/* Coverage below which the annulus, much longer than its inner radius, has its nodes even in ln R. */
+static const double small_disc = 0.1;
+
 static void set_masses(const dea_scene *scene, dea_membrane *m)
 {
     const dea_point *point = &m->film.point;
@@ -47,7 +50,17 @@ dea_rings_mesh dea_membrane_usual_mesh(const dea_scene *scene)
 {
     const dea_actuator *actuator = &scene->actuator;
     const double coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
-    return (dea_rings_mesh){8, 16, coverage < 0.1};
+    return (dea_rings_mesh){8, 16, coverage < small_disc};
+}
+
+static size_t degree_of(double nodes, double length)
+{
+    return (size_t)fmin(DEA_RINGS_DEGREE, fmax(3.0, ceil(nodes * (0.4 + 1.2 * length))));
+}
+
+dea_rings_mesh dea_membrane_mesh(double coverage, double nodes)
+{
+    return (dea_rings_mesh){degree_of(nodes, coverage), degree_of(nodes, 1.0 - coverage), coverage < small_disc};
 }
 
 static double square_of(const dea_membrane *m, double voltage)

@@ -45,6 +45,8 @@ dea_status dea_membrane_open(const dea_scene *scene, const dea_model *model, dea
 
 /* Nodes that tell the film at rest, and its first mode, to round-off; around a small disc they lie evenly in ln R. */
 dea_rings_mesh dea_membrane_usual_mesh(const dea_scene *scene);
+/* That many nodes in an element of half the frame's radius, in others by their length, at least 3. */
+dea_rings_mesh dea_membrane_mesh(double coverage, double nodes);
 
 /* Number of the z. */
 static inline size_t dea_membrane_relaxed(const dea_membrane *membrane)

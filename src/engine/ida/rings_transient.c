@@ -96,9 +96,6 @@ static gap difference(const search *s)
 /* ---- meshes. Every kink of the voltage sends a wave out. Where damper and charging smooth it over more than the time that it takes
  * between two nodes, every node more cuts the error of the mesh by one factor; else it falls with a power of their number. */
 
-/* Coverage below which the annulus, much longer than its inner radius, has its nodes even in ln R. */
-static const double small_disc = 0.1;
-
 /* Time over which all waves are smooth, over the time that one takes from centre to frame [1]. */
 static double smoothness(const search *s)
 {
@@ -109,16 +106,9 @@ static double smoothness(const search *s)
     return m->heavy ? fmax(2.0 * DEA_PI * d->retardation, charging) / crossing : INFINITY;
 }
 
-/* Share of the nodes that an element takes that is so long, of two. */
-static size_t degree_of(double nodes, double length, double least)
-{
-    return (size_t)fmin(DEA_RINGS_DEGREE, fmax(least, ceil(nodes * (0.4 + 1.2 * length))));
-}
-
 static dea_rings_mesh mesh_of(const search *s, double nodes)
 {
-    const double coverage = s->coverage;
-    return (dea_rings_mesh){degree_of(nodes, coverage, 3.0), degree_of(nodes, 1.0 - coverage, 3.0), coverage < small_disc};
+    return dea_membrane_mesh(s->coverage, nodes);
 }
 
 /* Nodes of an element for a first run. */

@@ -7,6 +7,7 @@
 #include "engine/ngspice/bands.h"
 #include "engine/ngspice/moving.h"
 #include "netlist/rings_small.h"
+#include "network/rings_mesh.h"
 
 typedef struct response {
     dea_bands bands;
@@ -56,7 +57,7 @@ static double gap(const dea_answer *a, const dea_answer *b, size_t count)
 /* Meshes ever finer until two of them agree: the error of the finer one is a small part of their difference. */
 static dea_status refine(response *r, const dea_model *model, dea_answer *pair[2], size_t count, dea_state *state, dea_error *error)
 {
-    const bool wide = dea_membrane_usual_mesh(r->bands.scene).logarithmic;
+    const bool wide = dea_rings_usual_mesh(r->bands.scene).logarithmic;
     const size_t first = 4 + (size_t)fmax(0.0, ceil(-0.5 * log10(r->bands.scene->accuracy)));
     for (size_t degree = first; degree <= DEA_RINGS_DEGREE; degree += 2) {
         dea_answer *last = pair[0];

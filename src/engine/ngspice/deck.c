@@ -45,7 +45,7 @@ void dea_deck_source(FILE *out, const dea_mobility_piece *p, const char *node)
     if (segment->sine) {
         const dea_curve_cards cards = {.out = out,
                                        .dialect = engine_form().dialect,
-                                           .signal = p->signal,
+                                       .signal = p->signal,
                                        .first = p->segment,
                                        .count = 1,
                                        .begin = p->from,
@@ -214,4 +214,50 @@ dea_mobility_state dea_mobility_read(const dea_mobility *mobility, const double 
         state.charge = mobility->rest * columns[next + dea_dynamics_states(d)][index];
     }
     return state;
+}
+
+double dea_deck_parts(double fineness)
+{
+    return ceil(2.0 / fineness);
+}
+
+/* The library shortens a step to an eighth where Newton's method does not settle, and goes on with that for ever where rounding
+ * alone keeps it from doing so: a netlist that takes so many times its steps and so many points more behind each corner is run
+ * again with absolute tolerances so many times as large, in which its answers move by no more than that. */
+static const double collapse = 2.0;
+static const double corner_points = 100.0;
+static const double first_points = 500.0;
+static const double loosen = 100.0;
+static const double loosest = 1e4;
+
+/* Points after which the steps of a netlist have collapsed. */
+static size_t most_points(const dea_mobility_piece *piece)
+{
+    const dea_signal *signal = piece->signal;
+    double corners = 0.0;
+    for (size_t i = piece->segment; i < signal->count && signal->segments[i].from < piece->to; i++) {
+        corners += piece->parts;
+    }
+    return (size_t)(first_points + corner_points * corners + collapse * (piece->to - piece->from) / piece->step);
+}
+
+dea_status dea_deck_run(dea_ngspice *library, dea_mobility_piece *piece, dea_deck_writer *write, const void *user,
+                        const char *const *names, size_t count, dea_ngspice_table *table, dea_error *error)
+{
+    const size_t most = most_points(piece);
+    *table = (dea_ngspice_table){0};
+    for (;;) {
+        char *text = NULL;
+        dea_status status = write(user, piece, &text, error);
+        if (status == DEA_OK) {
+            dea_ngspice_limit(library, most);
+            status = dea_ngspice_run_all(library, text, names, count, table, error);
+        }
+        free(text);
+        if (status != DEA_OK || table->count < most || !(piece->loose < loosest)) {
+            return status;
+        }
+        dea_ngspice_table_free(table);
+        piece->loose *= loosen;
+    }
 }

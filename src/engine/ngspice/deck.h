@@ -3,6 +3,7 @@
 #define DEA_NGSPICE_DECK_H
 
 #include "drive/signal.h"
+#include "engine/ngspice/library.h"
 #include "netlist/mobility.h"
 
 /* One piece of a transient. */
@@ -20,6 +21,16 @@ typedef struct dea_mobility_piece {
     double conductance; /* 0: none; resistor beside the mass that fits the rule's damping to the film's [N s/m] */
     dea_mobility_state start;
 } dea_mobility_piece;
+
+/* Parts of an edge that is shorter than a time step. */
+double dea_deck_parts(double fineness);
+
+/* Writes the netlist of a piece; on DEA_OK *text is for free(). */
+typedef dea_status dea_deck_writer(const void *user, const dea_mobility_piece *piece, char **text, dea_error *error);
+/* Runs a piece and reads the vectors of its plot, again and again with larger absolute tolerances, piece->loose, where the library's
+ * steps collapse. The caller frees the table, also after a failure. */
+dea_status dea_deck_run(dea_ngspice *library, dea_mobility_piece *piece, dea_deck_writer *write, const void *user,
+                        const char *const *names, size_t count, dea_ngspice_table *table, dea_error *error);
 
 /* Most vectors of a run: time, displacement, velocity, charge, branches. */
 enum { DEA_MOBILITY_VECTORS = 4 + DEA_RELAXED_MAX, DEA_MOBILITY_NAME = 24 };

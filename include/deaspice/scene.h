@@ -58,6 +58,8 @@ typedef struct dea_electrode {
 typedef struct dea_edge_load {
     double mass;      /**< [kg], > 0, NAN: none */
     double stiffness; /**< of a spring to the frame, against the radial displacement of the edge [N/m], > 0, NAN: none */
+    double damping;   /**< mechanical resistance between edge and frame [N s/m], > 0, NAN: none */
+    double force;     /**< static, onto the edge, outward positive, over the whole circumference [N], NAN: none */
 } dea_edge_load;
 
 /** Kinds of waveform, in the order of the table src/drive/waves.c. A file and a list of points are both points. */

@@ -78,6 +78,8 @@ void dea_point_place(const dea_scene *scene, dea_point *point)
     point->focal_length = actuator->focal_length;
     point->refractive_index = actuator->refractive_index;
     point->load = scene->load.stiffness > 0.0 ? scene->load.stiffness : 0.0;
+    point->force = isnan(scene->load.force) ? 0.0 : scene->load.force;
+    point->second.there = false;
     place_skin(&scene->electrode, point);
 }
 
@@ -86,7 +88,7 @@ bool dea_point_valid(const dea_point *point)
     const dea_film *film = &point->film;
     return point->frame_radius > 0.0 && point->coverage > 0.0 && point->coverage < 1.0 && point->film_thickness > 0.0 &&
            film->prestretch >= 1.0 && film->permittivity > 0.0 && film->valid && isfinite(film->modulus) &&
-           isfinite(point->voltage) && (point->skin_share == 0.0 || (point->skin_share > 0.0 && point->skin.valid));
+           isfinite(point->voltage) && isfinite(point->force) && (point->skin_share == 0.0 || (point->skin_share > 0.0 && point->skin.valid));
 }
 
 /* int w^2 dA over the disc of radius a [m^2]: w = R/a. */

@@ -82,7 +82,7 @@ static double bracketed_root(const dea_path *path, double m, double low, double 
         const double next = x - residual / (place.slope - m * place.weight_slope);
         const double step = fabs(next - x);
         x = next > low && next < high ? next : 0.5 * (low + high);
-        if (x == next && step <= 2e-16 * fabs(x)) {
+        if (x == next && step <= fmax(2e-16, path->rough) * fabs(x)) {
             break;
         }
     }

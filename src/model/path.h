@@ -21,6 +21,7 @@ typedef struct dea_path {
     double rest;      /* dR/dx at rest [Pa], > 0 */
     double end;       /* x at which a region has vanished */
     double share;     /* largest change of a stretch, relative, that goes with dx = 1 at rest, inverted [1] */
+    double rough;     /* change of a root, relative, that says nothing: rounding of R, 0 where that is the last digit [1] */
 } dea_path;
 
 double dea_path_fold(const dea_path_place *place);

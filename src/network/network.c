@@ -261,6 +261,8 @@ dea_symbols dea_symbols_of(const dea_scene *scene, const dea_axis *axis, dea_poo
     s.breakdown = given(pool, breakdown) ? breakdown : NUM(INFINITY);
     coat(scene, axis, &s);
     s.load = scene->load.stiffness > 0.0 ? scalar(pool, scene, axis, &scene->load.stiffness) : NUM(0.0);
+    s.force = isnan(scene->load.force) ? NUM(0.0) : scalar(pool, scene, axis, &scene->load.force);
+    s.loaded = scene->load.stiffness > 0.0 || !isnan(scene->load.force);
     s.voltage = film_voltage(pool, scene, axis, &s);
     s.focal_length = scalar(pool, scene, axis, &actuator->focal_length);
     s.refractive_index = scalar(pool, scene, axis, &actuator->refractive_index);
@@ -338,7 +340,6 @@ static void place_edge(const dea_symbols *symbols, dea_network *network)
     network->focal_length = symbols->focal_length;
     network->refractive_index = symbols->refractive_index;
     network->length = MUL(divide_radius(symbols), SUB(one, symbols->coverage)); /* below both r_a and r - r_a */
-    network->end = NUM(0.0);
     dea_network_demand(network, symbols->coverage);
     dea_network_demand(network, SUB(one, symbols->coverage));
     dea_network_demand(network, symbols->permittivity);
@@ -357,6 +358,9 @@ dea_status dea_network_build_symbols(const dea_symbols *symbols, const dea_model
     model->network(symbols, network);
     if (dea_expr_constant(&network->pool, symbols->load) != 0.0) {
         dea_network_add(network, DEA_ROLE_BESIDE, "n_load", "compliance of the load between edge and frame [m/N]", symbols->load);
+    }
+    if (dea_expr_constant(&network->pool, symbols->force) != 0.0) {
+        dea_network_add(network, DEA_ROLE_STEADY, "f_load", "force of the load onto the edge, outward [N]", symbols->force);
     }
     if (network->pool.exhausted) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built");
@@ -478,7 +482,13 @@ int dea_network_stresses(dea_network *network, dea_network_stress *stresses)
 dea_expr dea_network_tension(dea_network *network)
 {
     dea_pool *pool = &network->pool;
-    return ADD(sum_of(network, DEA_ROLE_TENSION), MUL(sum_of(network, DEA_ROLE_BESIDE), network->edge));
+    const dea_expr elastic = ADD(sum_of(network, DEA_ROLE_TENSION), MUL(sum_of(network, DEA_ROLE_BESIDE), network->edge));
+    return SUB(elastic, dea_network_steady(network));
+}
+
+dea_expr dea_network_steady(dea_network *network)
+{
+    return sum_of(network, DEA_ROLE_STEADY);
 }
 
 dea_expr dea_network_softening(dea_network *network)

@@ -170,8 +170,8 @@ static dea_status load_check(dea_reader *reader)
 {
     const dea_scene *scene = reader->scene;
     const dea_node *load = dea_tree_child(reader->root, "load");
-    if (load && isnan(scene->load.mass) && isnan(scene->load.stiffness)) {
-        return dea_place_fail(&load->place, reader->error, "load", "without a number; accepted: mass and stiffness, e.g. {stiffness: 20 N/m}");
+    if (load && isnan(scene->load.mass) && isnan(scene->load.stiffness) && isnan(scene->load.damping) && isnan(scene->load.force)) {
+        return dea_place_fail(&load->place, reader->error, "load", "without a number; accepted: mass, stiffness, damping and force, e.g. {stiffness: 20 N/m}");
     }
     if (isnan(scene->load.mass) || !isnan(scene->material.density)) {
         return DEA_OK;

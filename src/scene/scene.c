@@ -24,7 +24,7 @@ static dea_status scene_clear(dea_scene *scene)
                      .focal_length = NAN,
                      .refractive_index = NAN},
         .electrode = {.thickness = NAN, .density = NAN, .sheet_resistance = NAN},
-        .load = {.mass = NAN, .stiffness = NAN},
+        .load = {.mass = NAN, .stiffness = NAN, .damping = NAN, .force = NAN},
         .material = dea_material_default(),
         .drive = {.voltage = NAN,
                   .waveform = dea_waveform_none(),

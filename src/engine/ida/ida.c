@@ -1,4 +1,5 @@
 /* Engine `ida`: networks and the exact membrane by SUNDIALS. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -6,6 +7,7 @@
 #include "engine/ida/sundials.h"
 #include "engine/line.h"
 #include "network/balance.h"
+#include "study/study.h"
 
 typedef struct session_state {
     dea_sundials sundials; /* owned, as all */
@@ -23,6 +25,11 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
 {
     if (!model->network && !model->membrane) {
         return "it is neither a network nor a membrane that IDA could solve";
+    }
+    const bool still = isnan(scene->material.density) && isnan(scene->material.retardation);
+    if (model->membrane && dea_study_of(scene)->timed && scene->load.damping > 0.0 && still) {
+        return "load.damping alone leaves the other nodes of the membrane without an equation of motion: it takes material.density or "
+               "material.retardation too";
     }
     return scene->accuracy < 1e-9 ? "its answers are good to 1e-9, the scene wants more" : NULL;
 }

@@ -120,7 +120,7 @@ static dea_status solve_alone(void *user, size_t i, dea_error *error)
     if (!dea_balance_valid(&job->balance, symbol)) {
         return DEA_OK;
     }
-    if (dea_balance_forces(&job->balance, symbol, 0.0).load == 0.0 && accept(job, i, 0.0)) {
+    if (!job->balance.steady && dea_balance_forces(&job->balance, symbol, 0.0).load == 0.0 && accept(job, i, 0.0)) {
         return DEA_OK;
     }
     if (dea_balance_folds(&job->balance, symbol, &share, &fold)) {
@@ -160,8 +160,8 @@ static bool can_start(void *user, size_t i)
     line_job *job = user;
     double share, fold;
     const double symbol = symbol_at(job, i);
-    return dea_balance_valid(&job->balance, symbol) && dea_balance_forces(&job->balance, symbol, 0.0).load != 0.0 &&
-           !dea_balance_folds(&job->balance, symbol, &share, &fold);
+    const bool moves = job->balance.steady || dea_balance_forces(&job->balance, symbol, 0.0).load != 0.0;
+    return dea_balance_valid(&job->balance, symbol) && moves && !dea_balance_folds(&job->balance, symbol, &share, &fold);
 }
 
 static dea_status sweep_stretch(void *user, size_t from, size_t count, size_t *good, dea_error *error)

@@ -1,0 +1,125 @@
+#include "model/loaded.h"
+
+#include "model/path.h"
+
+/* The membrane's force on its edge is integrated: right to so much. */
+static const double rough = 1e-12;
+
+/* What acts on one edge. */
+typedef struct parties {
+    const dea_model *model;
+    const dea_point *point;
+    const dea_point *second; /* NULL: none */
+    double radius;           /* r_a [m] */
+    double base, toward;     /* strain from which the way begins, and the sign in which it goes */
+    bool driven;             /* what grows is the voltage of the film; else force and second film */
+} parties;
+
+/* Forces on the edge, those of rest inward, and their slopes over u. */
+typedef struct edge_forces {
+    double held, held_slope; /* of films and spring without voltage */
+    double load, load_slope; /* of force and second film, outward */
+    double push, push_slope; /* of the film's voltage, outward */
+    dea_found found, second;
+} edge_forces;
+
+static bool look(const parties *p, double strain, edge_forces *f)
+{
+    dea_hold one, other = {0};
+    if (!p->model->hold(p->point, strain, &one) || (p->second && !p->model->hold(p->second, strain, &other))) {
+        return false;
+    }
+    *f = (edge_forces){.held = one.held + other.held + p->point->load * strain * p->radius,
+                       .held_slope = one.held_slope + other.held_slope + p->point->load,
+                       .load = p->point->force + other.push,
+                       .load_slope = other.push_slope,
+                       .push = one.push,
+                       .push_slope = one.push_slope,
+                       .found = one.found,
+                       .second = other.found};
+    return true;
+}
+
+static dea_path_place place_at(const void *user, double x)
+{
+    const parties *p = user;
+    const double none = (double)NAN, sign = p->toward;
+    edge_forces f;
+    if (!look(p, p->base + sign * x, &f)) {
+        return (dea_path_place){none, none, none, none};
+    }
+    return p->driven ? (dea_path_place){sign * (f.held - f.load), (f.held_slope - f.load_slope) * p->radius, sign * f.push,
+                                        f.push_slope * p->radius}
+                     : (dea_path_place){sign * f.held, f.held_slope * p->radius, sign * f.load, f.load_slope * p->radius};
+}
+
+/* Distance in strain from the base at which a region has vanished; linear films go on. */
+static double end_of(const parties *p)
+{
+    const double b = p->point->coverage;
+    if (p->model->linear) {
+        return 1e9;
+    }
+    return p->toward > 0.0 ? (1.0 - b) / b - p->base : 1.0 + p->base;
+}
+
+/* Moves the base along the way of what grows; false: no equilibrium. */
+static bool grow(parties *p, bool driven)
+{
+    edge_forces f;
+    double x = 0.0;
+    p->driven = driven;
+    if (!look(p, p->base, &f)) {
+        return false;
+    }
+    const double weight = driven ? f.push : f.load, slope = driven ? f.held_slope - f.load_slope : f.held_slope;
+    p->toward = weight < 0.0 ? -1.0 : 1.0;
+    const dea_path path = {.at = place_at,
+                           .film = p,
+                           .rest = slope * p->radius,
+                           .end = end_of(p),
+                           .rough = p->model->membrane ? rough : 0.0,
+                           .share = 1.0 - p->point->coverage};
+    const double stays = driven ? f.push_slope : f.load_slope;
+    if (!(slope > 0.0) || (weight == 0.0 && !(slope > stays))) {
+        return false;
+    }
+    if (weight != 0.0 && !dea_path_trace(&path, 1.0, &x)) {
+        return false;
+    }
+    p->base += p->toward * x;
+    return true;
+}
+
+void dea_loaded_join(dea_row *row, const dea_point *second, const dea_found *found)
+{
+    dea_row other;
+    dea_row_fill(&other, second, *found);
+    if (other.state == DEA_STATE_BREAKDOWN || (other.state == DEA_STATE_SLACK && row->state == DEA_STATE_OK)) {
+        row->state = other.state;
+    }
+}
+
+void dea_loaded_solve(const dea_model *model, const dea_point *point, dea_row *row)
+{
+    const dea_point second = dea_point_second(point);
+    parties p = {.model = model, .point = point, .second = point->second.there ? &second : NULL, .radius = dea_point_divide(point)};
+    edge_forces f;
+    if (!grow(&p, false) || !grow(&p, true) || !look(&p, p.base, &f)) {
+        dea_row_refuse(row, DEA_STATE_PULL_IN);
+        return;
+    }
+    dea_row_fill(row, point, f.found);
+    if (p.second) {
+        dea_loaded_join(row, p.second, &f.second);
+    }
+}
+
+void dea_model_solve(const dea_model *model, const dea_point *point, double accuracy, dea_row *row)
+{
+    if (point->force == 0.0 && !point->second.there) {
+        model->solve(point, accuracy, row);
+    } else {
+        dea_loaded_solve(model, point, row);
+    }
+}

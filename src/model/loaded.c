@@ -7,11 +7,12 @@ static const double rough = 1e-12;
 
 /* What acts on one edge. */
 typedef struct parties {
-    const dea_model *model;
+    const dea_holder *holder;
     const dea_point *point;
     const dea_point *second; /* NULL: none */
     double radius;           /* r_a [m] */
     double base, toward;     /* strain from which the way begins, and the sign in which it goes */
+    double begin;            /* what grows there, outward [N] */
     bool driven;             /* what grows is the voltage of the film; else force and second film */
 } parties;
 
@@ -26,7 +27,8 @@ typedef struct edge_forces {
 static bool look(const parties *p, double strain, edge_forces *f)
 {
     dea_hold one, other = {0};
-    if (!p->model->hold(p->point, strain, &one) || (p->second && !p->model->hold(p->second, strain, &other))) {
+    const dea_holder *h = p->holder;
+    if (!h->hold(h->user, p->point, strain, &one) || (p->second && !h->hold(h->user, p->second, strain, &other))) {
         return false;
     }
     *f = (edge_forces){.held = one.held + other.held + p->point->load * strain * p->radius,
@@ -48,19 +50,36 @@ static dea_path_place place_at(const void *user, double x)
     if (!look(p, p->base + sign * x, &f)) {
         return (dea_path_place){none, none, none, none};
     }
-    return p->driven ? (dea_path_place){sign * (f.held - f.load), (f.held_slope - f.load_slope) * p->radius, sign * f.push,
-                                        f.push_slope * p->radius}
-                     : (dea_path_place){sign * f.held, f.held_slope * p->radius, sign * f.load, f.load_slope * p->radius};
+    const double slope = sign * p->radius / p->begin;
+    return p->driven ? (dea_path_place){sign * (f.held - f.load), (f.held_slope - f.load_slope) * p->radius, f.push / p->begin,
+                                        f.push_slope * slope}
+                     : (dea_path_place){sign * f.held, f.held_slope * p->radius, f.load / p->begin, f.load_slope * slope};
 }
 
 /* Distance in strain from the base at which a region has vanished; linear films go on. */
 static double end_of(const parties *p)
 {
     const double b = p->point->coverage;
-    if (p->model->linear) {
+    if (p->holder->endless) {
         return 1e9;
     }
     return p->toward > 0.0 ? (1.0 - b) / b - p->base : 1.0 + p->base;
+}
+
+/* Newton from the linear answer, where it leads to a place so near that no fold can lie between. */
+static bool is_near(const dea_path *path, double m, double *x)
+{
+    enum { ROUNDS = 8 };
+    double at = m / path->rest;
+    for (int i = 0; i < ROUNDS && at > 0.0 && at < path->end; i++) {
+        const dea_path_place place = path->at(path->film, at);
+        const double step = (place.held - m * place.weight) / (place.slope - m * place.weight_slope);
+        *x = at -= step;
+        if (fabs(step) <= fmax(2e-16, path->rough) * at) {
+            return dea_path_cannot_fold(path, m, at, &place);
+        }
+    }
+    return false;
 }
 
 /* Moves the base along the way of what grows; false: no equilibrium. */
@@ -74,17 +93,18 @@ static bool grow(parties *p, bool driven)
     }
     const double weight = driven ? f.push : f.load, slope = driven ? f.held_slope - f.load_slope : f.held_slope;
     p->toward = weight < 0.0 ? -1.0 : 1.0;
+    p->begin = weight;
     const dea_path path = {.at = place_at,
                            .film = p,
                            .rest = slope * p->radius,
                            .end = end_of(p),
-                           .rough = p->model->membrane ? rough : 0.0,
+                           .rough = p->holder->rough,
                            .share = 1.0 - p->point->coverage};
     const double stays = driven ? f.push_slope : f.load_slope;
     if (!(slope > 0.0) || (weight == 0.0 && !(slope > stays))) {
         return false;
     }
-    if (weight != 0.0 && !dea_path_trace(&path, 1.0, &x)) {
+    if (weight != 0.0 && !is_near(&path, fabs(weight), &x) && !dea_path_trace(&path, fabs(weight), &x)) {
         return false;
     }
     p->base += p->toward * x;
@@ -100,10 +120,10 @@ void dea_loaded_join(dea_row *row, const dea_point *second, const dea_found *fou
     }
 }
 
-void dea_loaded_solve(const dea_model *model, const dea_point *point, dea_row *row)
+void dea_loaded_solve(const dea_holder *holder, const dea_point *point, dea_row *row)
 {
     const dea_point second = dea_point_second(point);
-    parties p = {.model = model, .point = point, .second = point->second.there ? &second : NULL, .radius = dea_point_divide(point)};
+    parties p = {.holder = holder, .point = point, .second = point->second.there ? &second : NULL, .radius = dea_point_divide(point)};
     edge_forces f;
     if (!grow(&p, false) || !grow(&p, true) || !look(&p, p.base, &f)) {
         dea_row_refuse(row, DEA_STATE_PULL_IN);
@@ -115,11 +135,18 @@ void dea_loaded_solve(const dea_model *model, const dea_point *point, dea_row *r
     }
 }
 
+static bool hold_by_model(void *user, const dea_point *point, double strain, dea_hold *hold)
+{
+    const dea_model *const *model = user;
+    return (*model)->hold(point, strain, hold);
+}
+
 void dea_model_solve(const dea_model *model, const dea_point *point, double accuracy, dea_row *row)
 {
     if (point->force == 0.0 && !point->second.there) {
         model->solve(point, accuracy, row);
     } else {
-        dea_loaded_solve(model, point, row);
+        const dea_holder holder = {hold_by_model, &model, model->linear != NULL, model->membrane ? rough : 0.0};
+        dea_loaded_solve(&holder, point, row);
     }
 }

@@ -9,8 +9,16 @@
 
 #include "model/models.h"
 
-/* Fills the row of a point whose model is one unknown, by the holds of its films. */
-void dea_loaded_solve(const dea_model *model, const dea_point *point, dea_row *row);
+/* Who knows what a film does at an edge that is held, as a model's hold(). */
+typedef struct dea_holder {
+    bool (*hold)(void *user, const dea_point *point, double strain, dea_hold *hold);
+    void *user;
+    bool endless; /* its films are linear: they go on past centre and frame */
+    double rough; /* error of its forces, relative [1] */
+} dea_holder;
+
+/* Fills the row of a point by the holds of its films. */
+void dea_loaded_solve(const dea_holder *holder, const dea_point *point, dea_row *row);
 
 /* The state of a row is that of the worse film: broken down, slack. */
 void dea_loaded_join(dea_row *row, const dea_point *second, const dea_found *found);

@@ -26,13 +26,13 @@ static double fine_area(const dea_point *point)
     return (double)((1.0L - edge) * (1.0L + edge) / (1.0L - b * b));
 }
 
-/* Under a load the electroded film is taut where sigma + (Y + Y_skin) e - M lambda_pre^4 is positive; alone it holds what the passive
- * film holds. */
+/* Under a load the electroded film is taut where the strain that its stress stands for, [(Y + Y_skin) e - M lambda_pre^4]/Y, leaves a
+ * stretch above 1; alone it is that of the passive film. */
 static bool is_active_taut(const dea_point *point, double strain)
 {
     const double b = point->coverage, e = point->kind == DEA_DOT ? strain : -b * strain / (1.0 - b);
     const double modulus = point->film.modulus + dea_point_skin_modulus(point);
-    return point->film.tension * point->film.prestretch + modulus * e - dea_point_pressure(point) > 0.0;
+    return point->film.prestretch * (1.0 + (modulus * e - dea_point_pressure(point)) / point->film.modulus) > 1.0;
 }
 
 /* The film at a strain; @p alone: in balance with its own force. */
@@ -98,7 +98,8 @@ static void build(const dea_symbols *symbols, dea_network *network)
     if (symbols->loaded) {
         const dea_expr active = symbols->kind == DEA_DOT ? network->strain : dea_symbols_annulus_strain(symbols);
         const dea_expr modulus = symbols->skin ? ADD(symbols->modulus, dea_symbols_skin_modulus(symbols)) : symbols->modulus;
-        dea_network_taut(network, ADD(dea_symbols_rest_stress(symbols), SUB(MUL(modulus, active), maxwell)));
+        const dea_expr strain = DIV(SUB(MUL(modulus, active), maxwell), symbols->modulus);
+        dea_network_taut(network, SUB(MUL(symbols->prestretch, ADD(one, strain)), one));
     }
     dea_network_limit_area(symbols, network);
 }

@@ -103,14 +103,6 @@ static bool settle(const rings *r, const dea_path *path, double m, double *x, ri
     return false;
 }
 
-/* True where the slope of U^2 keeps far from zero from rest to x: over so short a way its values at both ends and its mean that
- * stay within a factor of two leave no room for a fold between. Spares the samples of dea_path_grows(). */
-static bool cannot_fold(const dea_path *path, double m, double x, const dea_path_place *at)
-{
-    const double mean = m / x, end = dea_path_fold(at) / at->weight;
-    return x <= 3.0 * dea_path_width(path, 0.0) && fmin(fmin(mean, end), path->rest) > 0.5 * fmax(fmax(mean, end), path->rest);
-}
-
 /* Equilibrium x = |s| under the load m = eps (U/H)^2 lambda_pre^3 and the place there; false where none is connected to rest. */
 static bool balance(const rings *r, double m, double *x, ring_place *at)
 {
@@ -123,7 +115,7 @@ static bool balance(const rings *r, double m, double *x, ring_place *at)
     if (!isfinite(m) || !(path.rest > 0.0)) {
         return false;
     }
-    if (settle(r, &path, m, x, at) && (cannot_fold(&path, m, *x, &at->path) || dea_path_grows(&path, *x))) {
+    if (settle(r, &path, m, x, at) && (dea_path_cannot_fold(&path, m, *x, &at->path) || dea_path_grows(&path, *x))) {
         return true;
     }
     const bool found = dea_path_trace(&path, m, x);

@@ -262,7 +262,7 @@ dea_symbols dea_symbols_of(const dea_scene *scene, const dea_axis *axis, dea_poo
     coat(scene, axis, &s);
     s.load = scene->load.stiffness > 0.0 ? scalar(pool, scene, axis, &scene->load.stiffness) : NUM(0.0);
     s.force = isnan(scene->load.force) ? NUM(0.0) : scalar(pool, scene, axis, &scene->load.force);
-    s.loaded = scene->load.stiffness > 0.0 || !isnan(scene->load.force);
+    s.loaded = scene->load.stiffness > 0.0 || dea_expr_constant(pool, s.force) != 0.0;
     s.voltage = film_voltage(pool, scene, axis, &s);
     s.focal_length = scalar(pool, scene, axis, &actuator->focal_length);
     s.refractive_index = scalar(pool, scene, axis, &actuator->refractive_index);

@@ -107,6 +107,11 @@ typedef enum dea_form {
  * rest: first those grow, then the voltage of the film (src/model/loaded.c). */
 DEA_API void dea_model_solve(const dea_model *model, const dea_point *point, double accuracy, dea_row *row);
 
+/** What a valid point does at an edge that something holds at a displacement [m]: `force` of the row is what the actuator exerts on
+ * that, outward, loads and a second film included; strain and displacement are those that are held. The row is pull-in where no film
+ * is so, failed where the edge is not between centre and frame. */
+DEA_API void dea_model_hold(const dea_model *model, const dea_point *point, double displacement, dea_row *row);
+
 /** Form of a model. */
 DEA_API dea_form dea_model_form(const dea_model *model);
 

@@ -140,7 +140,8 @@ typedef struct dea_axis {
     X(DEA_STUDY_TRANSIENT, transient)                                                                                            \
     X(DEA_STUDY_AC, ac)                                                                                                          \
     X(DEA_STUDY_MODES, modes)                                                                                                    \
-    X(DEA_STUDY_PROFILE, profile)
+    X(DEA_STUDY_PROFILE, profile)                                                                                                \
+    X(DEA_STUDY_FORCE, force)
 
 /** What a study asks for. */
 typedef enum dea_study_kind {
@@ -190,6 +191,12 @@ typedef struct dea_profile {
     size_t points; /**< radii from the centre to the frame, 2 ... DEA_RADII_MAX, default 101 */
 } dea_profile;
 
+/** Displacements at which the edge is held, to - from apart in even steps. */
+typedef struct dea_force_study {
+    double from, to; /**< [m], both between -r_a and r - r_a */
+    size_t points;   /**< 2 ... DEA_RADII_MAX, default 61 */
+} dea_force_study;
+
 /** How a branch of the Prony series enters a moving network. */
 typedef enum dea_branch_form {
     DEA_BRANCH_WHOLE,  /**< spring and damper in series */
@@ -231,6 +238,7 @@ typedef struct dea_scene {
     dea_ac ac;               /**< of an AC study */
     dea_modes_study modes;   /**< of a study of modes */
     dea_profile profile;     /**< of a study of profiles */
+    dea_force_study force;   /**< of a study of forces */
     dea_axis *axes;          /**< axes of the sweep, or of `over`, in the order of the file; none is one point */
     size_t axis_count;
     struct dea_files *files; /**< those that were read for it, owned; NULL: none */

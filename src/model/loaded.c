@@ -1,5 +1,7 @@
 #include "model/loaded.h"
 
+#include <stdint.h>
+
 #include "model/path.h"
 
 /* The membrane's force on its edge is integrated: right to so much. */
@@ -111,28 +113,65 @@ static bool grow(parties *p, bool driven)
     return true;
 }
 
-void dea_loaded_join(dea_row *row, const dea_point *second, const dea_found *found)
+/* The row of the films: its state is that of the worse one, broken down or slack. */
+static void fill(const parties *p, const edge_forces *f, dea_row *row)
 {
     dea_row other;
-    dea_row_fill(&other, second, *found);
+    dea_row_fill(row, p->point, f->found);
+    if (!p->second) {
+        return;
+    }
+    dea_row_fill(&other, p->second, f->second);
     if (other.state == DEA_STATE_BREAKDOWN || (other.state == DEA_STATE_SLACK && row->state == DEA_STATE_OK)) {
         row->state = other.state;
     }
 }
 
+static parties parties_of(const dea_holder *holder, const dea_point *point, const dea_point *second)
+{
+    return (parties){
+        .holder = holder, .point = point, .second = point->second.there ? second : NULL, .radius = dea_point_divide(point)};
+}
+
 void dea_loaded_solve(const dea_holder *holder, const dea_point *point, dea_row *row)
 {
     const dea_point second = dea_point_second(point);
-    parties p = {.holder = holder, .point = point, .second = point->second.there ? &second : NULL, .radius = dea_point_divide(point)};
+    parties p = parties_of(holder, point, &second);
     edge_forces f;
     if (!grow(&p, false) || !grow(&p, true) || !look(&p, p.base, &f)) {
         dea_row_refuse(row, DEA_STATE_PULL_IN);
         return;
     }
-    dea_row_fill(row, point, f.found);
-    if (p.second) {
-        dea_loaded_join(row, p.second, &f.second);
+    fill(&p, &f, row);
+}
+
+void dea_loaded_hold(const dea_holder *holder, const dea_point *point, double displacement, dea_row *row)
+{
+    const dea_point second = dea_point_second(point);
+    const parties p = parties_of(holder, point, &second);
+    const double room = point->frame_radius - p.radius;
+    edge_forces f;
+    dea_row_refuse(row, displacement > -p.radius && displacement < room ? DEA_STATE_PULL_IN : DEA_STATE_FAILED);
+    if (row->state == DEA_STATE_PULL_IN && look(&p, displacement / p.radius, &f)) {
+        fill(&p, &f, row);
+        row->force = f.push + f.load - f.held;
     }
+    row->displacement = displacement;
+}
+
+dea_status dea_loaded_curve(const dea_scene *scene, void (*hold)(void *user, const dea_point *point, double displacement, dea_row *row),
+                            void *user, dea_row *rows, dea_error *error)
+{
+    dea_point point;
+    dea_film_prepare(scene, &point.film);
+    dea_point_place(scene, &point);
+    if (!dea_point_valid(&point)) {
+        return dea_fail(error, DEA_ERROR_USAGE, "a number is out of its range");
+    }
+    for (size_t i = 0; i < scene->force.points; i++) {
+        hold(user, &point, dea_layout_place(scene, i), &rows[i]);
+    }
+    return DEA_OK;
 }
 
 static bool hold_by_model(void *user, const dea_point *point, double strain, dea_hold *hold)
@@ -141,12 +180,23 @@ static bool hold_by_model(void *user, const dea_point *point, double strain, dea
     return (*model)->hold(point, strain, hold);
 }
 
+static dea_holder holder_of(const dea_model *const *model)
+{
+    return (dea_holder){hold_by_model, (void *)(uintptr_t)model, (*model)->linear != NULL, (*model)->membrane ? rough : 0.0};
+}
+
+void dea_model_hold(const dea_model *model, const dea_point *point, double displacement, dea_row *row)
+{
+    const dea_holder holder = holder_of(&model);
+    dea_loaded_hold(&holder, point, displacement, row);
+}
+
 void dea_model_solve(const dea_model *model, const dea_point *point, double accuracy, dea_row *row)
 {
     if (point->force == 0.0 && !point->second.there) {
         model->solve(point, accuracy, row);
     } else {
-        const dea_holder holder = {hold_by_model, &model, model->linear != NULL, model->membrane ? rough : 0.0};
+        const dea_holder holder = holder_of(&model);
         dea_loaded_solve(&holder, point, row);
     }
 }

@@ -17,10 +17,13 @@ typedef struct dea_holder {
     double rough; /* error of its forces, relative [1] */
 } dea_holder;
 
+/* The row of a point whose edge is held, as dea_model_hold() has it. */
+void dea_loaded_hold(const dea_holder *holder, const dea_point *point, double displacement, dea_row *row);
+/* Rows of a study of forces. DEA_ERROR_USAGE: a number is out of its range. */
+dea_status dea_loaded_curve(const dea_scene *scene, void (*hold)(void *user, const dea_point *point, double displacement, dea_row *row),
+                            void *user, dea_row *rows, dea_error *error);
+
 /* Fills the row of a point by the holds of its films. */
 void dea_loaded_solve(const dea_holder *holder, const dea_point *point, dea_row *row);
-
-/* The state of a row is that of the worse film: broken down, slack. */
-void dea_loaded_join(dea_row *row, const dea_point *second, const dea_found *found);
 
 #endif

@@ -132,6 +132,11 @@ static double stiffness_on(const way *w, double distance)
     return isnan(stiffness) ? -(double)INFINITY : stiffness;
 }
 
+double dea_balance_radius(const dea_balance *balance)
+{
+    return dea_tape_value(&balance->limits, RADIUS);
+}
+
 double dea_balance_length(const dea_balance *balance)
 {
     return dea_tape_value(&balance->limits, LENGTH);

@@ -45,6 +45,8 @@ bool dea_balance_accept(dea_balance *balance, double symbol, double u, double to
 bool dea_balance_folds(dea_balance *balance, double symbol, double *share, double *u);
 /* Fills the row of equilibrium u. */
 void dea_balance_fill(dea_balance *balance, double symbol, double u, dea_row *row);
+/* r_a at the point that was evaluated last [m]. */
+double dea_balance_radius(const dea_balance *balance);
 /* Size of the film at the point that was evaluated last [m]: below both r_a and r - r_a. */
 double dea_balance_length(const dea_balance *balance);
 /* Distance from rest at which a region has vanished, at that point, whose rest was found last [m]; far out where there is none. */

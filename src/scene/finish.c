@@ -102,7 +102,7 @@ static dea_status sheet_check(dea_reader *reader)
     const dea_scene *scene = reader->scene;
     const dea_study *study = dea_study_of(scene);
     const size_t sheet = offsetof(dea_scene, electrode.sheet_resistance);
-    const bool currents = study->along && !study->stations; /* not in statics */
+    const bool currents = study->along && !study->still;
     for (size_t i = 0; i < scene->model_count && currents; i++) {
         if (scene->models[i]->membrane) {
             return dea_place_fail(dea_reader_place(reader, sheet, "electrode"), reader->error, "electrode.sheet_resistance",

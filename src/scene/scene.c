@@ -33,6 +33,7 @@ static dea_status scene_clear(dea_scene *scene)
         .transient = {.until = NAN, .every = NAN},
         .ac = {.from = NAN, .to = NAN, .points_per_decade = 50, .bias = NAN},
         .modes = {.bias = NAN},
+        .force = {.from = NAN, .to = NAN, .points = 61},
         .profile = {.points = 101},
         .model_error = 0.01,
         .accuracy = 1e-6,

@@ -588,9 +588,22 @@ static bool hold(void *user, const dea_point *point, double strain, dea_hold *ho
     const bool there = isfinite(hold->held) && isfinite(hold->push) && !isnan(miss_at_frame(s, edge));
     if (there) {
         hold->found = found_at(s, edge);
+        hold->found.capacitance = edge == 0.0 ? dea_point_capacitance(point) : hold->found.capacitance; /* IDA has no steps to sum over */
     }
     s->pull = 0.0;
     return there;
+}
+
+static dea_holder holder_of(dea_shooting *s, double accuracy)
+{
+    s->tolerance = fmin(1e-7, fmax(1e-6 * accuracy, finest));
+    return (dea_holder){hold, s, false, 1e3 * s->tolerance};
+}
+
+void dea_shooting_hold(dea_shooting *s, const dea_point *point, double displacement, double accuracy, dea_row *row)
+{
+    const dea_holder holder = holder_of(s, accuracy);
+    dea_loaded_hold(&holder, point, displacement, row);
 }
 
 void dea_shooting_solve(dea_shooting *s, const dea_point *point, double accuracy, dea_row *row)
@@ -599,12 +612,11 @@ void dea_shooting_solve(dea_shooting *s, const dea_point *point, double accuracy
     const double sign = point->kind == DEA_DOT ? 1.0 : -1.0;
     const double nominal = point->voltage / point->film_thickness;
     const double b2 = point->coverage * point->coverage;
+    const dea_holder holder = holder_of(s, accuracy);
     s->point = point;
     s->pressure = film->permittivity * nominal * nominal;
-    s->tolerance = fmin(1e-7, fmax(1e-6 * accuracy, finest));
     *row = dea_row_failed();
     if (point->force != 0.0 || point->second.there) {
-        const dea_holder holder = {hold, s, false, 1e3 * s->tolerance};
         dea_loaded_solve(&holder, point, row);
         return;
     }

@@ -44,6 +44,9 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
     if (model->membrane && (scene->load.stiffness > 0.0 || scene->load.mass > 0.0)) {
         return "its rings of film carry no load";
     }
+    if (model->membrane && scene->study == DEA_STUDY_FORCE) {
+        return "it does not hold the edge of the membrane";
+    }
     if (model->membrane && dea_study_of(scene)->timed) {
         return "it does not step the membrane in time";
     }
@@ -236,6 +239,7 @@ const dea_engine dea_engine_ngspice = {
     .omits = ~0u,
     .costs = {[DEA_STUDY_SWEEP] = {0, 4e-6, 1e-5, 1e-4},
               [DEA_STUDY_TRANSIENT] = {[DEA_FORM_LINEAR] = 0.1, [DEA_FORM_HYPERELASTIC] = 0.2},
+              [DEA_STUDY_FORCE] = {[DEA_FORM_LINEAR] = 1e-2, [DEA_FORM_HYPERELASTIC] = 1e-2},
               [DEA_STUDY_AC] = {[DEA_FORM_LINEAR] = 1e-2, [DEA_FORM_HYPERELASTIC] = 1e-2, [DEA_FORM_MEMBRANE] = 0.1}},
     .library = dea_ngspice_name,
     .refuses = refuses,
@@ -243,5 +247,6 @@ const dea_engine dea_engine_ngspice = {
     .sweep = sweep,
     .transient = transient,
     .ac = ac,
+    .solves = {[DEA_STUDY_FORCE] = dea_ngspice_force},
     .end = end,
 };

@@ -132,7 +132,7 @@ DEA_API double dea_series_resistance(const dea_scene *scene);
 DEA_API double dea_sheet_share(dea_kind kind, double coverage, double layers);
 /** Mass of the electrodes per area of pre-stretched film [kg/m^2], 0: none. */
 DEA_API double dea_electrode_mass(const dea_scene *scene);
-/** Mass of film, electrodes and load that moves with the disc edge [kg], 0 without density: Rayleigh with the shape of Lame's solution,
+/** Mass of film, electrodes, load and second film that moves with the disc edge [kg], 0 without density: Rayleigh with the shape of Lame's solution,
  * the electrodes' mass per area counted over the pre-stretched film (physics: section 5). */
 DEA_API double dea_point_mass(const dea_scene *scene, const dea_point *point);
 

@@ -62,6 +62,21 @@ typedef struct dea_edge_load {
     double force;     /**< static, onto the edge, outward positive, over the whole circumference [N], NAN: none */
 } dea_edge_load;
 
+/** A second film in the same frame, joined to the first at r_a by a rigid ring, so that both edges move by the same u; a dot beside a
+ * lens pushes against it. What is NAN is that of the first film. */
+typedef struct dea_antagonist {
+    bool there;
+    dea_kind kind;
+    double frame_radius;   /**< r [m], that of the first film */
+    double coverage;       /**< B [1], that of the first film */
+    double film_thickness; /**< H before pre-stretch [m], > 0 */
+    double layers;         /**< films of that thickness [1], whole, >= 1 */
+    double prestretch;     /**< [1], >= 1 */
+    double voltage;        /**< static, across it [V], default 0 */
+    bool own_material;     /**< it has one, else that of the first film */
+    dea_material material;
+} dea_antagonist;
+
 /** Kinds of waveform, in the order of the table src/drive/waves.c. A file and a list of points are both points. */
 typedef enum dea_wave_kind {
     DEA_WAVE_NONE,
@@ -222,6 +237,7 @@ typedef struct dea_scene {
     dea_actuator actuator;
     dea_electrode electrode;
     dea_edge_load load;
+    dea_antagonist antagonist;
     dea_material material;
     dea_drive drive;
     const struct dea_model *models[DEA_SCENE_MODELS]; /**< models to run one after the other, model_count of them */

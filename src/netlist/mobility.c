@@ -649,7 +649,8 @@ void dea_cards_write_network(dea_cards *c)
 {
     fputs(DEA_CARDS_BEGIN, c->out);
     for (int i = 0; i < c->mobility->network.element_count && !c->form.cures; i++) {
-        fprintf(c->out, "* %s: %s\n", c->mobility->network.elements[i].name, c->mobility->network.elements[i].meaning);
+        const dea_element *element = &c->mobility->network.elements[i];
+        fprintf(c->out, "* %s%s: %s\n", element->second ? "second film, " : "", element->name, element->meaning);
     }
     dea_part_text_nodes(&c->text); /* the sources refer to them */
     write_resistors(c);

@@ -50,7 +50,8 @@ void dea_still_cards_write_network(dea_still_cards *cards, size_t ramp)
     FILE *out = text->out;
     fputs(DEA_CARDS_BEGIN, out);
     for (int i = 0; i < cards->network->element_count; i++) {
-        fprintf(out, "* %s: %s\n", cards->network->elements[i].name, cards->network->elements[i].meaning);
+        const dea_element *element = &cards->network->elements[i];
+        fprintf(out, "* %s%s: %s\n", element->second ? "second film, " : "", element->name, element->meaning);
     }
     dea_part_text_nodes(&cards->text);
     fputs("* elastic force of all springs [N], from the edge to the frame\n", out);

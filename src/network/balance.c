@@ -11,6 +11,8 @@ enum {
     FORCE,
     FIELD,
     BREAKDOWN,
+    SECOND_FIELD,
+    SECOND_BREAKDOWN,
     LENGTH,
     CAPACITANCE,
     VOLTAGE,
@@ -33,6 +35,8 @@ static dea_status compile_limits(dea_network *network, dea_balance *balance, dea
     limits[FORCE] = load;
     limits[FIELD] = network->field;
     limits[BREAKDOWN] = network->breakdown;
+    limits[SECOND_FIELD] = network->second_field;
+    limits[SECOND_BREAKDOWN] = network->second_breakdown;
     limits[LENGTH] = network->length;
     limits[CAPACITANCE] = network->capacitance;
     limits[VOLTAGE] = network->voltage;
@@ -314,7 +318,8 @@ static dea_row row_of(const dea_balance *balance, double u)
             row.state = DEA_STATE_SLACK;
         }
     }
-    if (row.field > dea_tape_value(limits, BREAKDOWN)) {
+    const double second = fabs(dea_tape_value(limits, SECOND_FIELD));
+    if (row.field > dea_tape_value(limits, BREAKDOWN) || second > dea_tape_value(limits, SECOND_BREAKDOWN)) {
         row.state = DEA_STATE_BREAKDOWN;
     }
     return row;

@@ -175,7 +175,7 @@ dea_status dea_dynamics_settle(const dea_scene *scene, const dea_model *model, d
                         .focal_length = scene->actuator.focal_length,
                         .refractive_index = scene->actuator.refractive_index,
                         .linear = model->linear != NULL && !scene->electrode.law && !(scene->load.stiffness > 0.0) &&
-                                  !(fabs(scene->load.force) > 0.0)};
+                                  !(fabs(scene->load.force) > 0.0) && !scene->antagonist.there};
     d->damping = scene->load.damping > 0.0 ? scene->load.damping : 0.0;
     d->softens = !scene->reduction.softening;
     if (!dea_dynamics_relax(d, scene)) {
@@ -185,7 +185,7 @@ dea_status dea_dynamics_settle(const dea_scene *scene, const dea_model *model, d
     if (status != DEA_OK) {
         return status;
     }
-    if (d->point.force != 0.0 && !dea_dynamics_equilibrium(d, 0.0, &d->rest)) {
+    if ((d->point.force != 0.0 || d->point.second.there) && !dea_dynamics_equilibrium(d, 0.0, &d->rest)) {
         d->rest = (double)NAN;
     }
     set_port(scene, d);

@@ -31,6 +31,7 @@ typedef struct dea_symbols {
     dea_expr load;                 /* stiffness of a spring between edge and frame [N/m], NUM(0): none */
     dea_expr force;                /* onto the edge, outward [N], NUM(0): none */
     bool loaded;                   /* the film is not alone with its edge */
+    const struct dea_symbols *second; /* of the other film on the edge, NULL: there is none */
     dea_expr voltage;              /* across the film [V] */
     dea_expr focal_length;         /* of a lens at rest [m], NAN: no optics */
     dea_expr refractive_index;     /* of its liquid [1] */
@@ -43,6 +44,7 @@ typedef struct dea_element {
     dea_role role;
     const char *name;    /* netlist name, e.g. "n_a" */
     const char *meaning; /* what it is, with its unit and equation */
+    bool second;         /* of the second film */
     dea_expr value; /* spring, softening: stiffness 1/n [N/m]; hyperelastic spring: change of its stress from rest [Pa]; tension:
                        what the stress at rest does by its levers, and what is elastic beside the film, against u [N]; beside:
                        stiffness of what neither damps nor relaxes [N/m]; steady: outward force that no voltage of the film changes
@@ -80,6 +82,7 @@ typedef struct dea_network {
     dea_expr length;    /* displacement that changes the stretch of the more strained region by its own size [m] */
     bool ends;          /* a region vanishes where the edge comes to the centre or the frame; else nothing ends */
     dea_expr breakdown; /* breakdown strength [V/m], > 0 */
+    dea_expr second_field, second_breakdown; /* of the second film; 0 and +inf: there is none */
     dea_expr *range;    /* owned; each must be > 0 for the point to make sense: B, 1 - B, permittivity, those of the law */
     int range_count;
     dea_kind kind;

@@ -288,6 +288,7 @@ dea_status dea_reader_finish(dea_reader *reader)
     status = status ? status : dea_material_finish(reader);
     status = status ? status : optics_check(reader);
     status = status ? status : dea_models_finish(reader);
+    status = status ? status : dea_antagonist_finish(reader);
     status = status ? status : dea_waveform_finish(reader);
     return status ? status : dea_study_finish(reader);
 }

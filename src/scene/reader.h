@@ -73,10 +73,18 @@ typedef struct dea_holder {
 
 dea_holder dea_reader_holder(dea_reader *reader, const dea_key *key);
 
+/* Reads dot or lens. */
+dea_status dea_reader_kind(dea_reader *reader, const dea_ref *ref, const dea_node *node, dea_kind *kind);
+/* What only the whole scene shows of a second film: unlike frames, studies that have none. */
+dea_status dea_antagonist_finish(dea_reader *reader);
+
 /* Kinds of keys, for the table. */
 dea_status dea_read_scalar(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_mapping(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_kind(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_antagonist(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_antagonist_kind(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_antagonist_material(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_title(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_model(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_engine(dea_reader *reader, const dea_ref *ref, const dea_node *node);

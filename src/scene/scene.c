@@ -25,6 +25,7 @@ static dea_status scene_clear(dea_scene *scene)
                      .refractive_index = NAN},
         .electrode = {.thickness = NAN, .density = NAN, .sheet_resistance = NAN},
         .load = {.mass = NAN, .stiffness = NAN, .damping = NAN, .force = NAN},
+        .antagonist = {.frame_radius = NAN, .coverage = NAN, .film_thickness = NAN, .layers = NAN, .prestretch = NAN, .voltage = 0.0},
         .material = dea_material_default(),
         .drive = {.voltage = NAN,
                   .waveform = dea_waveform_none(),

@@ -41,8 +41,8 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
     if (!model->network && !model->membrane) {
         return "it has no network form that ngspice could solve";
     }
-    if (model->membrane && (fabs(scene->load.force) > 0.0 || scene->load.damping > 0.0)) {
-        return "its rings of film carry masses and springs, no force and no damper";
+    if (model->membrane && (fabs(scene->load.force) > 0.0 || scene->load.damping > 0.0 || scene->antagonist.there)) {
+        return "its rings of film carry masses and springs, no force, no damper and no second film";
     }
     if (model->membrane && scene->study == DEA_STUDY_FORCE) {
         return "it does not hold the edge of the membrane";

@@ -31,10 +31,12 @@ dea_status dea_read_antagonist_material(dea_reader *reader, const dea_ref *ref, 
     dea_status status = dea_read_material(reader, ref, node);
     scene->antagonist.material = scene->material;
     scene->antagonist.own_material = true;
-    if (!status && (!scene->material.law || isnan(scene->material.permittivity))) {
+    const bool lawless = !scene->material.law || isnan(scene->material.constants[0]);
+    if (!status && (lawless || isnan(scene->material.permittivity))) {
         status = dea_place_fail(&node->place, reader->error, ref->path, "has no %s; accepted: a material with both a law and a permittivity",
-                                scene->material.law ? "permittivity" : "law");
+                                lawless ? "law" : "permittivity");
     }
+    status = status ? status : dea_law_finish(reader);
     status = status ? status : dea_material_finish(reader);
     scene->material = first;
     memcpy(reader->given, given, sizeof reader->given);
@@ -94,11 +96,11 @@ static dea_status motion_check(dea_reader *reader)
     const dea_study *study = dea_study_of(scene);
     const bool moves = study->along && !study->still;
     const dea_node *node = dea_tree_child(reader->root, "antagonist");
-    for (size_t i = 0; i < scene->model_count && (moves || study->stations); i++) {
+    for (size_t i = 0; i < scene->model_count && moves; i++) {
         if (scene->models[i]->membrane) {
             return dea_place_fail(&node->place, reader->error, "antagonist",
                                   "a second film beside a %s of the model %s; accepted there: a static study, or models of one node, e.g. ring",
-                                  study->name, scene->models[i]->name);
+                                  study->title, scene->models[i]->name);
         }
     }
     if (moves && (material->prony_count > 0 || !isnan(material->retardation))) {

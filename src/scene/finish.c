@@ -273,12 +273,17 @@ static dea_status optics_check(dea_reader *reader)
                           "%s is missing; accepted: both keys together", length ? "refractive_index" : "focal_length");
 }
 
+dea_status dea_law_finish(dea_reader *reader)
+{
+    const dea_key film = {.within = NULL};
+    const dea_holder holder = dea_reader_holder(reader, &film);
+    return law_check(reader, &holder);
+}
+
 dea_status dea_reader_finish(dea_reader *reader)
 {
     dea_status status = needs_check(reader);
-    const dea_key film = {.within = NULL};
-    const dea_holder holder = dea_reader_holder(reader, &film);
-    status = status ? status : law_check(reader, &holder);
+    status = status ? status : dea_law_finish(reader);
     status = status ? status : electrode_check(reader);
     status = status ? status : load_check(reader);
     status = status ? status : locking_check(reader);

@@ -137,6 +137,8 @@ dea_status dea_reader_frame(dea_reader *reader, const char *path);
 dea_status dea_reader_bias(dea_reader *reader, double *bias);
 /* Refuses models that cannot do the scene's study. */
 dea_status dea_models_finish(dea_reader *reader);
+/* What only the whole law of the film shows: constants that are missing or do not fit together. */
+dea_status dea_law_finish(dea_reader *reader);
 /* What only the whole material shows: shares that leave no long-term modulus. */
 dea_status dea_material_finish(dea_reader *reader);
 /* What only the whole scene shows: missing keys, contradictions. */

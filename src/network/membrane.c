@@ -20,6 +20,14 @@ static void set_masses(const dea_scene *scene, dea_membrane *m)
     m->masses[m->rings.edge] += m->heavy && scene->load.mass > 0.0 ? scene->load.mass : 0.0;
 }
 
+const char dea_load_stalled[] = "load.damping alone leaves the other nodes of the membrane without an equation of motion: it takes "
+                                "material.density or material.retardation too";
+
+bool dea_load_stalls(const dea_scene *scene)
+{
+    return scene->load.damping > 0.0 && isnan(scene->material.density) && isnan(scene->material.retardation);
+}
+
 /* A ring at the frame has no node of its own: any does, with a hoop of 0. */
 static void find_own(dea_membrane *m)
 {

@@ -43,6 +43,10 @@ typedef struct dea_membrane_look {
 dea_status dea_membrane_open(const dea_scene *scene, const dea_model *model, dea_rings_mesh mesh, dea_membrane *membrane,
                              dea_error *error);
 
+/* True where a load's damper alone would resist a membrane: its other nodes have no equation of motion then; and that in words. */
+bool dea_load_stalls(const dea_scene *scene);
+extern const char dea_load_stalled[];
+
 /* Nodes that tell the film at rest, and its first mode, to round-off; around a small disc they lie evenly in ln R. */
 dea_rings_mesh dea_membrane_usual_mesh(const dea_scene *scene);
 

@@ -1,5 +1,4 @@
 /* Engine `ida`: networks and the exact membrane by SUNDIALS. */
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -7,6 +6,7 @@
 #include "engine/ida/sundials.h"
 #include "engine/line.h"
 #include "model/loaded.h"
+#include "network/membrane.h"
 #include "network/balance.h"
 #include "study/study.h"
 
@@ -30,10 +30,8 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
     if (!model->membrane && scene->study == DEA_STUDY_FORCE) {
         return "of a network whose edge is held no equation is left to solve";
     }
-    const bool still = isnan(scene->material.density) && isnan(scene->material.retardation);
-    if (model->membrane && dea_study_of(scene)->timed && scene->load.damping > 0.0 && still) {
-        return "load.damping alone leaves the other nodes of the membrane without an equation of motion: it takes material.density or "
-               "material.retardation too";
+    if (model->membrane && dea_study_of(scene)->timed && dea_load_stalls(scene)) {
+        return dea_load_stalled;
     }
     return scene->accuracy < 1e-9 ? "its answers are good to 1e-9, the scene wants more" : NULL;
 }

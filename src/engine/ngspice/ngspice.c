@@ -12,6 +12,7 @@
 #include "engine/ngspice/stretch.h"
 #include "netlist/netlist.h"
 #include "network/balance.h"
+#include "network/membrane.h"
 #include "study/study.h"
 
 enum {
@@ -41,11 +42,15 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
     if (!model->network && !model->membrane) {
         return "it has no network form that ngspice could solve";
     }
-    if (model->membrane && (fabs(scene->load.force) > 0.0 || scene->load.damping > 0.0 || scene->antagonist.there)) {
-        return "its rings of film carry masses and springs, no force, no damper and no second film";
+    const bool still = !dea_study_of(scene)->along || dea_study_of(scene)->still;
+    if (model->membrane && still && (fabs(scene->load.force) > 0.0 || scene->antagonist.there)) {
+        return "its membrane at rest carries a spring alone, no force and no second film";
     }
     if (model->membrane && scene->study == DEA_STUDY_FORCE) {
         return "it does not hold the edge of the membrane";
+    }
+    if (model->membrane && dea_study_of(scene)->timed && dea_load_stalls(scene)) {
+        return dea_load_stalled;
     }
     if (dea_study_of(scene)->timed && scene->accuracy < 1e-6) {
         return "its trapezoidal rule is good to 1e-6 in a transient, the scene wants more";

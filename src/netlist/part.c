@@ -114,6 +114,7 @@ static dea_symbols symbols_of(dea_pool *pool, const part *p)
                            .film_thickness = MUL(s[LAYERS], s[THICK]),
                            .layers = s[LAYERS],
                            .load = NUM(0.0),
+                           .force = NUM(0.0),
                            .prestretch = s[STRETCH],
                            .permittivity = MUL(SCALE(DEA_EPSILON_0, s[EPS_R]), SQUARE(s[LAYERS])),
                            .breakdown = NUM(INFINITY),
@@ -402,6 +403,7 @@ static void declare(part *p)
         dea_expr ref;
     } all[] = {{"capacity", p->c_rest}, {"stiffness", p->k_rest}, {"size", p->divide}, {"size", p->width}};
     if (p->rings) {
+        dea_part_text_root(text, "membrane");
         dea_rings_part_declare(p->rings, text);
     } else {
         dea_part_text_call(text, network);

@@ -44,7 +44,7 @@ static dea_scene scene_of(const film *f, const char *model, dea_kind kind, int w
             .law = dea_law_find("neo_hookean"), .constants = {150e3}, .entry_count = 1, .thickness = 2e-6, .density = 1000.0};
     }
     if (way & WITH_LOAD) {
-        scene.load = (dea_edge_load){.mass = 1e-4, .stiffness = 40.0};
+        scene.load = (dea_edge_load){.mass = 1e-4, .stiffness = 40.0, .force = 0.01, .damping = 0.1};
     }
     return scene;
 }
@@ -166,7 +166,7 @@ static void frequency_responses_are_one_text(void **state)
 /* A bare number is one of the scene under its name, or of the axis; all others are formulas. */
 static void assert_numbers_are_named(const char *text, const dea_scene *scene)
 {
-    static const char *const names[] = {"frame_radius", "film_thickness", "permittivity", "modulus", "load_stiffness"};
+    static const char *const names[] = {"frame_radius", "film_thickness", "permittivity", "modulus", "load_stiffness", "load_force"};
     for (const char *card = strstr(text, ".param "); card; card = strstr(card + 1, ".param ")) {
         const char *name = card + strlen(".param ");
         const size_t length = strcspn(name, "=");

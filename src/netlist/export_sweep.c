@@ -100,44 +100,6 @@ static void find_stretch(line_text *l)
     l->w->left_out += l->w->points - (l->to - l->from);
 }
 
-static void write_parameter_sum(const dea_dialect *dialect, FILE *out, const char *sign, const char *name)
-{
-    fputs(sign, out);
-    dea_dialect_parameter(dialect, out, name);
-}
-
-void dea_export_axis(const dea_dialect *dialect, const dea_axis *axis, size_t from, size_t to, FILE *out)
-{
-    const bool uniform = axis->uniform && axis->count > 1;
-    fprintf(out, "* index of the point, held inside the points that have an equilibrium, and the value of %s there [%s]\n",
-            axis->key, axis->unit);
-    dea_dialect_source_begin(dialect, out, DEA_VOLTAGE, "point", "point", "0");
-    fprintf(out, "min(max(v(k),%zu),%zu)", from, to - 1);
-    dea_dialect_source_end(dialect, out);
-    dea_part_value(out, "axis_from", axis->values[uniform ? 0 : from]);
-    for (size_t i = from + 1; i < to && !uniform; i++) {
-        char name[32];
-        snprintf(name, sizeof name, "axis_step%zu", i);
-        dea_part_value(out, name, axis->values[i] - axis->values[i - 1]);
-    }
-    if (uniform) {
-        dea_part_value(out, "axis_span", axis->values[axis->count - 1] - axis->values[0]);
-    }
-    dea_dialect_source_begin(dialect, out, DEA_VOLTAGE, "axis", "axis", "0");
-    write_parameter_sum(dialect, out, "", "axis_from");
-    if (uniform) {
-        write_parameter_sum(dialect, out, "+", "axis_span");
-        fprintf(out, "*v(point)/%zu", axis->count - 1);
-    }
-    for (size_t i = from + 1; i < to && !uniform; i++) {
-        char name[32];
-        snprintf(name, sizeof name, "axis_step%zu", i);
-        write_parameter_sum(dialect, out, "+", name);
-        fprintf(out, "*min(max(v(point)-%zu,0),1)", i - 1);
-    }
-    dea_dialect_source_end(dialect, out);
-}
-
 static void write_guess(const line_text *l, const char *node, double value)
 {
     FILE *out = l->w->out;
@@ -153,7 +115,9 @@ static void write_start(line_text *l)
     fprintf(l->w->out, ".nodeset v(edge%zu)=", l->w->lines);
     dea_part_number(l->w->out, u);
     if (l->axis) {
-        write_guess(l, "point", (double)l->from);
+        if (dea_axis_holds(l->axis, l->from, l->to)) {
+            write_guess(l, "point", (double)l->from);
+        }
         write_guess(l, "axis", symbol_at(l, l->from));
     }
     snprintf(inside, sizeof inside, "xline%zu%s", l->w->lines, l->w->dialect->inside);
@@ -202,7 +166,7 @@ static dea_status write_line(line_text *l, dea_error *error)
     fprintf(out, ".subckt line%zu k edge\n", l->w->lines);
     dea_still_cards_write_numbers(&l->cards);
     if (l->axis) {
-        dea_export_axis(l->w->dialect, l->axis, l->from, l->to, out);
+        dea_axis_write(l->w->dialect, l->axis, l->from, l->to, out);
     }
     dea_still_cards_write_network(&l->cards, 0);
     fprintf(out, ".ends\nXLINE%zu k edge%zu line%zu\n", l->w->lines, l->w->lines, l->w->lines);

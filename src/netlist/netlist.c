@@ -103,38 +103,61 @@ void dea_still_cards_write_start(dea_still_cards *cards, const char *inside, dou
     dea_part_text_start(&cards->text, inside, cards->values);
 }
 
-/* The swept scalar as a voltage of the index k, so that no rounding adds up along a sweep. */
-static void write_axis(FILE *out, const dea_netlist_study *study)
+static bool is_even(const dea_axis *axis)
 {
-    const dea_axis *axis = study->axis;
-    fputs("VINDEX k 0 0\n", out);
-    if (!axis) {
-        return;
+    return axis->uniform && axis->count > 1;
+}
+
+bool dea_axis_holds(const dea_axis *axis, size_t from, size_t to)
+{
+    return is_even(axis) && (from > 0 || to < axis->count);
+}
+
+static void write_even(const dea_dialect *dialect, const dea_axis *axis, bool held, FILE *out)
+{
+    dea_part_value(out, "axis_from", axis->values[0]);
+    dea_part_value(out, "axis_span", axis->values[axis->count - 1] - axis->values[0]);
+    dea_dialect_source_begin(dialect, out, DEA_VOLTAGE, "axis", "axis", "0");
+    dea_dialect_parameter(dialect, out, "axis_from");
+    fputc('+', out);
+    dea_dialect_parameter(dialect, out, "axis_span");
+    fprintf(out, "*v(%s)/%zu", held ? "point" : "k", axis->count - 1);
+}
+
+static void write_list(const dea_dialect *dialect, const dea_axis *axis, size_t from, size_t to, FILE *out)
+{
+    char name[32];
+    dea_part_value(out, "axis_from", axis->values[from]);
+    for (size_t i = from + 1; i < to; i++) {
+        snprintf(name, sizeof name, "axis_step%zu", i);
+        dea_part_value(out, name, axis->values[i] - axis->values[i - 1]);
     }
-    if (axis->uniform && axis->count > 1) {
-        fputs(".param axis_from=", out);
-        dea_part_number(out, axis->values[0]);
-        fputs(" axis_span=", out);
-        dea_part_number(out, axis->values[axis->count - 1] - axis->values[0]);
-        fputs(" axis_last=", out);
-        dea_part_number(out, (double)(axis->count - 1));
-        fputs("\nBAXIS axis 0 v=({axis_from})+({axis_span})*v(k)/{axis_last}\n", out);
-        return;
+    dea_dialect_source_begin(dialect, out, DEA_VOLTAGE, "axis", "axis", "0");
+    dea_dialect_parameter(dialect, out, "axis_from");
+    for (size_t i = from + 1; i < to; i++) {
+        snprintf(name, sizeof name, "axis_step%zu", i);
+        fputc('+', out);
+        dea_dialect_parameter(dialect, out, name);
+        fprintf(out, "*min(max(v(k)-%zu,0),1)", i - 1);
     }
-    for (size_t i = 0; i < study->count; i++) {
-        fprintf(out, ".param a%zu=", i);
-        dea_part_number(out, axis->values[study->from + i]);
-        fputc('\n', out);
+}
+
+void dea_axis_write(const dea_dialect *dialect, const dea_axis *axis, size_t from, size_t to, FILE *out)
+{
+    const bool held = dea_axis_holds(axis, from, to);
+    if (held) {
+        fputs("* index of the point, held inside the points that have an equilibrium\n", out);
+        dea_dialect_source_begin(dialect, out, DEA_VOLTAGE, "point", "point", "0");
+        fprintf(out, "min(max(v(k),%zu),%zu)", from, to - 1);
+        dea_dialect_source_end(dialect, out);
     }
-    if (study->count == 1) {
-        fputs("VAXIS axis 0 {a0}\n", out);
-        return;
+    fprintf(out, "* value of %s at the point of index v(k) [%s]\n", axis->key, axis->unit);
+    if (is_even(axis)) {
+        write_even(dialect, axis, held, out);
+    } else {
+        write_list(dialect, axis, from, to, out);
     }
-    fputs("BAXIS axis 0 v=pwl(v(k)", out);
-    for (size_t i = 0; i < study->count; i++) {
-        fprintf(out, ",%zu,{a%zu}", study->from + i, i);
-    }
-    fputs(")\n", out);
+    dea_dialect_source_end(dialect, out);
 }
 
 /* The displacement of an edge that is held, as a voltage of the index k. */
@@ -161,7 +184,11 @@ static void write_all(dea_still_cards *cards, const dea_netlist_study *study)
     fputs("* dielectric elastomer actuator: v(edge) = displacement of the disc edge [m], current = force [N]\n", out);
     dea_still_cards_write_numbers(cards);
     dea_still_cards_write_network(cards, study->ramp);
-    write_axis(out, study);
+    fputs("VINDEX k 0 0\n", out);
+    if (study->axis) { /* all of an even axis: nothing holds the index */
+        const bool even = is_even(study->axis);
+        dea_axis_write(cards->text.dialect, study->axis, even ? 0 : study->from, even ? study->axis->count : study->from + study->count, out);
+    }
     if (study->held) {
         write_hold(out, study);
     }

@@ -36,6 +36,12 @@ void dea_still_cards_write_network(dea_still_cards *cards, size_t ramp);
 /* ` v(name)=value` of its nodes at a place; @p inside stands before the names. */
 void dea_still_cards_write_start(dea_still_cards *cards, const char *inside, double symbol, double u);
 
+/* True where points `from` to `to`, excluded, are a part of an even axis, in which v(point) holds the index. */
+bool dea_axis_holds(const dea_axis *axis, size_t from, size_t to);
+/* Those points as the voltage v(axis) of the index v(k), so that no rounding adds up along a sweep; a list as the sum of its steps,
+ * each of which rises between two indices. */
+void dea_axis_write(const dea_dialect *dialect, const dea_axis *axis, size_t from, size_t to, FILE *out);
+
 /* How the netlist is driven. */
 typedef struct dea_netlist_study {
     const dea_scene *scene; /* axes at the first point */

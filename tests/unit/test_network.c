@@ -652,7 +652,7 @@ static const char *fault_of_word(const char *at, size_t length, const char *netl
         snprintf(sought, sizeof sought, " %.*s 0 ", (int)length, at);
         return strstr(netlist, sought) ? NULL : "an unknown node";
     }
-    const bool function = strncmp(at, "v(", 2) == 0 || strncmp(at, "pwl(", 4) == 0;
+    const bool function = strncmp(at, "v(", 2) == 0 || strncmp(at, "min(", 4) == 0 || strncmp(at, "max(", 4) == 0;
     const bool output = strncmp(at - 1, " v=", 3) == 0 || strncmp(at - 1, " i=", 3) == 0;
     return function || output ? NULL : "an unknown function";
 }
@@ -705,8 +705,7 @@ static const char *fault_of_card(const char *card, const char *netlist)
     if (strncmp(card, ".param", 6) == 0) {
         return fault_of_parameters(card);
     }
-    static const char *const cards[] = {"* ",        "VINDEX k 0 0",  "VAXIS axis 0 {a0}", ".nodeset ",
-                                        ".options ", ".save v(edge)", ".dc VINDEX ",       ".end"};
+    static const char *const cards[] = {"* ", "VINDEX k 0 0", ".nodeset ", ".options ", ".save v(edge)", ".dc VINDEX ", ".end"};
     for (size_t i = 0; i < sizeof cards / sizeof cards[0]; i++) {
         if (strncmp(card, cards[i], strlen(cards[i])) == 0) {
             return NULL;

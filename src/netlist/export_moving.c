@@ -2,9 +2,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "engine/ngspice/pieces.h"
 #include "netlist/curve_cards.h"
 #include "netlist/export.h"
+#include "network/pace.h"
 
 enum { LINE_POINTS = 4, MOST_CORNERS = 100000, MOST_PARTS = 400 };
 

@@ -27,11 +27,6 @@ typedef struct writer {
     double quick; /* shortest time of the film: a radian of its ring, or its fastest relaxation [s] */
 } writer;
 
-static void end_source(const writer *w)
-{
-    dea_dialect_source_end(w->dialect, w->out);
-}
-
 /* A corner of the source's voltage. */
 typedef struct pen {
     FILE *out;
@@ -121,9 +116,7 @@ static void write_displacement(const writer *w)
 {
     if (!isnan(w->mobility.stiffness) && !w->analogy->loop) {
         fputs("* displacement of the edge [m]\n", w->out);
-        dea_dialect_source_begin(w->dialect, w->out, DEA_VOLTAGE, "DISP", "disp", "0");
-        fputs(w->cards.node, w->out);
-        end_source(w);
+        dea_part_text_source(&w->cards.text, DEA_VOLTAGE, "DISP", "disp", "0", w->cards.node);
     }
 }
 
@@ -149,12 +142,7 @@ static void write_charge(const writer *w)
     fputs("* film: charge C(u) U on its capacitance at rest [F], whose current i = d(C U)/dt the film takes\n", out);
     dea_part_value(out, "c_rest", w->mobility.rest);
     dea_part_value(out, "q_start", charge);
-    dea_dialect_source_begin(w->dialect, out, DEA_VOLTAGE, "CHARGE", "drive", "0");
-    fputs("v(film)*(", out);
-    dea_part_text_write(&w->cards.text, w->mobility.network.capacitance);
-    fputs(")/", out);
-    dea_dialect_parameter(w->dialect, out, "c_rest");
-    end_source(w);
+    dea_part_text_source(&w->cards.text, DEA_VOLTAGE, "CHARGE", "drive", "0", "v(film)*([])/[c_rest]", w->mobility.network.capacitance);
     fputs("VFILM drive charge 0\nCCHARGE charge 0 {c_rest} ic={q_start}\nFFILM film 0 VFILM 1\n", out);
 }
 

@@ -166,7 +166,7 @@ static dea_status write_line(line_text *l, dea_error *error)
     fprintf(out, ".subckt line%zu k edge\n", l->w->lines);
     dea_still_cards_write_numbers(&l->cards);
     if (l->axis) {
-        dea_axis_write(l->w->dialect, l->axis, l->from, l->to, out);
+        dea_axis_write(&l->cards.text, l->axis, l->from, l->to);
     }
     dea_still_cards_write_network(&l->cards, 0);
     fprintf(out, ".ends\nXLINE%zu k edge%zu line%zu\n", l->w->lines, l->w->lines, l->w->lines);

@@ -77,6 +77,7 @@ void dea_still_cards_write_network(dea_still_cards *cards, size_t ramp)
 {
     const dea_part_text *text = &cards->text;
     FILE *out = text->out;
+    char load[32] = "[]";
     fputs(DEA_CARDS_BEGIN, out);
     for (int i = 0; i < cards->network.element_count; i++) {
         const dea_element *element = &cards->network.elements[i];
@@ -84,16 +85,12 @@ void dea_still_cards_write_network(dea_still_cards *cards, size_t ramp)
     }
     dea_part_text_nodes(&cards->text);
     fputs("* elastic force of all springs [N], from the edge to the frame\n", out);
-    dea_dialect_source_begin(text->dialect, out, DEA_CURRENT, "spring", "edge", "0");
-    dea_part_text_write(text, cards->elastic);
-    dea_dialect_source_end(text->dialect, out);
+    dea_part_text_source(text, DEA_CURRENT, "spring", "edge", "0", "[]", cards->elastic);
     fputs("* electrostatic force f_dea [N], Eq. 21, onto the edge\n", out);
-    dea_dialect_source_begin(text->dialect, out, DEA_CURRENT, "force", "0", "edge");
-    dea_part_text_write(text, cards->load);
     if (ramp > 0) {
-        fprintf(out, "*v(k)/%zu", ramp);
+        snprintf(load, sizeof load, "[]*v(k)/%zu", ramp);
     }
-    dea_dialect_source_end(text->dialect, out);
+    dea_part_text_source(text, DEA_CURRENT, "force", "0", "edge", load, cards->load);
     fputs(DEA_CARDS_END, out);
 }
 
@@ -113,51 +110,48 @@ bool dea_axis_holds(const dea_axis *axis, size_t from, size_t to)
     return is_even(axis) && (from > 0 || to < axis->count);
 }
 
-static void write_even(const dea_dialect *dialect, const dea_axis *axis, bool held, FILE *out)
+static void write_even(const dea_part_text *text, const dea_axis *axis, bool held)
 {
-    dea_part_value(out, "axis_from", axis->values[0]);
-    dea_part_value(out, "axis_span", axis->values[axis->count - 1] - axis->values[0]);
-    dea_dialect_source_begin(dialect, out, DEA_VOLTAGE, "axis", "axis", "0");
-    dea_dialect_parameter(dialect, out, "axis_from");
-    fputc('+', out);
-    dea_dialect_parameter(dialect, out, "axis_span");
-    fprintf(out, "*v(%s)/%zu", held ? "point" : "k", axis->count - 1);
+    char value[64];
+    dea_part_value(text->out, "axis_from", axis->values[0]);
+    dea_part_value(text->out, "axis_span", axis->values[axis->count - 1] - axis->values[0]);
+    snprintf(value, sizeof value, "[axis_from]+[axis_span]*v(%s)/%zu", held ? "point" : "k", axis->count - 1);
+    dea_part_text_source(text, DEA_VOLTAGE, "axis", "axis", "0", value);
 }
 
-static void write_list(const dea_dialect *dialect, const dea_axis *axis, size_t from, size_t to, FILE *out)
+static void write_list(const dea_part_text *text, const dea_axis *axis, size_t from, size_t to)
 {
-    char name[32];
-    dea_part_value(out, "axis_from", axis->values[from]);
+    dea_part_value(text->out, "axis_from", axis->values[from]);
     for (size_t i = from + 1; i < to; i++) {
+        char name[32];
         snprintf(name, sizeof name, "axis_step%zu", i);
-        dea_part_value(out, name, axis->values[i] - axis->values[i - 1]);
+        dea_part_value(text->out, name, axis->values[i] - axis->values[i - 1]);
     }
-    dea_dialect_source_begin(dialect, out, DEA_VOLTAGE, "axis", "axis", "0");
-    dea_dialect_parameter(dialect, out, "axis_from");
+    dea_dialect_source_begin(text->dialect, text->out, DEA_VOLTAGE, "axis", "axis", "0");
+    dea_part_text_format(text, "[axis_from]");
     for (size_t i = from + 1; i < to; i++) {
-        snprintf(name, sizeof name, "axis_step%zu", i);
-        fputc('+', out);
-        dea_dialect_parameter(dialect, out, name);
-        fprintf(out, "*min(max(v(k)-%zu,0),1)", i - 1);
+        char step[96];
+        snprintf(step, sizeof step, "+[axis_step%zu]*min(max(v(k)-%zu,0),1)", i, i - 1);
+        dea_part_text_format(text, step);
     }
+    dea_dialect_source_end(text->dialect, text->out);
 }
 
-void dea_axis_write(const dea_dialect *dialect, const dea_axis *axis, size_t from, size_t to, FILE *out)
+void dea_axis_write(const dea_part_text *text, const dea_axis *axis, size_t from, size_t to)
 {
     const bool held = dea_axis_holds(axis, from, to);
     if (held) {
-        fputs("* index of the point, held inside the points that have an equilibrium\n", out);
-        dea_dialect_source_begin(dialect, out, DEA_VOLTAGE, "point", "point", "0");
-        fprintf(out, "min(max(v(k),%zu),%zu)", from, to - 1);
-        dea_dialect_source_end(dialect, out);
+        char index[64];
+        snprintf(index, sizeof index, "min(max(v(k),%zu),%zu)", from, to - 1);
+        fputs("* index of the point, held inside the points that have an equilibrium\n", text->out);
+        dea_part_text_source(text, DEA_VOLTAGE, "point", "point", "0", index);
     }
-    fprintf(out, "* value of %s at the point of index v(k) [%s]\n", axis->key, axis->unit);
+    fprintf(text->out, "* value of %s at the point of index v(k) [%s]\n", axis->key, axis->unit);
     if (is_even(axis)) {
-        write_even(dialect, axis, held, out);
+        write_even(text, axis, held);
     } else {
-        write_list(dialect, axis, from, to, out);
+        write_list(text, axis, from, to);
     }
-    dea_dialect_source_end(dialect, out);
 }
 
 /* The displacement of an edge that is held, as a voltage of the index k. */
@@ -187,7 +181,7 @@ static void write_all(dea_still_cards *cards, const dea_netlist_study *study)
     fputs("VINDEX k 0 0\n", out);
     if (study->axis) { /* all of an even axis: nothing holds the index */
         const bool even = is_even(study->axis);
-        dea_axis_write(cards->text.dialect, study->axis, even ? 0 : study->from, even ? study->axis->count : study->from + study->count, out);
+        dea_axis_write(&cards->text, study->axis, even ? 0 : study->from, even ? study->axis->count : study->from + study->count);
     }
     if (study->held) {
         write_hold(out, study);

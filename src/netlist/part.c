@@ -218,32 +218,6 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
     return status == DEA_OK && pool->exhausted ? tell_memory(error) : status;
 }
 
-/* A source between two nodes. Its text holds `[name]` for a parameter and `[]` for the next expression. */
-static void source(const part *p, dea_quantity quantity, const char *name, const char *plus, const char *minus,
-                   const char *format, ...)
-{
-    va_list refs;
-    va_start(refs, format);
-    dea_dialect_source_begin(p->dialect, p->out, quantity, name, plus, minus);
-    for (const char *c = format; *c; c++) {
-        if (*c != '[') {
-            fputc(*c, p->out);
-            continue;
-        }
-        const char *end = strchr(c, ']');
-        if (end == c + 1) {
-            dea_part_text_write(&p->cards.text, va_arg(refs, dea_expr));
-        } else {
-            char parameter[DEA_PART_NAME];
-            snprintf(parameter, sizeof parameter, "%.*s", (int)(end - c - 1), c + 1);
-            dea_dialect_parameter(p->dialect, p->out, parameter);
-        }
-        c = end;
-    }
-    va_end(refs);
-    dea_dialect_source_end(p->dialect, p->out);
-}
-
 static void line(const part *p, const char *format, ...) DEA_PRINTF(2, 3);
 
 static void line(const part *p, const char *format, ...)
@@ -482,63 +456,67 @@ static void write_node_numbers(const part *p)
 /* Node of what is positive while all of the film is taut, t0, t1, ... each the least so far. */
 static void write_tautness(const part *p, char node[24])
 {
+    const dea_part_text *text = &p->cards.text;
     for (int i = 0; i < p->film.network.tension_count; i++) {
-        char name[24], text[64] = "[]+[]*v(p,n)*v(p,n)";
+        char name[24], least[64] = "[]+[]*v(p,n)*v(p,n)";
         if (i > 0) {
-            snprintf(text, sizeof text, "min(v(%s),[]+[]*v(p,n)*v(p,n))", node);
+            snprintf(least, sizeof least, "min(v(%s),[]+[]*v(p,n)*v(p,n))", node);
         }
         snprintf(name, sizeof name, "taut%d", i);
         snprintf(node, 24, "t%d", i);
-        source(p, DEA_VOLTAGE, name, node, "0", text, p->taut[i], p->loosen[i]);
+        dea_part_text_source(text, DEA_VOLTAGE, name, node, "0", least, p->taut[i], p->loosen[i]);
     }
 }
 
 /* v(bad) and v(slack) rise from 0 to 1 within a millionth of what they watch. */
 static void write_outputs(const part *p)
 {
-    char taut[24] = "tension", text[64];
+    const dea_part_text *text = &p->cards.text;
+    char taut[24] = "tension", slack[64];
     line(p, "* to be read: strain [1], true field [V/um], of rings at r_a");
     line(p, "ESTRAIN strain 0 u 0 {per_um}");
-    source(p, DEA_VOLTAGE, "field", "field", "0", p->rings ? "[ok]*v(stretched)*v(p,n)" : "[ok]*1e-6*[]*v(p,n)", p->field);
+    dea_part_text_source(text, DEA_VOLTAGE, "field", "field", "0", p->rings ? "[ok]*v(stretched)*v(p,n)" : "[ok]*1e-6*[]*v(p,n)", p->field);
     line(p, "* capacitance [pF] and charge [nC] of all films side by side");
     line(p, ".param c_scale={1e12*many}\n.param q_scale={1e9*many*c_rest}\nESTORED q 0 film plate {q_scale}");
-    source(p, DEA_VOLTAGE, "capacity", "c", "0", p->rings ? "[c_scale]*[c_rest]*(1+v(swell))" : "[c_scale]*[]",
+    dea_part_text_source(text, DEA_VOLTAGE, "capacity", "c", "0", p->rings ? "[c_scale]*[c_rest]*(1+v(swell))" : "[c_scale]*[]",
            p->film.network.capacitance);
     line(p, "* bad = 1: a parameter out of its range, the edge past centre or frame, or of linear springs no stable equilibrium of the");
     line(p, "* relaxed film here (pull-in)");
-    source(p, DEA_VOLTAGE, "outside", "outside", "0", "max(v(u)-[u_high],[u_low]-v(u))");
+    dea_part_text_source(text, DEA_VOLTAGE, "outside", "outside", "0", "max(v(u)-[u_high],[u_low]-v(u))");
     if (p->linear) {
-        source(p, DEA_VOLTAGE, "net", "net", "0", "([]-[]*v(p,n)*v(p,n))/[k_rest]", p->k_rest, p->push_slope);
-        source(p, DEA_VOLTAGE, "bad", "bad", "0", "min(max(max(1-[ok],-1e6*v(net)),max(1e3*v(outside),0)),1)");
+        dea_part_text_source(text, DEA_VOLTAGE, "net", "net", "0", "([]-[]*v(p,n)*v(p,n))/[k_rest]", p->k_rest, p->push_slope);
+        dea_part_text_source(text, DEA_VOLTAGE, "bad", "bad", "0", "min(max(max(1-[ok],-1e6*v(net)),max(1e3*v(outside),0)),1)");
     } else {
-        source(p, DEA_VOLTAGE, "bad", "bad", "0", "min(max(1-[ok],max(1e3*v(outside),0)),1)");
+        dea_part_text_source(text, DEA_VOLTAGE, "bad", "bad", "0", "min(max(1-[ok],max(1e3*v(outside),0)),1)");
     }
     line(p, "* slack = 1: a region lost its tension, the film wrinkles");
     if (!p->rings) {
         write_tautness(p, taut);
     }
-    snprintf(text, sizeof text, "1-min(max(1e6*v(%s),0),1)", taut);
-    source(p, DEA_VOLTAGE, "slack", "slack", "0", text);
+    snprintf(slack, sizeof slack, "1-min(max(1e6*v(%s),0),1)", taut);
+    dea_part_text_source(text, DEA_VOLTAGE, "slack", "slack", "0", slack);
 }
 
 /* Cap of constant volume: eta = h/h_0 from h (3 a^2 + h^2) = const, f = (a^2 + h^2)/(2 h (n - 1)). */
 static void write_optics(const part *p)
 {
+    const dea_part_text *text = &p->cards.text;
     line(p, "* eta = height of the liquid's cap over its height at rest; focal = focal length [mm], 0 without optics");
-    source(p, DEA_VOLTAGE, "eta", "eta", "0", "(3+[flat])/(3*(1+v(strain))*(1+v(strain))+[flat]*v(eta)*v(eta))");
+    dea_part_text_source(text, DEA_VOLTAGE, "eta", "eta", "0", "(3+[flat])/(3*(1+v(strain))*(1+v(strain))+[flat]*v(eta)*v(eta))");
     line(p, ".param f_height={lens_on*1e3*height/(2*flat*(refract-1))}");
-    source(p, DEA_VOLTAGE, "focal", "focal", "0",
+    dea_part_text_source(text, DEA_VOLTAGE, "focal", "focal", "0",
            "[f_height]*((1+v(strain))*(1+v(strain))+[flat]*v(eta)*v(eta))/max(v(eta),1e-3)");
 }
 
 /* The membrane and its film; v(swell) = C/c_rest - 1. */
 static void write_rings(part *p)
 {
+    const dea_part_text *text = &p->cards.text;
     dea_rings_part_write(p->rings, &p->cards.text);
     line(p, "* film: v(film) = charge/c_rest on a capacitor of c_rest; v(plate) is its current [mA]");
-    source(p, DEA_VOLTAGE, "charge", "film", "0", "v(plate)+[ok]*v(p,n)*(1+v(swell))");
+    dea_part_text_source(text, DEA_VOLTAGE, "charge", "film", "0", "v(plate)+[ok]*v(p,n)*(1+v(swell))");
     dea_cards_write_capacitor(&dea_part_cures, p->out);
-    source(p, DEA_VOLTAGE, "force", "force", "0", "[ok]*v(pull)*v(p,n)*v(p,n)");
+    dea_part_text_source(text, DEA_VOLTAGE, "force", "force", "0", "[ok]*v(pull)*v(p,n)*v(p,n)");
 }
 
 static void write_body(part *p, const form *of)

@@ -106,7 +106,7 @@ static dea_status write_all(writer *w, dea_error *error)
     dea_rings_quantities_write(&w->quantities, w->out);
     dea_part_text_parameters(&w->text);
     if (line->axis) {
-        dea_axis_write(w->dialect, line->axis, line->from, line->to, w->out);
+        dea_axis_write(&w->text, line->axis, line->from, line->to);
     }
     dea_part_text_swept(&w->text);
     dea_rings_cards_write(&w->cards, &w->text);

@@ -173,6 +173,8 @@ DEA_API void dea_layout_spread(dea_layout *layout, const dea_column *columns, si
 DEA_API dea_layout dea_layout_of(const dea_scene *scene);
 /** Time of sample @p index of a transient, frequency of row @p index of an AC study. */
 DEA_API double dea_layout_place(const dea_scene *scene, size_t index);
+/** Row of a transient whose sample lies at a time, between two of them and past the last one too; not cut to those there are. */
+DEA_API double dea_layout_index(const dea_scene *scene, double time);
 /** Radius number @p index of what rows tell over the radius, that of the film at rest and 0 V [m]. */
 DEA_API double dea_layout_radius(const dea_scene *scene, const dea_layout *layout, size_t index);
 /** Entry of a row at a radius. */

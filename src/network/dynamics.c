@@ -436,7 +436,7 @@ double dea_dynamics_velocity_charged(dea_dynamics *dynamics, double u, double vo
 dea_sample dea_sample_refused(double time, double voltage, dea_state state)
 {
     const double none = (double)NAN;
-    return (dea_sample){time, voltage, none, none, none, none, none, none, none, none, state};
+    return (dea_sample){time, voltage, none, none, none, none, none, none, none, none, none, state};
 }
 
 /* Current of the source: through R_s, or d(C U)/dt and the leakage. */
@@ -531,6 +531,7 @@ bool dea_dynamics_sample(dea_dynamics *dynamics, const dea_moment *moment, dea_s
         const dea_edge e = dea_dynamics_edge(dynamics, moment->u);
         sample->current = current(dynamics, &e, moment);
         sample->charge = e.capacitance * moment->voltage;
+        sample->capacitance = e.capacitance;
     }
     sample->focal_length = row.focal_length;
     sample->film_voltage = moment->voltage;

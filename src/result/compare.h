@@ -5,7 +5,7 @@
 #include "deaspice/result.h"
 #include "deaspice/scene.h"
 
-enum { DEA_COMPARED_COLUMNS = 8 };
+enum { DEA_COMPARED_COLUMNS = 10 };
 
 /* How the difference of two numbers counts. */
 typedef enum dea_measure {

@@ -228,7 +228,8 @@ static void lay(const dea_scene *scene, dea_layout *layout)
     dea_layout_add(layout, (dea_column){"strain", "radial strain of the disc edge", "1", offsetof(dea_sample, strain)});
     dea_layout_add(layout, (dea_column){"velocity_m_per_s", "velocity of the disc edge", "m/s", offsetof(dea_sample, velocity)});
     dea_layout_add(layout, (dea_column){"force_N", "electrostatic force over the full circumference", "N", offsetof(dea_sample, force)});
-    if (series || !isnan(scene->drive.leakage_resistance)) {
+    const bool port = series || !isnan(scene->drive.leakage_resistance);
+    if (port) {
         dea_layout_add(layout, (dea_column){"current_A", "current of the source", "A", offsetof(dea_sample, current)});
         dea_layout_add(layout, (dea_column){"charge_C", "charge of the film", "C", offsetof(dea_sample, charge)});
     }
@@ -237,6 +238,9 @@ static void lay(const dea_scene *scene, dea_layout *layout)
     }
     if (series) {
         dea_layout_add(layout, (dea_column){"film_voltage_V", "voltage across the film", "V", offsetof(dea_sample, film_voltage)});
+    }
+    if (port) {
+        dea_layout_add(layout, (dea_column){"capacitance_F", "capacitance of the deformed film", "F", offsetof(dea_sample, capacitance)});
     }
     layout->rows = (size_t)rows_of(&scene->transient);
     layout->row_size = sizeof(dea_sample);
@@ -282,6 +286,7 @@ static const dea_study_column compared[] = {
     {offsetof(dea_sample, charge), DEA_OVER_PEAK, "charge"},
     {offsetof(dea_sample, focal_length), DEA_OVER_PEAK, "focal_length"},
     {offsetof(dea_sample, film_voltage), DEA_OVER_PEAK, "film_voltage"},
+    {offsetof(dea_sample, capacitance), DEA_OVER_PEAK, "capacitance"},
 };
 
 static const dea_column figures[] = {

@@ -68,10 +68,45 @@ static void logarithmic_samples_see_a_film_relax_over_decades(void **state)
     dea_scene_free(&scene);
 }
 
+/* Dot in true geometry (physics: section 5): C = eps pi r_a^2 lambda_pre^2 lambda_a^4/H. */
+static void capacitance_over_time_is_that_of_the_stretched_disc(void **state)
+{
+    (void)state;
+    const double rest = 2.8 * 8.8541878128e-12 * acos(-1.0) * 0.015 * 0.015 * 1.44 / 1e-4;
+    dea_scene scene;
+    dea_error error;
+    assert_int_equal(parse("leakage_resistance: 10 GOhm, waveform: {step: {on: 1 ms, voltage: 4500 V}}", "coverage",
+                           "until: 10 ms, every: 0.5 ms", &scene, &error),
+                     DEA_OK);
+    for (size_t e = 1; e < 3; e++) {
+        dea_sample *samples = solve(&scene, engines[e]);
+        for (size_t i = 0; i < dea_layout_of(&scene).rows; i++) {
+            assert_true(fabs(samples[i].capacitance / (rest * pow(1.0 + samples[i].strain, 4.0)) - 1.0) < 1e-12);
+            assert_true(fabs(samples[i].charge - samples[i].capacitance * samples[i].voltage) <= 1e-14 * rest * 4500.0);
+        }
+        assert_true(samples[20].strain > 0.03);
+        free(samples);
+    }
+    dea_scene_free(&scene);
+}
+
+/* C U^2/2 from the charges of physics, section 8: one film, and five in a stack. */
+static void field_energy_is_half_of_charge_times_voltage(void **state)
+{
+    (void)state;
+    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, 4500.0);
+    assert_true(fabs(solve_direct(&scene, "field").energy / (0.5 * 4500.0 * 1.354360e-6) - 1.0) < 5e-7);
+    scene.drive.voltage = -4500.0;
+    scene.actuator.layers = 5.0;
+    assert_true(fabs(solve_direct(&scene, "field").energy / (0.5 * 4500.0 * 6.771800e-6) - 1.0) < 5e-7);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(logarithmic_samples_see_a_film_relax_over_decades),
+        cmocka_unit_test(capacitance_over_time_is_that_of_the_stretched_disc),
+        cmocka_unit_test(field_energy_is_half_of_charge_times_voltage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

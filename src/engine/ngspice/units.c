@@ -155,6 +155,7 @@ void dea_units_return_sample(const dea_units *units, dea_sample *sample)
     sample->charge /= charge(units);
     sample->focal_length /= units->length;
     sample->film_voltage /= units->voltage;
+    sample->capacitance /= charge(units) / units->voltage;
 }
 
 void dea_units_return_response(const dea_units *units, dea_response *row)

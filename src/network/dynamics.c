@@ -163,7 +163,8 @@ static dea_status place(const dea_scene *scene, dea_dynamics *d, dea_error *erro
     dea_film_prepare(&film, &d->point.film);
     dea_point_place(&film, &d->point);
     if (!dea_point_valid(&d->point) || !(dea_electrode_mass(scene) >= 0.0)) {
-        return dea_fail(error, DEA_ERROR_USAGE, "the scene has a number out of its range");
+        char fault[DEA_FAULT_LENGTH];
+        return dea_fail(error, DEA_ERROR_USAGE, "%s", dea_film_fault(&d->point.film, fault));
     }
     return DEA_OK;
 }

@@ -101,11 +101,24 @@ static void field_energy_is_half_of_charge_times_voltage(void **state)
     assert_true(fabs(solve_direct(&scene, "field").energy / (0.5 * 4500.0 * 6.771800e-6) - 1.0) < 5e-7);
 }
 
+/* I1 - 3 = 2 lambda^2 + lambda^-4 - 3 of the film at rest reaches Jm between two points of the sweep. */
+static void a_film_stretched_past_its_chains_names_them(void **state)
+{
+    (void)state;
+    char fault[DEA_FAULT_LENGTH];
+    const double constants[DEA_LAW_CONSTANTS] = {45e3, 10.0};
+    const dea_film film = dea_law_film(dea_law_find("gent"), constants, 3.0);
+    assert_false(film.valid);
+    assert_string_equal(dea_film_fault(&film, fault),
+                        "Jm = 10 is too small for the pre-stretch 3, where I1 - 3 is 15.0123: the chains are straight at 10");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(logarithmic_samples_see_a_film_relax_over_decades),
         cmocka_unit_test(capacitance_over_time_is_that_of_the_stretched_disc),
+        cmocka_unit_test(a_film_stretched_past_its_chains_names_them),
         cmocka_unit_test(field_energy_is_half_of_charge_times_voltage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

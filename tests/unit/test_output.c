@@ -670,6 +670,26 @@ static void netcdf_keeps_the_scalars_that_the_study_used(void **state)
     dlclose(library);
 }
 
+/* A skin of the same kind of law as the film, and lighter. */
+static void netcdf_tells_the_skin_from_the_film(void **state)
+{
+    (void)state;
+    const size_t counts[] = {2};
+    dea_scene scene = transient_make(1, counts, 1, 3);
+    dea_error error = {0};
+    scene.material.density = 1080.0;
+    scene.electrode = (dea_electrode){
+        .law = scene.material.law, .constants = {5000.0, 1.0, 2.0}, .entry_count = 1, .thickness = 25e-6, .density = 1010.0, .sheet_resistance = NAN};
+    assert_int_equal(points_write(&scene, in_folder("a.nc"), 1, &error), DEA_OK);
+    void *library = netcdf_library();
+    assert_true(netcdf_attribute(library, in_folder("a.nc"), "density_kg_per_m3") == 1080.0);
+    assert_true(netcdf_attribute(library, in_folder("a.nc"), "electrode_density_kg_per_m3") == 1010.0);
+    assert_true(netcdf_attribute(library, in_folder("a.nc"), "electrode_thickness_m") == 25e-6);
+    assert_true(netcdf_attribute(library, in_folder("a.nc"), "yeoh_C1_Pa") == 178426.0);
+    assert_true(netcdf_attribute(library, in_folder("a.nc"), "electrode_yeoh_C1_Pa") == 5000.0);
+    dlclose(library);
+}
+
 /* Draws a study of the scene; strains are those of numbers that a picture can show. */
 static dea_status study_draw(const dea_scene *scene, const char *path, dea_error *error)
 {
@@ -1216,6 +1236,7 @@ int main(void)
         IN_FOLDER(netcdf_of_a_transient_holds_time_samples_and_summaries),
         IN_FOLDER(netcdf_of_a_frequency_response_lies_along_frequency),
         IN_FOLDER(netcdf_keeps_the_scalars_that_the_study_used),
+        IN_FOLDER(netcdf_tells_the_skin_from_the_film),
         IN_FOLDER(picture_shows_hostile_titles_as_text),
         IN_FOLDER(long_curves_make_small_pictures),
         IN_FOLDER(two_long_axes_make_a_map),

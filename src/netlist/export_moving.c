@@ -265,15 +265,14 @@ static dea_status set_start(writer *w, dea_error *error)
     dea_dynamics *d = &w->dynamics;
     const double source = w->signal.segments[0].start;
     const bool follows = dea_dynamics_is_free(d) && d->series == 0.0;
-    bool there = true;
-    double voltage = 0.0;
+    double voltage;
     w->start = (dea_mobility_state){0};
-    if (w->export->scene->transient.from_bias) {
-        voltage = source / (1.0 + d->series * d->conductance);
-        there = dea_dynamics_equilibrium(d, voltage, &w->start.u);
+    bool there = dea_dynamics_begin(d, d->biased, source, &w->start.u, &voltage);
+    if (there) {
         const dea_edge e = dea_dynamics_edge(d, w->start.u);
         dea_edge_relax(d, &e, w->start.z);
-    } else if (follows) {
+    }
+    if (there && follows && !d->biased) {
         there = dea_dynamics_follow(d, source, w->start.z, &w->start.u);
     }
     if (!there) {
@@ -293,6 +292,7 @@ static dea_status write_transient(writer *w, dea_error *error)
         return status;
     }
     const dea_cards_numbers numbers = {w->start, w->dynamics.mass, 1.0};
+    dea_cards_declare(&w->cards);
     if (w->dynamics.series == 0.0) { /* for write_charge() */
         dea_part_text_root(&w->cards.text, "capacity");
         dea_part_text_use_aside(&w->cards.text, w->mobility.network.capacitance);
@@ -325,7 +325,7 @@ static writer writer_of(dea_export *export)
 dea_status dea_export_transient(dea_export *export, dea_error *error)
 {
     writer w = writer_of(export);
-    const dea_cards_form form = {export->dialect, export->analogy, false};
+    const dea_cards_form form = {.dialect = export->dialect, .analogy = export->analogy};
     dea_status status =
         dea_mobility_prepare(export->scene, export->scene->models[0], export->analogy, &w.dynamics, &w.mobility, error);
     if (status == DEA_OK) {
@@ -384,7 +384,7 @@ dea_status dea_export_ac(dea_export *export, dea_error *error)
         return dea_export_ac_rings(export, error);
     }
     writer w = writer_of(export);
-    const dea_cards_form form = {export->dialect, export->analogy, false};
+    const dea_cards_form form = {.dialect = export->dialect, .analogy = export->analogy};
     char meaning[256];
     dea_status status = dea_dynamics_open(export->scene, export->scene->models[0], &w.dynamics, error);
     dea_mobility_bias bias = {.voltage = export->scene->ac.bias / (1.0 + w.dynamics.series * w.dynamics.conductance)};

@@ -19,7 +19,7 @@ static dea_status finish(FILE *out, dea_status status, char **text, dea_error *e
 dea_status dea_rings_deck_network(const dea_scene *scene, const dea_membrane *membrane, double unit, char **text, dea_error *error)
 {
     const dea_dynamics *film = &membrane->film;
-    const dea_cards_form form = {dea_dialect_at(0), dea_analogy_at(0), true};
+    const dea_cards_form form = {.dialect = dea_dialect_at(0), .analogy = dea_analogy_at(0), .numbers = true};
     const dea_rings_port port = {unit * film->series, unit / film->conductance, dea_point_capacitance(&film->point) / unit};
     dea_rings_motion_cards cards;
     size_t length = 0;

@@ -132,6 +132,12 @@ dea_status dea_units_enter(const dea_units *units, const dea_scene *scene, dea_s
     enter_law(units, inside->electrode.law, inside->electrode.constants);
     inside->load.mass *= units->stress * units->thickness * units->time * units->time;
     inside->load.stiffness *= units->stress * units->thickness;
+    inside->load.damping *= units->stress * units->thickness * units->time;
+    inside->load.force *= units->stress * units->thickness * units->length;
+    inside->antagonist.frame_radius *= units->length;
+    inside->antagonist.film_thickness *= units->thickness;
+    inside->antagonist.voltage *= units->voltage;
+    enter_material(units, &inside->antagonist.material);
     enter_material(units, &inside->material);
     inside->drive.series_resistance *= resistance(units);
     inside->drive.leakage_resistance *= resistance(units);

@@ -155,16 +155,16 @@ void dea_export_drive_steps(dea_export_drive *w, const dea_pace *paces, size_t c
     }
 }
 
-void dea_export_drive_analysis(const dea_export_drive *w)
+void dea_export_drive_analysis(const dea_export_drive *w, const char *velocity)
 {
     const dea_transient *transient = &w->export->scene->transient;
     fputs(w->dialect->transient, w->out);
-    fputs(
-        "* results: displacement v(disp) [m], velocity v(edge) [m/s], film voltage v(film) [V], source current -i(vsource) [A]\n"
-        ".print tran v(disp) v(edge) v(film) i(vsource)\n",
-        w->out);
+    fprintf(w->out,
+            "* results: displacement v(disp) [m], velocity v(%s) [m/s], film voltage v(film) [V], source current -i(vsource) [A]\n"
+            ".print tran v(disp) v(%s) v(film) i(vsource)\n",
+            velocity, velocity);
     if (w->export->dialect->save) {
-        fprintf(w->out, "%s v(disp) v(edge) v(film) i(vsource)\n", w->export->dialect->save);
+        fprintf(w->out, "%s v(disp) v(%s) v(film) i(vsource)\n", w->export->dialect->save, velocity);
     }
     fputs("* .tran print interval, end, begin of the output, tmax [s]. tmax sets the accuracy: a tenth of it makes the error a "
           "hundredth\n.tran ",

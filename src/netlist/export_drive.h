@@ -23,7 +23,7 @@ void dea_export_drive_close(dea_export_drive *drive);
 void dea_export_drive_steps(dea_export_drive *drive, const dea_pace *paces, size_t count);
 /* The source of the voltage at a node. */
 void dea_export_drive_source(const dea_export_drive *drive, const char *node);
-/* What is read off, and the analysis; last lines of the file. */
-void dea_export_drive_analysis(const dea_export_drive *drive);
+/* What is read off, the velocity from that node, and the analysis; last lines of the file. */
+void dea_export_drive_analysis(const dea_export_drive *drive, const char *velocity);
 
 #endif

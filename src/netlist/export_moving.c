@@ -164,7 +164,7 @@ static dea_status write_transient(writer *w, dea_error *error)
     dea_cards_write_start(&w->cards, &numbers, w->drive.signal.segments[0].start);
     fputc('\n', w->out);
     write_tolerances(w);
-    dea_export_drive_analysis(&w->drive);
+    dea_export_drive_analysis(&w->drive, "edge");
     return status;
 }
 
@@ -175,6 +175,9 @@ static writer writer_of(dea_export *export)
 
 dea_status dea_export_transient(dea_export *export, dea_error *error)
 {
+    if (export->scene->models[0]->membrane) {
+        return dea_export_transient_rings(export, error);
+    }
     writer w = writer_of(export);
     const dea_cards_form form = {.dialect = export->dialect, .analogy = export->analogy};
     dea_status status =

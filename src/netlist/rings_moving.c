@@ -335,7 +335,7 @@ void dea_rings_moving_write(const dea_rings_moving *m, const char *volts, const 
         stand at;
         stand_at(m, q, &at);
         dea_rings_place place = {.nodes = at.nodes};
-        dea_rings_enter(&w.base, &place, q + 1);
+        dea_rings_enter(&w.base, &place, q + 1, "");
         write_ring(&w, q);
         if (extra) {
             extra(user, &w.base, q);
@@ -353,7 +353,7 @@ void dea_rings_moving_swell(const dea_rings_moving *m, dea_part_text *text)
             stand at;
             stand_at(m, q, &at);
             dea_rings_place place = {.nodes = at.nodes};
-            dea_rings_enter(&w, &place, q + 1);
+            dea_rings_enter(&w, &place, q + 1, "h"); /* not the nodes of the ring */
             dea_rings_source(&w, dea_rings_label_of("h", q + 1).text, m->swell);
             dea_rings_leave(&w);
             fprintf(w.out, "GH%zu 0 swell h%zu 0 {%s}\n", q + 1, q + 1, dea_rings_parameter(&w, m->weights[q]).text);

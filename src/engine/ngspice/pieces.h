@@ -8,7 +8,7 @@
 #include <complex.h>
 
 #include "drive/signal.h"
-#include "network/dynamics.h"
+#include "network/membrane.h"
 
 /* Its motion: the oscillating pair of roots of D, and the times of the rest. */
 typedef struct dea_pace {
@@ -41,6 +41,8 @@ typedef struct dea_pieces {
 } dea_pieces;
 
 dea_pace dea_pace_of(dea_dynamics *dynamics, double u, double voltage);
+/* The same of the slowest mode of a membrane at rest, which decays as fast as that; as to the rest of its film. */
+dea_pace dea_pace_of_rings(const dea_membrane *membrane, const dea_membrane_rest *rest, double decay);
 dea_matching dea_matching_of(dea_dynamics *dynamics, double u, double voltage, double step);
 
 /* Cuts the run; @p quiet: the film rests until the voltage changes first. A ring counts as dead @p life behind a corner of the

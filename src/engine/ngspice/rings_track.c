@@ -34,24 +34,16 @@ static const double soft = 1e-3;
 
 /* ---- opening */
 
+/* Steps behind a corner are those of the swing: its waves are the faster for being short. */
 static dea_pace pace_of(const dea_rings_track *t)
 {
-    const dea_dynamics *film = &t->flight.membrane.film;
-    const dea_membrane_rest *rest = &t->flight.motion.rest;
-    const double slowest = rest->slowest, tau = film->retardation;
-    dea_pace pace = {.omega = radian_steps * t->swing, .decay = dea_rings_decay(&t->flight.motion), .fastest = INFINITY};
-    if (t->swing > 0.0) {
-        pace.fastest = 4.0 / pace.omega; /* steps behind a corner are those of the swing */
-    } else if (slowest > 0.0) {
-        pace.fastest = fmin(1.0 / slowest, 1.0 / (tau * slowest * slowest)); /* a damper outweighs the mass */
-    } else if (tau > 0.0) {
-        pace.fastest = tau / (1.0 + film->total_share);
+    dea_pace pace = dea_pace_of_rings(&t->flight.membrane, &t->flight.motion.rest, dea_rings_decay(&t->flight.motion));
+    if (pace.omega > 0.0) {
+        const bool others = pace.fastest < 0.3 / pace.omega;
+        pace.omega *= radian_steps;
+        pace.fastest = others ? pace.fastest : 4.0 / pace.omega;
     }
-    for (size_t i = 0; i < film->branch_count; i++) {
-        pace.fastest = fmin(pace.fastest, film->branches[i].tau);
-    }
-    const double conductance = film->series > 0.0 ? 1.0 / film->series + film->conductance : 0.0;
-    return film->series > 0.0 ? (dea_pace){pace.omega, pace.decay, fmin(pace.fastest, rest->capacitance / conductance)} : pace;
+    return pace;
 }
 
 static double port_unit(const dea_rings_track *t)
@@ -69,7 +61,6 @@ static dea_status prepare(dea_rings_track *t, const dea_model *model, dea_rings_
         return status;
     }
     const dea_rings_motion *m = &t->flight.motion;
-    t->swing = m->heavy && dea_rings_decay(m) < m->rest.slowest ? m->rest.slowest : 0.0;
     t->quasi = *m;
     t->quasi.heavy = t->quasi.damped = false;
     t->quasi.z = m->nodes;

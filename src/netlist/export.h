@@ -31,6 +31,7 @@ dea_status dea_export_transient(dea_export *export, dea_error *error);
 dea_status dea_export_ac(dea_export *export, dea_error *error);
 /* The membrane's. */
 dea_status dea_export_ac_rings(dea_export *export, dea_error *error);
+dea_status dea_export_transient_rings(dea_export *export, dea_error *error);
 
 /* First lines of every netlist: the title of the scene as a comment, the tool, what voltages and currents mean. */
 void dea_export_head(const dea_export *export, const char *meaning);

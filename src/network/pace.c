@@ -89,6 +89,26 @@ dea_pace dea_pace_of(dea_dynamics *dynamics, double u, double voltage)
     return pace;
 }
 
+dea_pace dea_pace_of_rings(const dea_membrane *membrane, const dea_membrane_rest *rest, double decay)
+{
+    const dea_dynamics *d = &membrane->film;
+    const double slowest = rest->slowest, tau = d->retardation;
+    dea_pace pace = {.omega = decay < slowest ? slowest : 0.0, .decay = decay, .fastest = INFINITY};
+    if (pace.omega > 0.0) {
+        pace.fastest = 0.3 / pace.omega; /* the edge moves no faster */
+    } else if (slowest > 0.0) {
+        pace.fastest = fmin(1.0 / slowest, 1.0 / (tau * slowest * slowest)); /* a damper outweighs the mass */
+    } else if (tau > 0.0) {
+        pace.fastest = tau / (1.0 + d->total_share);
+    }
+    for (size_t i = 0; i < d->branch_count; i++) {
+        pace.fastest = fmin(pace.fastest, d->branches[i].tau);
+    }
+    const double charging = d->series > 0.0 ? rest->capacitance / (1.0 / d->series + d->conductance) : (double)INFINITY;
+    pace.fastest = fmin(pace.fastest, charging);
+    return pace;
+}
+
 dea_matching dea_matching_of(dea_dynamics *dynamics, double u, double voltage, double step)
 {
     const film f = film_at(dynamics, u, voltage);

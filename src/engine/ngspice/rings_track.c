@@ -9,7 +9,7 @@
 #include "support/gauss.h"
 
 /* Steps in a radian of the first mode at fineness 1: the trapezoidal rule turns the modes above it too. */
-static const double radian_steps = 8.0;
+static const double radian_steps = 5.5;
 
 /* Most time steps of one netlist, for what its plot takes of memory [numbers]. */
 static const double most_numbers = 2e7;
@@ -22,24 +22,16 @@ static const double soft = 1e-3;
 
 /* ---- opening */
 
+/* Steps behind a corner are those of the swing: its waves are the faster for being short. */
 static dea_pace pace_of(const dea_rings_track *t)
 {
-    const dea_dynamics *film = &t->flight.membrane.film;
-    const dea_membrane_rest *rest = &t->flight.motion.rest;
-    const double slowest = rest->slowest, tau = film->retardation;
-    dea_pace pace = {.omega = radian_steps * t->swing, .decay = dea_rings_decay(&t->flight.motion), .fastest = INFINITY};
-    if (t->swing > 0.0) {
-        pace.fastest = 4.0 / pace.omega; /* steps behind a corner are those of the swing */
-    } else if (slowest > 0.0) {
-        pace.fastest = fmin(1.0 / slowest, 1.0 / (tau * slowest * slowest)); /* a damper outweighs the mass */
-    } else if (tau > 0.0) {
-        pace.fastest = tau / (1.0 + film->total_share);
+    dea_pace pace = dea_pace_of_rings(&t->flight.membrane, &t->flight.motion.rest, dea_rings_decay(&t->flight.motion));
+    if (pace.omega > 0.0) {
+        const bool others = pace.fastest < 0.3 / pace.omega;
+        pace.omega *= radian_steps;
+        pace.fastest = others ? pace.fastest : 4.0 / pace.omega;
     }
-    for (size_t i = 0; i < film->branch_count; i++) {
-        pace.fastest = fmin(pace.fastest, film->branches[i].tau);
-    }
-    const double conductance = film->series > 0.0 ? 1.0 / film->series + film->conductance : 0.0;
-    return film->series > 0.0 ? (dea_pace){pace.omega, pace.decay, fmin(pace.fastest, rest->capacitance / conductance)} : pace;
+    return pace;
 }
 
 static double port_unit(const dea_rings_track *t)
@@ -57,11 +49,11 @@ static dea_status prepare(dea_rings_track *t, const dea_model *model, dea_rings_
         return status;
     }
     const dea_rings_motion *m = &t->flight.motion;
-    t->swing = m->heavy && dea_rings_decay(m) < m->rest.slowest ? m->rest.slowest : 0.0;
     t->quasi = *m;
-    t->quasi.heavy = t->quasi.damped = t->quasi.charged = false;
+    t->quasi.heavy = t->quasi.damped = false;
     t->quasi.z = m->nodes;
-    t->quasi.q = t->quasi.count = m->nodes + dea_membrane_relaxed(m->membrane);
+    t->quasi.q = m->nodes + dea_membrane_relaxed(m->membrane);
+    t->quasi.count = m->count - (m->z - m->nodes);
     t->unit = port_unit(t);
     t->states = m->count;
     t->columns = m->count + 1;
@@ -144,11 +136,11 @@ static bool quasi_rates(runner *r, point *p)
     dea_rings_track *t = r->track;
     const dea_rings_motion *m = &t->flight.motion;
     double *y = t->room + 6 * t->states, *rates = t->room + 7 * t->states;
-    const size_t branches = t->quasi.count - t->quasi.z;
+    const size_t others = t->quasi.count - t->quasi.z; /* stresses of branches, charge */
     t->quasi.segment = m->segment;
     memcpy(y, p->y, m->nodes * sizeof *y);
-    memcpy(y + t->quasi.z, p->y + m->z, branches * sizeof *y);
-    memcpy(rates + t->quasi.z, p->rates + m->z, branches * sizeof *y);
+    memcpy(y + t->quasi.z, p->y + m->z, others * sizeof *y);
+    memcpy(rates + t->quasi.z, p->rates + m->z, others * sizeof *y);
     if (!dea_rings_massless(&t->quasi, since(r, p->time), y, rates)) {
         return false;
     }
@@ -453,6 +445,7 @@ static void set_step(runner *r, const dea_piece *piece, double step)
     r->slow = m->heavy && !piece->rings && m->rest.slowest * step > unresolved;
     r->drags = !m->heavy && m->damped && m->membrane->film.retardation < unresolved * step * (1.0 + m->membrane->film.total_share);
     r->charging = m->charged && charging < unresolved * step;
+    r->track->quasi.charged = m->charged && !r->charging; /* else it has the voltage of the source */
 }
 
 /* The voltage jumps: a film without mass, damper and series resistance goes with it. */
@@ -484,11 +477,15 @@ static dea_status run_piece(runner *r, const dea_piece *piece, double fineness, 
     return status;
 }
 
-/* At rest, or at the equilibrium under the first voltage; the first sample. */
-static bool start(runner *r)
+/* At rest, or at the equilibrium under the first voltage, where @p first is stored; the first sample. */
+static bool start(runner *r, dea_membrane_energy *first)
 {
     dea_rings_flight *f = &r->track->flight;
-    if (!dea_rings_start(&f->motion, r->track->scene->transient.from_bias, r->state) || !jump(r, 0)) {
+    if (!dea_rings_start(&f->motion, r->track->scene->transient.from_bias, r->state)) {
+        return false;
+    }
+    *first = dea_rings_energy(f, 0.0, r->state);
+    if (!jump(r, 0)) {
         return false;
     }
     memcpy(r->a.y, r->state, r->track->states * sizeof *r->a.y);
@@ -514,8 +511,8 @@ dea_status dea_rings_track_run(dea_rings_track *t, double fineness, dea_rings_tr
     f->steps = 0;
     f->why.message[0] = '\0';
     f->motion.segment = t->signal->segments;
-    trace->end = start(&r) ? DEA_STATE_OK : DEA_STATE_PULL_IN;
-    const dea_membrane_energy first = dea_rings_energy(f, 0.0, r.state);
+    dea_membrane_energy first = {0};
+    trace->end = start(&r, &first) ? DEA_STATE_OK : DEA_STATE_PULL_IN;
     dea_status status = DEA_OK;
     for (size_t i = 0; i < t->pieces.count && status == DEA_OK && trace->end == DEA_STATE_OK; i++) {
         status = run_piece(&r, &t->pieces.pieces[i], fineness, &trace->end, error);

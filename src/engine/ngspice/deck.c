@@ -169,33 +169,22 @@ static bool is_linear(const dea_mobility *mobility)
     return !isnan(mobility->stiffness);
 }
 
-static void add_vector(dea_mobility_vectors *vectors, const char *format, size_t index)
-{
-    char *name = vectors->names[vectors->count++];
-    const char *number = strchr(format, '%');
-    snprintf(name, DEA_MOBILITY_NAME, "%.*s", (int)(number ? number - format : (ptrdiff_t)strlen(format)), format);
-    if (number) {
-        const size_t used = strlen(name);
-        snprintf(name + used, DEA_MOBILITY_NAME - used, "%zu%s", index, number + 1);
-    }
-}
-
 dea_mobility_vectors dea_mobility_vectors_of(const dea_mobility *mobility)
 {
     const bool linear = is_linear(mobility);
-    dea_mobility_vectors vectors = {.count = 0};
-    add_vector(&vectors, "time", 0);
-    add_vector(&vectors, linear ? "lspring#branch" : "disp", 0);
+    dea_mobility_vectors v = {.count = 0};
+    snprintf(v.names[v.count++], DEA_MOBILITY_NAME, "time");
+    snprintf(v.names[v.count++], DEA_MOBILITY_NAME, linear ? "lspring#branch" : "disp");
     if (!mobility->displaced) {
-        add_vector(&vectors, "edge", 0);
+        snprintf(v.names[v.count++], DEA_MOBILITY_NAME, "edge");
     }
     for (size_t i = 1; i <= dea_dynamics_states(mobility->dynamics); i++) {
-        add_vector(&vectors, linear ? "lbranch%#branch" : "z%", i);
+        snprintf(v.names[v.count++], DEA_MOBILITY_NAME, linear ? "lbranch%zu#branch" : "z%zu", i);
     }
     if (mobility->dynamics->series > 0.0) {
-        add_vector(&vectors, "charge", 0);
+        snprintf(v.names[v.count++], DEA_MOBILITY_NAME, "charge");
     }
-    return vectors;
+    return v;
 }
 
 dea_mobility_state dea_mobility_read(const dea_mobility *mobility, const double *const *columns, size_t index)

@@ -33,7 +33,7 @@ dea_status dea_deck_run(dea_ngspice *library, dea_mobility_piece *piece, dea_dec
                         const char *const *names, size_t count, dea_ngspice_table *table, dea_error *error);
 
 /* Most vectors of a run: time, displacement, velocity, charge, branches. */
-enum { DEA_MOBILITY_VECTORS = 4 + DEA_RELAXED_MAX, DEA_MOBILITY_NAME = 24 };
+enum { DEA_MOBILITY_VECTORS = 4 + DEA_RELAXED_MAX, DEA_MOBILITY_NAME = 40 };
 
 typedef struct dea_mobility_vectors {
     char names[DEA_MOBILITY_VECTORS][DEA_MOBILITY_NAME];

@@ -36,7 +36,8 @@ static void fill(curve *c, const double *forces)
 static dea_status sweep(curve *c, dea_error *error)
 {
     char *netlist;
-    dea_ngspice_result result = {0};
+    const char *const current = "bhold#branch";
+    dea_ngspice_table table = {0};
     const dea_forces f = dea_balance_forces(&c->balance, 0.0, 0.0);
     const dea_force_study *held = &c->scene->force;
     const dea_netlist_study study = {.scene = c->scene,
@@ -48,16 +49,16 @@ static dea_status sweep(curve *c, dea_error *error)
                                      .force_scale = fabs(f.elastic_slope) * c->scene->actuator.frame_radius};
     dea_status status = dea_netlist_write(&study, &netlist, error);
     if (status == DEA_OK) {
-        status = dea_ngspice_run(c->library, netlist, "bhold#branch", &result, error);
+        status = dea_ngspice_run_all(c->library, netlist, &current, 1, &table, error);
         free(netlist);
     }
-    if (status == DEA_OK && result.count != held->points) {
-        status = dea_fail(error, DEA_ERROR_ENGINE, "ngspice gave %zu of %zu displacements", result.count, held->points);
+    if (status == DEA_OK && table.count != held->points) {
+        status = dea_fail(error, DEA_ERROR_ENGINE, "ngspice gave %zu of %zu displacements", table.count, held->points);
     }
     if (status == DEA_OK) {
-        fill(c, result.values);
+        fill(c, table.columns[0]);
     }
-    free(result.values);
+    dea_ngspice_table_free(&table);
     return status;
 }
 

@@ -101,15 +101,16 @@ static bool accept(line_job *job, size_t i, double u)
 static dea_status climb(line_job *job, size_t i, const dea_scene *here, size_t steps, bool *accepted, dea_error *error)
 {
     char *netlist = NULL;
-    dea_ngspice_result result = {0};
+    const char *const edge = "edge";
+    dea_ngspice_table table = {0};
     dea_netlist_study study = {.scene = here, .model = job->state->model, .ramp = steps};
     set_scales(job, i, &study);
     dea_status status = dea_netlist_write(&study, &netlist, error);
     if (status == DEA_OK) {
-        status = dea_ngspice_run(job->state->library, netlist, "edge", &result, error);
+        status = dea_ngspice_run_all(job->state->library, netlist, &edge, 1, &table, error);
     }
-    *accepted = status == DEA_OK && result.count == steps + 1 && accept(job, i, result.values[steps]);
-    free(result.values);
+    *accepted = status == DEA_OK && table.count == steps + 1 && accept(job, i, table.columns[0][steps]);
+    dea_ngspice_table_free(&table);
     free(netlist);
     return status;
 }
@@ -145,8 +146,9 @@ static dea_status solve_alone(void *user, size_t i, dea_error *error)
 }
 
 /* One circuit for count points from number @p from of the line on. */
-static dea_status sweep_circuit(line_job *job, size_t from, size_t count, dea_ngspice_result *result, dea_error *error)
+static dea_status sweep_circuit(line_job *job, size_t from, size_t count, dea_ngspice_table *table, dea_error *error)
 {
+    const char *const edge = "edge";
     char *netlist;
     dea_netlist_study study = {.scene = job->scene,
                                .model = job->state->model,
@@ -156,7 +158,7 @@ static dea_status sweep_circuit(line_job *job, size_t from, size_t count, dea_ng
     set_scales(job, from, &study);
     dea_status status = dea_netlist_write(&study, &netlist, error);
     if (status == DEA_OK) {
-        status = dea_ngspice_run(job->state->library, netlist, "edge", result, error);
+        status = dea_ngspice_run_all(job->state->library, netlist, &edge, 1, table, error);
         free(netlist);
     }
     return status;
@@ -174,13 +176,13 @@ static bool can_start(void *user, size_t i)
 static dea_status sweep_stretch(void *user, size_t from, size_t count, size_t *good, dea_error *error)
 {
     line_job *job = user;
-    dea_ngspice_result result = {0};
+    dea_ngspice_table table = {0};
     *good = 0;
-    const dea_status status = sweep_circuit(job, from, count, &result, error);
-    while (*good < result.count && accept(job, from + *good, result.values[*good])) {
+    const dea_status status = sweep_circuit(job, from, count, &table, error);
+    while (*good < table.count && accept(job, from + *good, table.columns[0][*good])) {
         ++*good;
     }
-    free(result.values);
+    dea_ngspice_table_free(&table);
     return status;
 }
 

@@ -262,6 +262,12 @@ static void write_linear_numbers(const dea_cards *c, double stiffness, double vi
     }
 }
 
+void dea_cards_write_inertia(const dea_cures *cures, const char *tag, const char *node, const char *mass, FILE *out)
+{
+    fprintf(out, "EMASS%s ma%s 0 %s 0 %.15g\nCMASS%s ma%s mb%s {%s}\nVMASS%s mb%s 0 0\nFMASS%s %s 0 VMASS%s {f_mass}\n", tag, tag, node,
+            cures->inertia, tag, tag, tag, mass, tag, tag, tag, node, tag);
+}
+
 static void write_mass(dea_cards *c)
 {
     const dea_cures *cures = c->form.cures;
@@ -270,7 +276,7 @@ static void write_mass(dea_cards *c)
     }
     fputs("* mass that moves with the edge [kg]\n", c->out);
     if (cures) {
-        fprintf(c->out, "EMASS m1 0 edge 0 %.15g\nCMASS m1 m2 {inertia}\nVMASS m2 0 0\nFMASS edge 0 VMASS {f_mass}\n", cures->inertia);
+        dea_cards_write_inertia(cures, "", "edge", "inertia", c->out);
         return;
     }
     place(c);
@@ -361,11 +367,10 @@ static void write_spring_force(dea_cards *c)
     end_force(c);
 }
 
-void dea_cards_write_integral(const dea_cures *cures, const char *node, const char *from, const char *to, FILE *out)
+void dea_cards_write_integral(const dea_cures *cures, const char *tag, const char *node, const char *from, const char *to, FILE *out)
 {
-    fprintf(out, "* displacement [um], the integral of the velocity, which leaks\n"
-                 "GDISP 0 %s %s %s %.15g\nCDISP %s 0 1\nGDRIFT %s 0 %s 0 %.15g\n",
-            node, from, to, cures->per_metre, node, node, node, cures->drift);
+    fprintf(out, "GDISP%s 0 %s %s %s %.15g\nCDISP%s %s 0 1\nGDRIFT%s %s 0 %s 0 %.15g\n",
+            tag, node, from, to, cures->per_metre, tag, node, tag, node, node, cures->drift);
 }
 
 /* In a part the edge is held where a parameter is out of its range, and a hyperelastic film is asked for no displacement past stops
@@ -377,7 +382,8 @@ static void write_displacement(const dea_cards *c)
               c->out);
         return;
     }
-    dea_cards_write_integral(c->form.cures, "u", "edge", "0", c->out);
+    fputs("* displacement [um], the integral of the velocity, which leaks\n", c->out);
+    dea_cards_write_integral(c->form.cures, "", "u", "edge", "0", c->out);
     fputs("GSAFE edge 0 u 0 {hold}\n", c->out);
     if (!is_linear(c)) {
         dea_part_text_source(&c->text, DEA_VOLTAGE, "CLIP", "w", "0", "min(max(v(u),[u_low]),[u_high])");

@@ -702,7 +702,7 @@ void dea_part_write_mechanics(const char *prefix, FILE *out)
             "+ params: stiffness=100 m=1\n"
             ".param k_um={1e-6*stiffness*m}\n",
             prefix, prefix);
-    dea_cards_write_integral(&dea_part_cures, "u", "a", "b", out);
+    dea_cards_write_integral(&dea_part_cures, "", "u", "a", "b", out);
     fprintf(out, "GSPRING a b u 0 {k_um}\n.ends %s_spring\n", prefix);
     fprintf(
         out,

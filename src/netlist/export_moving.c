@@ -197,7 +197,7 @@ static void write_analysis(writer *w)
     fputs("* .tran print interval, end, begin of the output, tmax [s]. tmax sets the accuracy: a tenth of it makes the error a "
           "hundredth\n.tran ",
           w->out);
-    dea_part_number(w->out, transient->every);
+    dea_part_number(w->out, transient->logarithmic ? transient->until / 1000.0 : transient->every);
     fputc(' ', w->out);
     dea_part_number(w->out, transient->until);
     fputs(" 0 ", w->out);

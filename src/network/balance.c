@@ -309,6 +309,7 @@ static dea_row row_of(const dea_balance *balance, double u)
         return dea_row_failed();
     }
     row.charge = row.capacitance * dea_tape_value(limits, VOLTAGE);
+    row.energy = 0.5 * row.charge * dea_tape_value(limits, VOLTAGE);
     row.area_strain = dea_area_strain(balance->kind, dea_tape_value(limits, COVERAGE), row.strain);
     row.focal_length = isnan(focal) ? focal
                                     : dea_lens_focal_length(focal, dea_tape_value(limits, REFRACTIVE_INDEX),

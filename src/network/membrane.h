@@ -47,9 +47,6 @@ dea_status dea_membrane_open(const dea_scene *scene, const dea_model *model, dea
 bool dea_load_stalls(const dea_scene *scene);
 extern const char dea_load_stalled[];
 
-/* Nodes that tell the film at rest, and its first mode, to round-off; around a small disc they lie evenly in ln R. */
-dea_rings_mesh dea_membrane_usual_mesh(const dea_scene *scene);
-
 /* Number of the z. */
 static inline size_t dea_membrane_relaxed(const dea_membrane *membrane)
 {

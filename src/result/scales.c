@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "network/membrane.h"
+#include "network/rings_mesh.h"
 
 static const double missed = 0.01;  /* share of what the largest voltage does at rest below which a peak counts as that */
 static const double promised = 10.0; /* accuracies, of what follows from displacement and charge */
@@ -85,6 +85,7 @@ static void set_least(dea_scales *scales, const dea_dynamics *d, const rest *fil
                                  .force = missed * film->force,
                                  .charge = missed * film->capacitance * largest,
                                  .film_voltage = missed * largest,
+                                 .capacitance = film->capacitance,
                                  .focal_length = missed * fmax(0.0, d->focal_length)};
 }
 
@@ -103,7 +104,7 @@ static dea_status look_at_film(const dea_scene *scene, const dea_model *model, d
     if (model->membrane) {
         dea_membrane membrane;
         dea_membrane_rest at;
-        const dea_status status = dea_membrane_open(scene, model, dea_membrane_usual_mesh(scene), &membrane, NULL);
+        const dea_status status = dea_membrane_open(scene, model, dea_rings_usual_mesh(scene), &membrane, NULL);
         *d = membrane.film;
         if (status == DEA_OK && dea_membrane_at_rest(&membrane, &at)) {
             const double longest = fmin(d->radius, d->point.frame_radius - d->radius);
@@ -152,6 +153,7 @@ dea_sample dea_scales_of(const dea_scales *scales, const dea_sample *samples, si
         peak.charge = fmax(peak.charge, fabs(samples[i].charge));
         peak.focal_length = fmax(peak.focal_length, fabs(samples[i].focal_length));
         peak.film_voltage = fmax(peak.film_voltage, fabs(samples[i].film_voltage));
+        peak.capacitance = fmax(peak.capacitance, fabs(samples[i].capacitance));
     }
     peak.velocity = fmax(peak.velocity, peak.displacement * scales->pace);
     peak.current =

@@ -741,7 +741,7 @@ static void a_force_and_a_film_on_the_edge_are_those_of_a_scene(void **state)
         assert_relative(1e-6 * child_value(&run, name, 0), solve_direct(&scene, parts[i].model).displacement, 1e-6);
         const double none = (double)NAN;
         scene.load.force = 0.05;
-        scene.antagonist = (dea_antagonist){true, DEA_LENS, none, none, none, none, none, 2500.0, false, {0}};
+        scene.antagonist = (dea_antagonist){true, DEA_LENS, none, none, none, none, none, 2500.0, false, dea_material_default()};
         snprintf(name, sizeof name, "v(xy%d.u)", i);
         assert_relative(1e-6 * child_value(&run, name, 0), solve_direct(&scene, parts[i].model).displacement, 1e-6);
     }

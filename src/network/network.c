@@ -455,6 +455,9 @@ static void lift_all(dea_quantities *quantities, dea_symbols *s, const char *who
     lift(quantities, s->pool, whose, "frame_radius", &s->frame_radius);
     lift(quantities, s->pool, whose, "film_thickness", &s->film_thickness);
     lift(quantities, s->pool, whose, "permittivity", &s->permittivity);
+    if (dea_expr_constant(s->pool, s->voltage) != 1.0) { /* 1 V where a text multiplies by that of the film */
+        lift(quantities, s->pool, whose, "voltage", &s->voltage);
+    }
     lift(quantities, s->pool, whose, "load_stiffness", &s->load);
     lift(quantities, s->pool, whose, "load_force", &s->force);
     lift_law(quantities, s->pool, s->law, whose, s->constants);

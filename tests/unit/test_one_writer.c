@@ -166,7 +166,7 @@ static void frequency_responses_are_one_text(void **state)
 /* A bare number is one of the scene under its name, or of the axis; all others are formulas. */
 static void assert_numbers_are_named(const char *text, const dea_scene *scene)
 {
-    static const char *const names[] = {"frame_radius", "film_thickness", "permittivity", "modulus", "load_stiffness", "load_force"};
+    static const char *const names[] = {"frame_radius", "film_thickness", "permittivity", "modulus", "voltage", "load_stiffness", "load_force"};
     for (const char *card = strstr(text, ".param "); card; card = strstr(card + 1, ".param ")) {
         const char *name = card + strlen(".param ");
         const size_t length = strcspn(name, "=");

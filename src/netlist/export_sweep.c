@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/line.h"
+#include "scene/line.h"
 #include "netlist/export.h"
 #include "netlist/netlist.h"
 #include "netlist/rings_line.h"

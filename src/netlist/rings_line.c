@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/line.h"
+#include "scene/line.h"
 #include "expression/formula.h"
 #include "expression/tape.h"
 #include "netlist/netlist.h"

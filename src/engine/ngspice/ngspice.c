@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "engine/engines.h"
-#include "engine/line.h"
+#include "scene/line.h"
 #include "engine/ngspice/library.h"
 #include "engine/ngspice/moving.h"
 #include "engine/ngspice/still.h"

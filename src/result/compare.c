@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "drive/signal.h"
-#include "engine/line.h"
+#include "scene/line.h"
 #include "network/dynamics.h"
 #include "result/scales.h"
 #include "result/state.h"

@@ -11,8 +11,10 @@
 #include "network/rings_mesh.h"
 #include "support/lapack.h"
 
-/* Most that the error of two runs, and of what they extrapolate to, is taken for, over differences (transient.c). */
-static const double of_second = 2.0, of_fourth = 2.5;
+/* Most that the error of two runs, and of what they extrapolate to, is taken for, over differences (transient.c); the latter where
+ * the differences fall by about 4, as the order of the rule has it: 1/15 in theory. */
+static const double of_second = 2.0, of_fourth = 2.5, of_order = 0.5;
+static const double steepest = 5.0, flattest = 3.0;
 
 /* Share of the accuracy that is the mesh's, and a difference that falls by less than that stays too large. */
 static const double mesh_share = 0.3;
@@ -44,7 +46,8 @@ typedef struct search {
     double mesh_error;      /* of all columns [1] */
     double mesh_displacement;
     dea_rate_errors mesh_rates;
-    double error; /* of the steps, of all columns [1] */
+    double apart; /* of the last two runs, of all columns [1] */
+    double error; /* of the steps, likewise */
     double displacement;
     dea_rate_errors rates;
     double spent; /* [s], roughly */
@@ -178,15 +181,18 @@ static void extrapolate(search *s)
 static void judge(search *s, int runs)
 {
     const dea_rings_gap second = dea_rings_gap_of(s->scene, &s->scales, &s->coarse->trace, &s->fine->trace);
+    const double falls = s->apart / second.answer;
+    const double share = falls > flattest && falls < steepest ? of_order : of_fourth;
+    s->apart = second.answer;
     s->error = of_second * second.answer;
     s->displacement = of_second * second.displacement;
     s->rates = (dea_rate_errors){of_second * second.rates.velocity, of_second * second.rates.current};
     if (runs > 2) {
         const dea_rings_gap fourth = dea_rings_gap_of(s->scene, &s->scales, &s->before->trace, &s->answer->trace);
-        s->error = fmin(s->error, of_fourth * fourth.answer);
-        s->displacement = fmin(s->displacement, of_fourth * fourth.displacement);
-        s->rates.velocity = fmin(s->rates.velocity, of_fourth * fourth.rates.velocity);
-        s->rates.current = fmin(s->rates.current, of_fourth * fourth.rates.current);
+        s->error = fmin(s->error, share * fourth.answer);
+        s->displacement = fmin(s->displacement, share * fourth.displacement);
+        s->rates.velocity = fmin(s->rates.velocity, share * fourth.rates.velocity);
+        s->rates.current = fmin(s->rates.current, share * fourth.rates.current);
     }
     if (!comparable(&s->coarse->trace, &s->fine->trace)) {
         s->error = s->displacement = INFINITY;
@@ -199,6 +205,7 @@ static dea_status refine(search *s, bool *good, dea_error *error)
     double fineness = fmin(1.0, pow(accuracy / 1e-4, 0.25));
     *good = false;
     s->error = INFINITY;
+    s->apart = 0.0;
     dea_status status = choose_mesh(s, fineness, error);
     for (int runs = 2; status == DEA_OK && runs <= MOST_LEVELS && s->mesh_error <= accuracy; runs++) {
         swap(&s->coarse, &s->fine);

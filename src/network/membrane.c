@@ -475,7 +475,7 @@ static double largest_up_to(const dea_membrane *m, bool disc, const double *valu
         low = counts ? fmin(low, values[r]) : low;
         high = counts ? fmax(high, values[r]) : high;
     }
-    return high + (high - low) < limit ? high : dea_rings_largest(&m->rings, disc, values);
+    return high + (high - low) < limit ? high : dea_rings_largest(&m->rings, disc, values, NULL);
 }
 
 /* A row; its field is exact where lambda_1 lambda_2 passes a limit. */

@@ -27,6 +27,11 @@ dea_status dea_rings_flight_open(const dea_sundials *sun, const dea_scene *scene
     if (!dea_rings_motion_open(&f->membrane, signal, &f->motion)) {
         return dea_fail(error, DEA_ERROR_ENGINE, "the film is not stable at rest");
     }
+    const dea_layout layout = dea_layout_of(scene);
+    status = dea_along_open(&f->membrane, scene, &layout, &f->along, error);
+    if (status != DEA_OK) {
+        return status;
+    }
     f->peaks = dea_peak_is_known(scene, &f->membrane.film, signal);
     const sunindextype count = (sunindextype)f->motion.count;
     f->y = sun->N_VNew_Serial(count, sun->context);
@@ -44,6 +49,7 @@ void dea_rings_flight_close(dea_rings_flight *f)
 {
     N_Vector vectors[] = {f->y, f->yp, f->between, f->slope, f->tolerances};
     dea_rings_implicit_close(f);
+    dea_along_close(&f->along);
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         if (vectors[i]) {
             f->sun->N_VDestroy(vectors[i]);
@@ -73,6 +79,16 @@ static const double *velocity_of(const dea_rings_flight *f, const double *y, con
     return f->motion.heavy ? y + f->motion.nodes : rates;
 }
 
+/* The film along its radius behind the sample that was just filled, at the state that was looked at. */
+static void tell_along(dea_rings_flight *f, const double *y, const double *v)
+{
+    const size_t row = f->trace->count;
+    dea_membrane_viscous(&f->membrane, &f->state.look, v, y + f->motion.z, f->state.x);
+    const dea_along_state at = {&f->state.look, f->state.voltage, (const double(*)[2])f->state.x, y, v};
+    dea_along_tell(&f->along, &f->membrane, &at, f->trace->entries + row * f->along.count * DEA_SPREAD_COLUMNS);
+    f->trace->samples[row].weakest = dea_along_weakest(&f->along, &f->membrane, &at);
+}
+
 bool dea_rings_record(dea_rings_flight *f, double time, const double *y, const double *rates, bool charging)
 {
     dea_rings_trace *trace = f->trace;
@@ -90,6 +106,9 @@ bool dea_rings_record(dea_rings_flight *f, double time, const double *y, const d
     const double *v = start && film->clamped ? still : velocity_of(f, y, rates);
     if (!dea_membrane_sample(&f->membrane, &f->state.look, &moment, y, v, &trace->samples[trace->count])) {
         return false;
+    }
+    if (f->along.count > 0) {
+        tell_along(f, y, v);
     }
     trace->count++;
     return true;
@@ -227,7 +246,7 @@ void dea_rings_flight_run(dea_rings_flight *f, double tolerance, dea_rings_trace
 {
     dea_audit audit = {0};
     dea_rings_motion *m = &f->motion;
-    *trace = (dea_rings_trace){.samples = trace->samples};
+    *trace = (dea_rings_trace){.samples = trace->samples, .entries = trace->entries};
     f->trace = trace;
     f->audit = summary ? &audit : NULL;
     f->tolerance = tolerance;

@@ -25,9 +25,10 @@ typedef struct search {
     const dea_model *model;
     const dea_signal *signal;
     dea_scales scales;
-    dea_rings_trace traces[2]; /* owned samples: of the run before, and of the last */
+    dea_rings_trace traces[2]; /* owned samples and entries: of the run before, and of the last */
     dea_rings_flight *flight;  /* owned: of the last */
-    size_t rows;
+    dea_layout layout;
+    size_t rows, entries; /* of the layout; numbers that a row tells over the radius */
     double loosest, coverage;
 } search;
 
@@ -72,6 +73,33 @@ static double column_gap(const dea_rings_trace *a, const dea_rings_trace *b, siz
     return largest;
 }
 
+/* Number @p k of an entry as a change from rest. */
+static double entry_change(const search *s, const double *entry, size_t k)
+{
+    const double rest = k == DEA_ALONG_RADIAL || k == DEA_ALONG_HOOP ? s->scene->actuator.prestretch : 0.0;
+    return entry[k] - rest;
+}
+
+/* Largest difference along the radius, of the number that is worst over its largest change from rest against what it promises: what a
+ * sample does by its displacement, and by its velocity. */
+static double along_gap(const search *s, const dea_sample *scale)
+{
+    const dea_rings_trace *a = &s->traces[0], *b = &s->traces[1];
+    const size_t count = (a->count < b->count ? a->count : b->count) * s->entries;
+    double apart[DEA_SPREAD_COLUMNS] = {0.0}, worst = 0.0;
+    double largest[DEA_SPREAD_COLUMNS] = {scale->displacement, scale->velocity};
+    for (size_t i = 0; i < count; i++) {
+        const size_t k = i % DEA_SPREAD_COLUMNS, entry = i - k;
+        apart[k] = fmax(apart[k], fabs(a->entries[i] - b->entries[i]));
+        largest[k] = fmax(largest[k], fabs(entry_change(s, b->entries + entry, k)));
+    }
+    for (size_t k = 0; k < DEA_SPREAD_COLUMNS; k++) {
+        const double share = apart[k] > 0.0 ? apart[k] / largest[k] : 0.0;
+        worst = fmax(worst, share / (k == DEA_ALONG_DISPLACEMENT ? 1.0 : dea_scales_allowance(offsetof(dea_sample, velocity))));
+    }
+    return worst;
+}
+
 static gap difference(const search *s)
 {
     const dea_rings_trace *a = &s->traces[0], *b = &s->traces[1];
@@ -87,7 +115,7 @@ static gap difference(const search *s)
         const bool both = covers(s, a, i) && covers(s, b, i);
         g.displacement = fmax(g.displacement, both ? fabs(mean(s, a, i) - mean(s, b, i)) / scale.displacement : 0.0);
     }
-    g.answer = fmax(g.answer, g.displacement);
+    g.answer = fmax(fmax(g.answer, g.displacement), s->entries > 0 ? along_gap(s, &scale) : 0.0);
     g.rates.velocity = column_gap(a, b, offsetof(dea_sample, velocity));
     g.rates.current = column_gap(a, b, offsetof(dea_sample, current));
     return g;
@@ -197,6 +225,10 @@ static void fill(const search *s, const dea_rings_trace *trace, bool good, dea_s
 {
     size_t near = 0;
     for (size_t i = 0; i < s->rows; i++) {
+        double *entries = s->entries > 0 ? dea_layout_entry(&s->layout, samples, i, 0) : NULL;
+        for (size_t k = 0; k < s->entries; k++) {
+            entries[k] = good && i < trace->count ? trace->entries[i * s->entries + k] : (double)NAN;
+        }
         if (good && i < trace->count) {
             samples[i] = trace->samples[i];
             continue;
@@ -261,14 +293,18 @@ static dea_status fly(search *s, dea_sample *samples, dea_summary *summary, dea_
 static dea_status search_open(search *s, dea_error *error)
 {
     const dea_actuator *actuator = &s->scene->actuator;
-    s->rows = dea_layout_of(s->scene).rows;
+    s->layout = dea_layout_of(s->scene);
+    s->rows = s->layout.rows;
+    s->entries = s->layout.spread_points * s->layout.spread_count;
     s->coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
     s->scales = dea_scales_open(s->scene, s->model);
     s->flight = calloc(1, sizeof *s->flight);
+    bool room = s->flight && s->scales.status != DEA_ERROR_MEMORY;
     for (int i = 0; i < 2; i++) {
         s->traces[i].samples = malloc(s->rows * sizeof *s->traces[i].samples);
+        s->traces[i].entries = s->entries > 0 ? malloc(s->rows * s->entries * sizeof *s->traces[i].entries) : NULL;
+        room = room && s->traces[i].samples && (s->traces[i].entries || s->entries == 0);
     }
-    const bool room = s->flight && s->traces[0].samples && s->traces[1].samples && s->scales.status != DEA_ERROR_MEMORY;
     return room ? DEA_OK : dea_fail(error, DEA_ERROR_MEMORY, "out of memory for %zu samples", s->rows);
 }
 
@@ -278,8 +314,10 @@ static void search_close(search *s)
         dea_rings_flight_close(s->flight);
     }
     free(s->flight);
-    free(s->traces[0].samples);
-    free(s->traces[1].samples);
+    for (int i = 0; i < 2; i++) {
+        free(s->traces[i].samples);
+        free(s->traces[i].entries);
+    }
 }
 
 dea_status dea_rings_transient_solve(const dea_sundials *sun, const dea_scene *scene, const dea_model *model, dea_sample *samples,

@@ -40,9 +40,11 @@ typedef struct planner {
     double speeds[DEA_SURROGATE_POINTS]; /* of the velocity, likewise [m/s] */
 } planner;
 
+/* Along a sheet the rim charges at once, which the one resistance of the stand-in hides. */
 static bool pays(const planner *p, dea_part part)
 {
-    return (p->engine->omits & 1u << part) != 0 && (!p->many_nodes || part == DEA_PART_MASS);
+    const bool stands = !p->many_nodes || (part == DEA_PART_MASS && !(p->surrogate.scene->electrode.sheet_resistance > 0.0));
+    return (p->engine->omits & 1u << part) != 0 && stands;
 }
 
 static void omit(planner *p, dea_omission omission)

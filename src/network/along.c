@@ -65,7 +65,9 @@ static void tell_spot(const dea_membrane *m, const dea_rings_spot *spot, const d
     const double e[2] = {slope / l0, spot->radius > 0.0 ? u / (spot->radius * l0) : slope / l0};
     const double area = l0 * l0 * (1.0 + e[0]) * (1.0 + e[1]);
     const bool coated = electroded(m, spot->disc);
-    const double pressure = pressure_of(point, coated ? state->voltage : 0.0, area, &field);
+    const bool spread = state->look->spread && coated;
+    const double local = spread ? dea_rings_value(&m->rings, spot, state->look->voltages, 1) : state->voltage;
+    const double pressure = pressure_of(point, coated ? local : 0.0, area, &field);
     elastic_stress(m, coated, e, stress);
     for (int a = 0; a < 2; a++) {
         stress[a] += dea_rings_value(&m->rings, spot, &state->x[0][a], 2) - pressure;
@@ -95,11 +97,12 @@ void dea_along_tell(const dea_along *along, const dea_membrane *m, const dea_alo
 /* Looks for a largest value of the film, at first -INFINITY, in an element; its radius is that at rest. */
 static void search(const dea_membrane *m, bool disc, const double *values, double *largest, double *radius)
 {
+    const double grain = 1e-3 * m->rings.rim;
     double place;
     const double here = dea_rings_largest(&m->rings, disc, values, &place);
     if (here > *largest) {
         *largest = here;
-        *radius = place * m->film.point.film.prestretch;
+        *radius = grain * m->film.point.film.prestretch * round(place / grain);
     }
 }
 
@@ -122,7 +125,7 @@ dea_weakest dea_along_weakest(const dea_along *along, const dea_membrane *m, con
     dea_weakest weakest = {.field = -INFINITY};
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         const dea_ring_look *at = &state->look->rings[r];
-        const double voltage = m->rings.rings[r].electroded ? state->voltage : 0.0;
+        const double voltage = dea_membrane_voltage(m, state->look, r, state->voltage);
         const double pressure = pressure_of(&m->film.point, voltage, at->stretch[0] * at->stretch[1], &field[r]);
         for (int a = 0; a < 2; a++) {
             loss[a][r] = pressure - at->stretch[a] * (m->film.point.film.tension + at->nominal[a]) - state->x[r][a];

@@ -40,8 +40,8 @@ enum {
 
 /* Entries of one row, radius after radius. At r_a they are those of the disc. */
 void dea_along_tell(const dea_along *along, const dea_membrane *membrane, const dea_along_state *state, double *entries);
-/* Where the film is nearest to its limits, between rings too. A radius is NAN where what it is of is the same all over the film but
- * for ten times the accuracy. */
+/* Where the film is nearest to its limits, between rings too. A radius is told to a thousandth of the frame's, as an extreme is flat, and
+ * NAN where what it is of is the same all over the film but for ten times the accuracy. */
 dea_weakest dea_along_weakest(const dea_along *along, const dea_membrane *membrane, const dea_along_state *state);
 
 #endif

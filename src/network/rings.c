@@ -137,6 +137,29 @@ void dea_rings_slopes_of(size_t degree, dea_rings_slopes *slopes)
     }
 }
 
+static element element_of(const dea_rings *rings, bool disc)
+{
+    const double edge = rings->radii[rings->edge];
+    return disc ? (element){.to = edge} : (element){.from = edge, .to = rings->rim, .logarithmic = rings->mesh.logarithmic};
+}
+
+/* The centre has no ring: what is smooth there has the slope 0, which tells its value from the others. */
+void dea_rings_gradient(const dea_rings *rings, bool disc, double (*gradient)[DEA_RINGS_DEGREE + 1])
+{
+    const element e = element_of(rings, disc);
+    const size_t degree = disc ? rings->mesh.disc : rings->mesh.annulus, first = disc ? 1 : 0;
+    lobatto rule;
+    make_lobatto(degree, &rule);
+    for (size_t q = first; q <= degree; q++) {
+        double stretch;
+        radius_at(&e, rule.places[q], &stretch);
+        for (size_t n = first; n <= degree; n++) {
+            const double centre = disc ? rule.slopes[q][0] * rule.slopes[0][n] / rule.slopes[0][0] : 0.0;
+            gradient[q - first][n - first] = (rule.slopes[q][n] - centre) / stretch;
+        }
+    }
+}
+
 /* Values at places of an element, along R or ln R, and the weights of their polynomial in the barycentric form. */
 typedef struct samples {
     size_t count;
@@ -269,8 +292,7 @@ dea_rings_spot dea_rings_spot_at(const dea_rings *rings, double radius, bool out
 {
     const double edge = rings->radii[rings->edge];
     dea_rings_spot spot = {.radius = radius, .disc = radius < edge || (radius <= edge && !outside)};
-    const element e = spot.disc ? (element){.to = edge}
-                                : (element){.from = edge, .to = rings->rim, .logarithmic = rings->mesh.logarithmic};
+    const element e = element_of(rings, spot.disc);
     const double x = e.logarithmic ? 2.0 * log(radius / e.from) / log(e.to / e.from) - 1.0 : 2.0 * (radius - e.from) / (e.to - e.from) - 1.0;
     double stretch, weights[DEA_RINGS_DEGREE + 1];
     lobatto rule;

@@ -213,6 +213,7 @@ dea_state dea_rings_explicit(dea_rings_flight *f, double to)
     run.audited = f->audit ? ENERGIES : 0;
     run.integrated = f->scene->transient.average_count > 0 ? 1 : 0;
     dea_state state = begin(&run) ? DEA_STATE_OK : DEA_STATE_FAILED;
+    f->derived = false;
     for (double time = 0.0; state == DEA_STATE_OK && time < to;) {
         state = advance(&run, to, &time);
     }

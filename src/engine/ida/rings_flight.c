@@ -69,8 +69,11 @@ static dea_moment moment_at(dea_rings_flight *f, double time, const double *y, c
     const dea_rings_motion *m = &f->motion;
     dea_moment moment = dea_rings_moment(m, time, &f->state);
     (void)y;
-    moment.charging = m->charged && charging;
-    moment.charge_slope = moment.charging ? rates[m->q] : 0.0;
+    moment.charging = charging && m->charged;
+    moment.charge_slopes = f->derived ? rates + m->q : NULL;
+    for (size_t k = 0; k < m->charges && moment.charging; k++) {
+        moment.charge_slope += rates[m->q + k];
+    }
     return moment;
 }
 
@@ -98,10 +101,11 @@ bool dea_rings_record(dea_rings_flight *f, double time, const double *y, const d
         return false;
     }
     dea_moment moment = moment_at(f, time, y, rates, charging);
-    const bool start = film->biased && moment.time == 0.0;
-    if (start) { /* the branches have relaxed, and the charge rests */
-        moment.charging = film->series > 0.0 || film->dropped > 0.0;
+    const bool fed = f->membrane.sheet.places > 0 && !(film->series > 0.0), start = (film->biased || fed) && moment.time == 0.0;
+    if (start) { /* the branches have relaxed, and the charge rests; into a rim at the source it comes as the root of time */
+        moment.charging = film->series > 0.0 || film->dropped > 0.0 || fed;
         moment.charge_slope = 0.0;
+        moment.slope = fed ? 0.0 : moment.slope;
     }
     const double *v = start && film->clamped ? still : velocity_of(f, y, rates);
     if (!dea_membrane_sample(&f->membrane, &f->state.look, &moment, y, v, &trace->samples[trace->count])) {
@@ -168,25 +172,34 @@ static void set_tolerances(dea_rings_flight *f)
     const dea_rings_motion *m = &f->motion;
     double *absolute = NV_DATA_S(f->tolerances);
     for (size_t i = 0; i < m->count; i++) {
-        absolute[i] = f->tolerance * (i < m->nodes ? m->length : i < m->z ? m->speed : i < m->q ? m->stress : m->charge);
+        const double charge = i < m->q ? 0.0 : m->charge * m->shares[i - m->q];
+        absolute[i] = f->tolerance * (i < m->nodes ? m->length : i < m->z ? m->speed : i < m->q ? m->stress : charge);
     }
 }
 
-/* Algebraic displacements at the begin of a segment. */
+/* Energy of the charges at y [J]. */
+static double charge_energy(dea_rings_flight *f, const double *y)
+{
+    return dea_rings_glance(&f->motion, 0.0, y, &f->state) ? dea_sheet_energy(&f->membrane, &f->state.charges) : (double)NAN;
+}
+
+/* Algebraic displacements at the begin of a segment. What a jump of a rim at the source does to the charges within is work too. */
 static bool jump(dea_rings_flight *f)
 {
     const dea_rings_motion *m = &f->motion;
     double before[DEA_RINGS_NODES];
     double *y = NV_DATA_S(f->y);
-    if (!dea_rings_algebraic(m) || m->charged) {
+    if (!dea_rings_algebraic(m) || f->membrane.film.series > 0.0) {
         return true;
     }
     memcpy(before, y, m->nodes * sizeof *y);
-    if (!dea_membrane_follow(&f->membrane, m->segment->start, y + m->z, y)) {
+    const double stored = m->charged ? charge_energy(f, y) : 0.0;
+    if (!(m->charged ? dea_rings_settle(m, y) : dea_membrane_follow(&f->membrane, m->segment->start, y + m->z, y))) {
         return false;
     }
     if (f->audit && memcmp(before, y, m->nodes * sizeof *y) != 0) {
         dea_membrane_audit_jump(f->audit, &f->membrane, before, y, y + m->z);
+        f->audit->work += m->charged ? charge_energy(f, y) - stored : 0.0;
     }
     return true;
 }
@@ -239,7 +252,15 @@ static dea_membrane_energy energy_of(dea_rings_flight *f, double time)
     const dea_rings_motion *m = &f->motion;
     const double *y = NV_DATA_S(f->y);
     const bool seen = dea_rings_glance(m, time, y, &f->state);
-    return dea_membrane_energy_of(&f->membrane, seen ? f->state.voltage : (double)NAN, y, y + m->nodes, y + m->z);
+    dea_membrane_energy energy =
+        dea_membrane_energy_of(&f->membrane, seen ? f->state.voltage : (double)NAN, y, y + m->nodes, y + m->z);
+    if (seen && f->membrane.sheet.places > 0) {
+        const size_t rim = m->charges; /* the place at the source, if there is one */
+        const bool fed = rim < f->membrane.sheet.places;
+        energy.fed = fed ? 0.5 * f->state.charges.capacitances[rim] * f->state.source * f->state.source : 0.0;
+        energy.electric = energy.fed + dea_sheet_energy(&f->membrane, &f->state.charges);
+    }
+    return energy;
 }
 
 void dea_rings_flight_run(dea_rings_flight *f, double tolerance, dea_rings_trace *trace, dea_summary *summary)

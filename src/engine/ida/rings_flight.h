@@ -44,6 +44,7 @@ typedef struct dea_rings_flight {
     double tolerance;
     dea_rings_trace *trace;
     dea_audit *audit; /* NULL: not wanted */
+    bool derived;     /* rates that come with a state are those of the solver */
     long steps;
 } dea_rings_flight;
 

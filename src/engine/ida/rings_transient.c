@@ -30,6 +30,7 @@ typedef struct search {
     dea_layout layout;
     size_t rows, entries; /* of the layout; numbers that a row tells over the radius */
     double loosest, coverage;
+    double worst; /* error that the last run is left with, of the column that is worst against what it promises [1] */
 } search;
 
 /* What two runs differ by. */
@@ -80,19 +81,21 @@ static double entry_change(const search *s, const double *entry, size_t k)
     return entry[k] - rest;
 }
 
-/* Largest difference along the radius, of the number that is worst over its largest change from rest against what it promises: what a
- * sample does by its displacement, and by its velocity. */
+/* Largest difference along the radius, of the number that is worst over its largest change from rest, no less than that of a sample,
+ * both stretches over that of the larger one, against what it promises: what a sample does by its displacement, and by its velocity. */
 static double along_gap(const search *s, const dea_sample *scale)
 {
     const dea_rings_trace *a = &s->traces[0], *b = &s->traces[1];
     const size_t count = (a->count < b->count ? a->count : b->count) * s->entries;
     double apart[DEA_SPREAD_COLUMNS] = {0.0}, worst = 0.0;
-    double largest[DEA_SPREAD_COLUMNS] = {scale->displacement, scale->velocity};
+    const double strain = s->scene->actuator.prestretch * scale->strain;
+    double largest[DEA_SPREAD_COLUMNS] = {scale->displacement, scale->velocity, strain, strain};
     for (size_t i = 0; i < count; i++) {
         const size_t k = i % DEA_SPREAD_COLUMNS, entry = i - k;
         apart[k] = fmax(apart[k], fabs(a->entries[i] - b->entries[i]));
         largest[k] = fmax(largest[k], fabs(entry_change(s, b->entries + entry, k)));
     }
+    largest[DEA_ALONG_RADIAL] = largest[DEA_ALONG_HOOP] = fmax(largest[DEA_ALONG_RADIAL], largest[DEA_ALONG_HOOP]);
     for (size_t k = 0; k < DEA_SPREAD_COLUMNS; k++) {
         const double share = apart[k] > 0.0 ? apart[k] / largest[k] : 0.0;
         worst = fmax(worst, share / (k == DEA_ALONG_DISPLACEMENT ? 1.0 : dea_scales_allowance(offsetof(dea_sample, velocity))));
@@ -127,6 +130,18 @@ static gap difference(const search *s)
 /* Coverage below which the annulus, much longer than its inner radius, has its nodes even in ln R. */
 static const double small_disc = 0.1;
 
+static const double resolved = 0.25; /* of the root of a front's width, over the spacing of nodes that follow it */
+
+/* What charge that comes in from the rim of a resistive electrode is smooth over by the first sample: sqrt(4 D t) with D = 1/(c rho),
+ * over the radius. Nodes lie closer to the rim by their number squared. */
+static double front_of(const search *s)
+{
+    const dea_scene *scene = s->scene;
+    const double both = scene->electrode.sheet_resistance * (4.0 * scene->actuator.layers - 2.0) / (scene->actuator.layers * scene->actuator.layers);
+    const double spreading = both * s->flight->motion.rest.capacitance / DEA_PI; /* c rho r_a^2 [s] */
+    return s->flight->membrane.sheet.places > 0 ? resolved * sqrt(sqrt(4.0 * scene->transient.every / spreading)) : INFINITY;
+}
+
 /* Time over which all waves are smooth, over the time that one takes from centre to frame [1]. */
 static double smoothness(const search *s)
 {
@@ -134,7 +149,7 @@ static double smoothness(const search *s)
     const dea_dynamics *d = &m->film;
     const double crossing = 3.83 / s->flight->motion.rest.slowest; /* J1(3.83) = 0 at the frame */
     const double charging = d->series * s->flight->motion.rest.capacitance;
-    return m->heavy ? fmax(2.0 * DEA_PI * d->retardation, charging) / crossing : INFINITY;
+    return fmin(front_of(s), m->heavy ? fmax(2.0 * DEA_PI * d->retardation, charging) / crossing : INFINITY);
 }
 
 /* Share of the nodes that an element takes that is so long, of two. */
@@ -193,13 +208,18 @@ static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates
     const double accuracy = s->scene->accuracy;
     double tolerance = s->loosest = first_tolerance * accuracy, nodes = first_nodes(s), last = INFINITY;
     *good = false;
-    dea_status status = run_on(s, mesh_of(s, nodes), tolerance, NULL, error);
+    dea_rings_mesh mesh = mesh_of(s, nodes);
+    dea_status status = run_on(s, mesh, tolerance, NULL, error);
     for (int i = 0; i < MOST_RUNS && status == DEA_OK && s->traces[1].end != DEA_STATE_FAILED; i++) {
-        const dea_rings_mesh before = mesh_of(s, nodes);
+        const dea_rings_mesh before = mesh;
         nodes = finer(s, nodes);
+        mesh = mesh_of(s, nodes);
+        if (mesh.disc == before.disc || mesh.annulus == before.annulus) {
+            return status; /* what both have alike tells nothing about itself */
+        }
         tolerance = fmax(first_share * tolerance, least_tolerance);
         *summary = dea_summary_failed();
-        status = run_on(s, mesh_of(s, nodes), tolerance, summary, error);
+        status = run_on(s, mesh, tolerance, summary, error);
         if (status != DEA_OK) {
             return status;
         }
@@ -209,10 +229,11 @@ static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates
         const bool comparable = s->traces[0].count == s->traces[1].count;
         summary->error = fmax(apart.displacement * trust, fmax(10.0 * tolerance, 0.1 * accuracy));
         *rates = (dea_rate_errors){apart.rates.velocity * trust, apart.rates.current * trust};
-        *good = fmax(apart.answer * trust, 10.0 * tolerance) <= accuracy && comparable && !doubtful;
-        const bool hopeless = comparable && !(apart.answer < gains_nothing * last);
-        const bool finest = mesh_of(s, nodes).disc == before.disc && mesh_of(s, nodes).annulus == before.annulus;
-        if (*good || s->traces[1].end == DEA_STATE_FAILED || hopeless || finest) {
+        s->worst = fmax(apart.answer * trust, 10.0 * tolerance);
+        *good = s->worst <= accuracy && comparable && !doubtful;
+        const bool fronts = s->flight->membrane.sheet.places > 0; /* what lies between the nodes converges late, and then fast */
+        const bool hopeless = comparable && !(apart.answer < gains_nothing * last) && !fronts;
+        if (*good || s->traces[1].end == DEA_STATE_FAILED || hopeless) {
             return status;
         }
         last = comparable ? apart.answer : INFINITY;
@@ -267,8 +288,10 @@ static void explain(const search *s, const dea_summary *summary, dea_error *erro
     } else {
         dea_fail(error, DEA_ERROR_ENGINE,
                  "%zu nodes and %ld steps of SUNDIALS at a tolerance of %.1g leave an error of %.1g, the scene wants %g: waves of a "
-                 "film without much damping get steep; a rise of the voltage and a damper (material.retardation) smooth them",
-                 f->membrane.rings.node_count, f->steps, f->tolerance, summary->error, s->scene->accuracy);
+                 "film without much damping get steep; a rise of the voltage and a damper (material.retardation) smooth them%s",
+                 f->membrane.rings.node_count, f->steps, f->tolerance, fmax(s->worst, summary->error), s->scene->accuracy,
+                 f->membrane.sheet.places > 0 ? "; charge lies close to the rim of so resistive an electrode "
+                                                "(electrode.sheet_resistance), the closer the denser the samples" : "");
     }
 }
 
@@ -276,6 +299,12 @@ static dea_status fly(search *s, dea_sample *samples, dea_summary *summary, dea_
 {
     dea_rate_errors rates = {0.0, 0.0};
     bool good;
+    if (s->scene->electrode.sheet_resistance > 0.0 && !(s->scene->drive.series_resistance > 0.0) && dea_peak_jumps(s->scene, s->signal)) {
+        dea_fail(error, DEA_ERROR_ENGINE, "behind a jump of the voltage nothing bounds the current into the rim of the electrode "
+                                          "(electrode.sheet_resistance): give the waveform a rise, or the drive a series_resistance");
+        fill(s, &s->traces[1], false, samples);
+        return DEA_OK;
+    }
     const dea_status status = refine(s, summary, &rates, &good, error);
     if (status != DEA_OK) {
         return status;

@@ -44,13 +44,6 @@ dea_status dea_membrane_open(const dea_scene *scene, const dea_model *model, dea
     return status;
 }
 
-dea_rings_mesh dea_membrane_usual_mesh(const dea_scene *scene)
-{
-    const dea_actuator *actuator = &scene->actuator;
-    const double coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
-    return (dea_rings_mesh){8, 16, coverage < 0.1};
-}
-
 static double square_of(const dea_membrane *m, double voltage)
 {
     const double field = voltage / m->film.point.film_thickness;

@@ -144,7 +144,7 @@ static element element_of(const dea_rings *rings, bool disc)
 }
 
 /* The centre has no ring: what is smooth there has the slope 0, which tells its value from the others. */
-void dea_rings_gradient(const dea_rings *rings, bool disc, double (*gradient)[DEA_RINGS_DEGREE + 1])
+void dea_rings_derivative(const dea_rings *rings, bool disc, double (*gradient)[DEA_RINGS_DEGREE + 1])
 {
     const element e = element_of(rings, disc);
     const size_t degree = disc ? rings->mesh.disc : rings->mesh.annulus, first = disc ? 1 : 0;

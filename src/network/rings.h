@@ -57,7 +57,7 @@ void dea_rings_slopes_of(size_t degree, dea_rings_slopes *slopes);
 
 /* Derivatives d/dR [1/m] at the rings of the disc, or of the annulus, by values at its rings, from the centre out; of what is smooth
  * at the centre. */
-void dea_rings_gradient(const dea_rings *rings, bool disc, double (*gradient)[DEA_RINGS_DEGREE + 1]);
+void dea_rings_derivative(const dea_rings *rings, bool disc, double (*gradient)[DEA_RINGS_DEGREE + 1]);
 
 /* Largest value over the disc, or over the annulus, of what has these values at the rings (ring_count of them, those of the other
  * element are not looked at): of the polynomial through them, since it may lie between two places. *@p radius becomes where, in the

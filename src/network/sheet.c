@@ -23,10 +23,12 @@ static void set_places(const dea_scene *scene, dea_membrane *m)
     double volume = 0.0;
     s->places = dot ? m->rings.mesh.disc : m->rings.mesh.annulus + 1; /* the disc has no ring at its centre */
     s->first = dot ? 0 : m->rings.mesh.disc;
-    dea_rings_gradient(&m->rings, dot, s->gradient);
+    dea_rings_derivative(&m->rings, dot, s->gradient);
     for (size_t n = 0; n < s->places; n++) {
         volume += m->rings.rings[ring_of(s, n)].volume;
     }
+    const double nominal = m->film.point.film.square / m->film.point.film_thickness; /* C = eps volume (lambda_pre^2/H)^2 at rest */
+    s->front = sqrt(4.0 * scene->transient.every * DEA_PI / (both * m->film.point.film.permittivity * volume * nominal * nominal));
     for (size_t n = 0; n < s->places; n++) {
         const double own = m->rings.rings[ring_of(s, n)].volume;
         s->conductance[n] = own / m->film.point.film_thickness / both;
@@ -36,8 +38,8 @@ static void set_places(const dea_scene *scene, dea_membrane *m)
 
 void dea_sheet_open(const dea_scene *scene, dea_membrane *m)
 {
-    m->sheet = (dea_sheet){0};
-    if (scene->electrode.sheet_resistance > 0.0 && !scene->reduction.series) {
+    m->sheet = (dea_sheet){.front = (double)INFINITY};
+    if (scene->study == DEA_STUDY_TRANSIENT && scene->electrode.sheet_resistance > 0.0 && !scene->reduction.series) {
         m->film.series = scene->drive.series_resistance > 0.0 ? scene->drive.series_resistance : 0.0;
         set_places(scene, m);
     }

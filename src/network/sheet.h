@@ -27,6 +27,7 @@ typedef struct dea_sheet {
     double conductance[DEA_SHEET_PLACES];                /* 2 pi R dR/rho of each [S m^2] */
     double gradient[DEA_SHEET_PLACES][DEA_SHEET_PLACES]; /* D: dV/dR at a place by the potential at another [1/m] */
     double leak[DEA_SHEET_PLACES];                       /* g [S] */
+    double front; /* width of charge that comes in from the rim, by the first sample, over the radius: sqrt(4 D t), D = 1/(c rho) [1] */
 } dea_sheet;
 
 /* A film at a state. Each of `charges`; with places the rim behind them where the source is. */

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "network/membrane.h"
+#include "network/rings_mesh.h"
 
 static const double missed = 0.01;  /* share of what the largest voltage does at rest below which a peak counts as that */
 static const double promised = 10.0; /* accuracies, of what follows from displacement and charge */
@@ -100,7 +100,7 @@ static dea_status look_at_film(const dea_scene *scene, const dea_model *model, d
     if (model->membrane) {
         dea_membrane membrane;
         dea_membrane_rest at;
-        const dea_status status = dea_membrane_open(scene, model, dea_membrane_usual_mesh(scene), &membrane, NULL);
+        const dea_status status = dea_membrane_open(scene, model, dea_rings_usual_mesh(scene), &membrane, NULL);
         *d = membrane.film;
         if (status == DEA_OK && dea_membrane_at_rest(&membrane, &at)) {
             const double longest = fmin(d->radius, d->point.frame_radius - d->radius);

@@ -54,7 +54,7 @@ static bool set_sizes(dea_rings_motion *m)
     return true;
 }
 
-bool dea_rings_motion_open(const dea_membrane *membrane, const dea_signal *signal, dea_rings_motion *m)
+void dea_rings_motion_lay(const dea_membrane *membrane, const dea_signal *signal, dea_rings_motion *m)
 {
     *m = (dea_rings_motion){.membrane = membrane, .signal = signal, .segment = signal->segments};
     m->nodes = membrane->rings.node_count;
@@ -65,6 +65,11 @@ bool dea_rings_motion_open(const dea_membrane *membrane, const dea_signal *signa
     m->z = m->heavy ? 2 * m->nodes : m->nodes;
     m->q = m->z + dea_membrane_relaxed(membrane);
     m->count = m->q + m->charges;
+}
+
+bool dea_rings_motion_open(const dea_membrane *membrane, const dea_signal *signal, dea_rings_motion *m)
+{
+    dea_rings_motion_lay(membrane, signal, m);
     return set_sizes(m) && set_charges(m);
 }
 

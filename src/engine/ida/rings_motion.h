@@ -37,7 +37,9 @@ typedef struct dea_rings_state {
     double source;  /* [V] */
 } dea_rings_state;
 
-/* Lays out the unknowns; false where the film is not stable at rest. */
+/* Lays out the unknowns. */
+void dea_rings_motion_lay(const dea_membrane *membrane, const dea_signal *signal, dea_rings_motion *motion);
+/* And tells their sizes from the film at rest; false where that is not stable. */
 bool dea_rings_motion_open(const dea_membrane *membrane, const dea_signal *signal, dea_rings_motion *motion);
 static inline bool dea_rings_algebraic(const dea_rings_motion *motion)
 {
@@ -52,7 +54,7 @@ bool dea_rings_look(const dea_rings_motion *motion, double time, const double *y
 void dea_rings_relaxing(const dea_rings_motion *motion, const dea_rings_state *state, const double *y, double *rates);
 /* y' at y: what stands there is replaced. False where the film cannot be or nothing holds it. */
 bool dea_rings_rates(const dea_rings_motion *motion, double time, const double *y, double *rates);
-/* u' of a film without mass at y, whose z and q change as the rates say. */
+/* Those of the displacements of a film without mass alone, from the rates of z and q that stand there. */
 bool dea_rings_massless(const dea_rings_motion *motion, double time, const double *y, double *rates);
 
 /* The matrix of Newton's method with all unknowns but u eliminated. */

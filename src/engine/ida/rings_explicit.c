@@ -63,7 +63,8 @@ static int rates_of(sunrealtype time, N_Vector w, N_Vector wp, void *user)
  * runs could see. */
 static double longest_step(const dea_rings_flight *f)
 {
-    return f->scene->transient.every * pow(f->tolerance / f->loosest, 1.0 / 7.0);
+    const double sampled = f->scene->transient.every * pow(f->tolerance / f->loosest, 1.0 / 7.0), lines = f->motion.segment->step;
+    return lines > 0.0 ? fmin(sampled, lines) : sampled;
 }
 
 static bool begin(explicit_run *run)

@@ -259,6 +259,7 @@ static bool begin(dea_rings_flight *f, double from)
     return dea_rings_rates(&f->motion, from, NV_DATA_S(f->y), NV_DATA_S(f->yp)) &&
            sun->IDAReInit(f->ida, from, f->y, f->yp) == IDA_SUCCESS &&
            sun->IDASVtolerances(f->ida, f->tolerance, f->tolerances) == IDA_SUCCESS &&
+           sun->IDASetMaxStep(f->ida, segment->step) == IDA_SUCCESS && /* 0: as long as it likes */
            sun->IDASetStopTime(f->ida, segment->to - segment->from) == IDA_SUCCESS;
 }
 

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "drive/soften.h"
 #include "engine/rings_gap.h"
 #include "network/rings_mesh.h"
 #include "support/lapack.h"
@@ -193,6 +194,15 @@ static void search_close(search *s)
     }
 }
 
+/* Draws lines with small corners together, but where the current C U' of a film at its source has its peaks at them. */
+static dea_status soften(const dea_scene *scene, const dea_model *model, dea_signal *signal, dea_error *error)
+{
+    dea_dynamics film;
+    const dea_status status = dea_dynamics_settle(scene, model, &film, error);
+    const bool cornered = dea_peak_is_known(scene, &film, signal) && !(scene->drive.series_resistance > 0.0);
+    return status != DEA_OK || cornered ? status : dea_signal_soften(signal, scene->accuracy, 0.0, error);
+}
+
 dea_status dea_rings_transient_solve(const dea_sundials *sun, const dea_scene *scene, const dea_model *model, dea_sample *samples,
                                      dea_summary *summary, dea_error *error)
 {
@@ -203,6 +213,9 @@ dea_status dea_rings_transient_solve(const dea_sundials *sun, const dea_scene *s
         return status;
     }
     status = dea_signal_open(scene, &signal, error);
+    if (status == DEA_OK) {
+        status = soften(scene, model, &signal, error);
+    }
     search s = {.sun = sun, .scene = scene, .model = model, .signal = &signal};
     if (status == DEA_OK) {
         status = search_open(&s, error);

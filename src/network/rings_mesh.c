@@ -59,6 +59,14 @@ dea_rings_mesh dea_rings_usual_mesh(const dea_scene *scene)
     return (dea_rings_mesh){8, 16, coverage < small_disc};
 }
 
+bool dea_rings_stays_rough(const dea_scene *scene, const dea_model *model)
+{
+    dea_membrane m;
+    dea_membrane_rest rest;
+    return dea_membrane_open(scene, model, dea_rings_usual_mesh(scene), &m, NULL) == DEA_OK && dea_membrane_at_rest(&m, &rest) &&
+           !(smoothness(&m, &rest) * DEA_RINGS_DEGREE > smooth_enough);
+}
+
 double dea_rings_first_nodes(double accuracy)
 {
     return 2.5 - 1.45 * log10(accuracy);

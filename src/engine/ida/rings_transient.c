@@ -10,6 +10,8 @@
 enum { MOST_RUNS = 6 };
 
 static const double first_tolerance = 0.05; /* of the accuracy */
+/* Of cheap runs ahead: first tolerance and nodes, and the difference above which one that does not fall is no matter of the tolerance. */
+static const double rough_tolerance = 1e-4, rough_nodes = 7.0, rough_gap = 5e-3;
 static const double first_share = 0.2;      /* from one tolerance to the next */
 static const double gains_nothing = 0.5;    /* a difference that falls by less than that stays too large */
 static const double least_tolerance = 3e-12; /* what rounding of the stiffest nodes leaves */
@@ -49,14 +51,43 @@ static dea_status run_on(search *s, dea_rings_mesh mesh, double tolerance, dea_s
     return DEA_OK;
 }
 
+/* Three cheap runs of a film that no damper smooths tell whether its error falls with the mesh at all: *@p hopeless where the waves
+ * behind fast edges are too steep for any. */
+static dea_status look_ahead(search *s, dea_summary *summary, bool *hopeless, dea_error *error)
+{
+    double nodes = rough_nodes, tolerance = s->loosest = rough_tolerance, last = INFINITY;
+    *hopeless = false;
+    if (!(first_tolerance * s->scene->accuracy < 0.1 * rough_tolerance) || !dea_rings_stays_rough(s->scene, s->model)) {
+        return DEA_OK; /* the runs themselves are as cheap, or converge */
+    }
+    dea_status status = run_on(s, dea_rings_mesh_of(s->scene, nodes), tolerance, NULL, error);
+    for (int i = 0; i < 2 && status == DEA_OK; i++) {
+        nodes = dea_rings_more_nodes(&s->flight->membrane, &s->flight->motion.rest, nodes);
+        tolerance *= first_share;
+        status = run_on(s, dea_rings_mesh_of(s->scene, nodes), tolerance, NULL, error);
+        const dea_rings_gap apart = dea_rings_gap_of(s->scene, &s->scales, &s->traces[0], &s->traces[1]);
+        const bool comparable = s->traces[0].count == s->traces[1].count;
+        *hopeless = status == DEA_OK && comparable && apart.answer > rough_gap && !(apart.answer < gains_nothing * last);
+        s->worst = summary->error = apart.answer;
+        last = apart.answer;
+    }
+    *hopeless = *hopeless && s->traces[1].end == DEA_STATE_OK;
+    return status;
+}
+
 /* Leaves the better run of the last two in traces[1]; *good false where the accuracy was not reached. */
 static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates, bool *good, dea_error *error)
 {
     const double accuracy = s->scene->accuracy;
-    double tolerance = s->loosest = first_tolerance * accuracy, nodes = dea_rings_first_nodes(accuracy), last = INFINITY;
+    bool steep;
+    dea_status status = look_ahead(s, summary, &steep, error);
     *good = false;
+    if (status != DEA_OK || steep) {
+        return status;
+    }
+    double tolerance = s->loosest = first_tolerance * accuracy, nodes = dea_rings_first_nodes(accuracy), last = INFINITY;
     dea_rings_mesh mesh = dea_rings_mesh_of(s->scene, nodes);
-    dea_status status = run_on(s, mesh, tolerance, NULL, error);
+    status = run_on(s, mesh, tolerance, NULL, error);
     for (int i = 0; i < MOST_RUNS && status == DEA_OK && s->traces[1].end != DEA_STATE_FAILED; i++) {
         const dea_rings_mesh before = mesh;
         nodes = dea_rings_more_nodes(&s->flight->membrane, &s->flight->motion.rest, nodes);

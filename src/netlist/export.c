@@ -2,6 +2,8 @@
 
 #include "study/study.h"
 
+#include <math.h>
+
 void dea_export_head(const dea_export *export, const char *meaning)
 {
     const dea_scene *scene = export->scene;
@@ -23,6 +25,10 @@ static dea_status refuse_models(const dea_scene *scene, dea_error *error)
     if (scene->models[0]->membrane && dea_study_of(scene)->timed && scene->electrode.sheet_resistance > 0.0) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the potential along a sheet resistance of the model %s is no netlist: --model ring "
                                                       "has one resistance for it", scene->models[0]->name);
+    }
+    if (scene->models[0]->membrane && !dea_study_of(scene)->along && (fabs(scene->load.force) > 0.0 || scene->antagonist.there)) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s as a netlist carries no force and no second film at rest: --model ring does",
+                        scene->models[0]->name);
     }
     if (!scene->models[0]->network && !scene->models[0]->membrane) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is not a network: --model lumped is one",

@@ -49,6 +49,9 @@ typedef struct dea_membrane_look {
 dea_status dea_membrane_open(const dea_scene *scene, const dea_model *model, dea_rings_mesh mesh, dea_membrane *membrane,
                              dea_error *error);
 
+/* True where a load's damper alone would resist a membrane: its other nodes have no equation of motion then; and that in words. */
+bool dea_load_stalls(const dea_scene *scene);
+extern const char dea_load_stalled[];
 
 /* Number of the z. */
 static inline size_t dea_membrane_relaxed(const dea_membrane *membrane)

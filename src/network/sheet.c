@@ -28,7 +28,8 @@ static void set_places(const dea_scene *scene, dea_membrane *m)
         volume += m->rings.rings[ring_of(s, n)].volume;
     }
     const double nominal = m->film.point.film.square / m->film.point.film_thickness; /* C = eps volume (lambda_pre^2/H)^2 at rest */
-    s->front = sqrt(4.0 * scene->transient.every * DEA_PI / (both * m->film.point.film.permittivity * volume * nominal * nominal));
+    const double first = scene->transient.logarithmic ? scene->transient.first : scene->transient.every;
+    s->front = sqrt(4.0 * first * DEA_PI / (both * m->film.point.film.permittivity * volume * nominal * nominal));
     for (size_t n = 0; n < s->places; n++) {
         const double own = m->rings.rings[ring_of(s, n)].volume;
         s->conductance[n] = own / m->film.point.film_thickness / both;

@@ -32,7 +32,7 @@ typedef struct page {
     const dea_plot *plot;
     dea_layout layout;
     dea_scale time, radius;
-    size_t across, up; /* every so many samples and radii are drawn */
+    size_t first, across, up; /* sample that is drawn first, then every so many, and of radii */
 } page;
 
 static dea_status waves_open(dea_plot *plot, dea_error *error)
@@ -74,12 +74,19 @@ static dea_scale scale_of(const dea_span *span, size_t map)
     return *unit ? dea_scale_choose(fmax(fabs(span->low), fabs(span->high)), unit) : (dea_scale){.factor = 1.0};
 }
 
+/* Where a sample is drawn: gnuplot's images know no logarithmic axes. */
+static double place_of(const page *p, size_t row)
+{
+    const double time = p->time.factor * dea_layout_place(p->plot->scene, row);
+    return p->plot->scene->transient.logarithmic ? log10(time) : time;
+}
+
 static void write_grid(const page *p, FILE *script, size_t map, dea_scale scale)
 {
     fprintf(script, "$map%zu << END\n", map);
     for (size_t k = 0; k < p->layout.spread_points; k += p->up) {
-        for (size_t i = 0; i < p->layout.rows; i += p->across) {
-            dea_gnuplot_number(script, p->time.factor * dea_layout_place(p->plot->scene, i));
+        for (size_t i = p->first; i < p->layout.rows; i += p->across) {
+            dea_gnuplot_number(script, place_of(p, i));
             fputc(' ', script);
             dea_gnuplot_number(script, p->radius.factor * dea_layout_radius(p->plot->scene, &p->layout, k));
             fputc(' ', script);
@@ -116,7 +123,7 @@ static void write_map(const page *p, FILE *script, size_t map, dea_box box)
 {
     const dea_scene *scene = p->plot->scene;
     const bool bottom = map + 1 == MAPS;
-    const dea_span times = {0.0, p->time.factor * dea_layout_place(scene, p->layout.rows - 1), false};
+    const dea_span times = {place_of(p, p->first), place_of(p, p->layout.rows - 1), false};
     const dea_span radii = {0.0, p->radius.factor * scene->actuator.frame_radius, false};
     char label[DEA_LABEL_LENGTH];
     snprintf(label, sizeof label, "Radius [%s]", p->radius.unit);
@@ -128,6 +135,10 @@ static void write_map(const page *p, FILE *script, size_t map, dea_box box)
     fputc('\n', script);
     dea_span_write(script, "x", &times, box.width, bottom ? dea_name_plain : dea_name_none);
     fprintf(script, "set format x '%s'\n", bottom ? "%h" : "");
+    if (scene->transient.logarithmic) {
+        const dea_span decades = {pow(10.0, times.low), pow(10.0, times.high), true};
+        dea_span_tics(script, "x", &decades, box.width, bottom ? dea_name_plain : dea_name_none, true);
+    }
     dea_span_write(script, "y", &radii, box.height, dea_name_plain);
     const double edge = p->radius.factor * edge_of(scene);
     fputs("set arrow 1 from graph 0, first ", script);
@@ -160,6 +171,7 @@ static dea_status waves_draw(dea_plot *plot, dea_error *error)
     FILE *script = plot->picture.script;
     p.time = dea_scale_choose(dea_layout_place(plot->scene, p.layout.rows - 1), "s");
     p.radius = dea_scale_choose(plot->scene->actuator.frame_radius, "m");
+    p.first = plot->scene->transient.logarithmic ? 1 : 0; /* the one at 0 has no logarithm */
     p.across = (p.layout.rows - 1) / COLUMNS + 1;
     p.up = (p.layout.spread_points - 1) / ROWS + 1;
     dea_gnuplot_size(&plot->picture, height);

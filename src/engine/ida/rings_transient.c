@@ -12,6 +12,7 @@ enum { MOST_RUNS = 6 };
 static const double first_tolerance = 0.05; /* of the accuracy */
 /* Of cheap runs ahead: first tolerance and nodes, and the difference above which one that does not fall is no matter of the tolerance. */
 static const double rough_tolerance = 1e-4, rough_nodes = 7.0, rough_gap = 5e-3;
+static const double thin_front = 64.0; /* width of a front of charge over the spacing of the nodes next to the rim */
 static const double first_share = 0.2;      /* from one tolerance to the next */
 static const double gains_nothing = 0.5;    /* a difference that falls by less than that stays too large */
 static const double least_tolerance = 3e-12; /* what rounding of the stiffest nodes leaves */
@@ -109,7 +110,7 @@ static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates
         *rates = (dea_rate_errors){apart.rates.velocity * trust, apart.rates.current * trust};
         s->worst = fmax(apart.answer * trust, 10.0 * tolerance);
         *good = s->worst <= accuracy && comparable && !doubtful;
-        const bool fronts = s->flight->membrane.sheet.places > 0; /* what lies between the nodes converges late, and then fast */
+        const bool fronts = s->flight->membrane.sheet.front * nodes * nodes < thin_front; /* they converge late, and then fast */
         const bool hopeless = comparable && !(apart.answer < gains_nothing * last) && !fronts;
         if (*good || s->traces[1].end == DEA_STATE_FAILED || hopeless) {
             return status;

@@ -9,7 +9,7 @@
 #include "support/gauss.h"
 
 /* Steps in a radian of the first mode at fineness 1: the trapezoidal rule turns the modes above it too. */
-static const double radian_steps = 5.5;
+static const double radian_steps = 3.0;
 
 /* Most time steps of one netlist, for what its plot takes of memory [numbers]. */
 static const double most_numbers = 2e7;
@@ -29,7 +29,7 @@ static dea_pace pace_of(const dea_rings_track *t)
     if (pace.omega > 0.0) {
         const bool others = pace.fastest < 0.3 / pace.omega;
         pace.omega *= radian_steps;
-        pace.fastest = others ? pace.fastest : 4.0 / pace.omega;
+        pace.fastest = others ? pace.fastest : 1.5 / pace.omega;
     }
     return pace;
 }
@@ -192,11 +192,7 @@ static bool look_between(runner *r, double time)
     for (size_t k = 0; k < t->states; k++) {
         blend(r, k, h, x, &p->y[k], &p->rates[k]);
     }
-    const dea_rings_motion *m = &t->flight.motion;
-    if (m->heavy && !r->slow) {
-        return true;
-    }
-    return is_resolved(r) || quasi_rates(r, p);
+    return is_resolved(r) ? r->track->flight.motion.heavy || dea_rings_massless(&t->flight.motion, since(r, time), p->y, p->rates) : quasi_rates(r, p);
 }
 
 /* Samples up to the second point. */

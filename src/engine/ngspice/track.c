@@ -91,8 +91,8 @@ static void set_rates(const runner *r, node *n, const slopes *slope)
     }
 }
 
-/* Velocity of a film without mass, or of one whose ring has died away: what is left of that would count too much over a long
- * step. */
+/* Velocity of a film without mass, or, at a point without neighbours, of one whose ring has died away: what is left of that would
+ * count too much over a long step. */
 static void set_velocity(const runner *r, const dea_edge *e, node *n)
 {
     dea_dynamics *d = r->route->slow;
@@ -149,7 +149,7 @@ static void follow_source(const runner *r, const dea_edge *e, node *n)
 /* True where the equation of motion itself gives the velocity's slope. */
 static bool is_heavy(const runner *r)
 {
-    return r->route->dynamics->mass > 0.0 && !r->slow && !r->fast.u;
+    return r->route->dynamics->mass > 0.0 && !r->fast.u;
 }
 
 /* A state at a time inside the segment, with the slopes of what is too fast for the steps, NULL: all is resolved. The velocity of
@@ -515,14 +515,15 @@ static dea_mobility_state scaled(dea_mobility_state state, double speed)
 }
 
 /* Which rates the steps do not resolve: a branch; a film that charges, but for what follow_source() sees; the velocity of a
- * damper that bridges springs, r/K, or that a damper holds against the mass, m/r. */
+ * damper that bridges springs, r/K, or that a damper holds against the mass, m/r, or of a film whose dead ring the steps pass over:
+ * one that stiffens as it moves may be kicked into another, which its balance without mass would not show. */
 static void find_fast(runner *r)
 {
     dea_dynamics *d = r->route->dynamics;
     const dea_edge e = dea_dynamics_edge(d, r->last.moment.u);
     const double resistance = dea_edge_resistance(d, &e), limit = r->step / alternating;
     const double held = dea_dynamics_stiffness(d, r->last.moment.u, r->last.moment.voltage, false);
-    const double heavy = d->mass > 0.0 ? (r->rings || r->slow ? (double)INFINITY : d->mass / resistance) : resistance / held;
+    const double heavy = r->slow ? 0.0 : d->mass > 0.0 ? (r->rings ? (double)INFINITY : d->mass / resistance) : resistance / held;
     r->fast =
         (fast_rates){.u = !dea_dynamics_is_free(d) && heavy<limit, .charge = d->series> 0.0 && d->series * e.capacitance < limit && !r->rings};
     r->fast.any = r->fast.u || r->fast.charge;

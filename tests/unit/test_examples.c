@@ -381,6 +381,33 @@ static void antagonists_share_the_way_of_each(void **state)
     assert_true(both->second_field > 5e7);
 }
 
+/* Runs a moving or a local example by the program, with both pictures; calls @p row with the cells of each. */
+static size_t run_rows(const char *name, void (*row)(char *const *cells, size_t count))
+{
+    char words[2 * PATH_LENGTH], path[PATH_LENGTH], line[LINE_LENGTH];
+    size_t rows = 0;
+    snprintf(path, sizeof path, "%s/rows.csv", folder);
+    for (int i = 0; i < 2; i++) {
+        const char *picture = i == 0 ? "picture.svg" : "picture.png";
+        snprintf(words, sizeof words, "run examples/%s.yaml --quiet -o %s --plot %s/%s", name, path, folder, picture);
+        run_program(words);
+        check_picture(picture);
+    }
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    assert_non_null(fgets(line, sizeof line, file));
+    for (; fgets(line, sizeof line, file); rows++) {
+        char *cells[32];
+        size_t count = 0;
+        for (char *cell = strtok(line, ",\n"); cell && count < 32; cell = strtok(NULL, ",\n")) {
+            cells[count++] = cell;
+        }
+        row(cells, count);
+    }
+    assert_int_equal(fclose(file), 0);
+    return rows;
+}
+
 /* displacement: at 0 the electrostatic force at rest, M lambda_pre^3 R_a 2 pi H of the exact film too; it falls as the film is let go,
  * to 0 where the free film rests. */
 static void take_force(char *const *cells, size_t count)
@@ -443,33 +470,6 @@ static void sample_data_gives_back_the_constants_it_was_made_from(void **state)
     dea_scene_free(&scene);
     snprintf(path, sizeof path, "%s/film.yaml", folder);
     assert_int_equal(unlink(path), 0);
-}
-
-/* Runs a moving or a local example by the program, with both pictures; calls @p row with the cells of each. */
-static size_t run_rows(const char *name, void (*row)(char *const *cells, size_t count))
-{
-    char words[2 * PATH_LENGTH], path[PATH_LENGTH], line[LINE_LENGTH];
-    size_t rows = 0;
-    snprintf(path, sizeof path, "%s/rows.csv", folder);
-    for (int i = 0; i < 2; i++) {
-        const char *picture = i == 0 ? "picture.svg" : "picture.png";
-        snprintf(words, sizeof words, "run examples/%s.yaml --quiet -o %s --plot %s/%s", name, path, folder, picture);
-        run_program(words);
-        check_picture(picture);
-    }
-    FILE *file = fopen(path, "r");
-    assert_non_null(file);
-    assert_non_null(fgets(line, sizeof line, file));
-    for (; fgets(line, sizeof line, file); rows++) {
-        char *cells[32];
-        size_t count = 0;
-        for (char *cell = strtok(line, ",\n"); cell && count < 32; cell = strtok(NULL, ",\n")) {
-            cells[count++] = cell;
-        }
-        row(cells, count);
-    }
-    assert_int_equal(fclose(file), 0);
-    return rows;
 }
 
 /* bias_V, coverage, mode, frequency_Hz, damping_ratio, undamped_frequency_Hz, ...: frequencies of physics, section 7. */

@@ -269,7 +269,7 @@ static dea_status set_start(writer *w, dea_error *error)
     double voltage = 0.0;
     w->start = (dea_mobility_state){0};
     if (w->export->scene->transient.from_bias) {
-        voltage = source / (1.0 + d->series * d->conductance);
+        voltage = dea_dynamics_rest(d, source);
         there = dea_dynamics_equilibrium(d, voltage, &w->start.u);
         const dea_edge e = dea_dynamics_edge(d, w->start.u);
         dea_edge_relax(d, &e, w->start.z);

@@ -382,7 +382,18 @@ static void write_resistors(const dea_cards *c)
     if (c->dynamics->conductance > 0.0) {
         fputs("* leakage resistance of the film [Ohm]\nRLEAK film 0 {r_leak}\n", c->out);
     }
-    if (c->dynamics->series > 0.0) {
+    if (isfinite(c->dynamics->limit)) {
+        fputs("* series resistance of source and electrodes [Ohm] behind a source of no more than i_limit [A]\n", c->out);
+        begin_source(c, DEA_CURRENT, "SERIES", "source", "film");
+        fputs("min(", c->out);
+        write_parameter(c, "i_limit");
+        fputs(",max(-", c->out);
+        write_parameter(c, "i_limit");
+        fputs(",(v(source)-v(film))/", c->out);
+        write_parameter(c, "r_series");
+        fputs("))", c->out);
+        end_source(c);
+    } else if (c->dynamics->series > 0.0) {
         fputs("* series resistance of source and electrodes [Ohm]\nRSERIES source film {r_series}\n", c->out);
     }
 }
@@ -394,6 +405,9 @@ static void write_resistor_numbers(const dea_cards *c, double unit)
     }
     if (c->dynamics->series > 0.0) {
         dea_part_value(c->out, "r_series", unit * c->dynamics->series);
+    }
+    if (isfinite(c->dynamics->limit)) {
+        dea_part_value(c->out, "i_limit", c->dynamics->limit / unit);
     }
 }
 

@@ -676,7 +676,13 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
               .constants = constants_in_use(&defaults->material),
               .linear = model->linear != NULL,
               .branches = branches > PART_BRANCHES ? branches : PART_BRANCHES};
-    p.elements = (dea_dynamics){.model = model, .linear = p.linear, .softens = true, .branch_count = p.branches, .mass = 1.0, .retardation = 1.0};
+    p.elements = (dea_dynamics){.model = model,
+                                .linear = p.linear,
+                                .softens = true,
+                                .branch_count = p.branches,
+                                .mass = 1.0,
+                                .retardation = 1.0,
+                                .limit = (double)INFINITY};
     p.film = (dea_mobility){.dynamics = &p.elements, .stiffness = p.linear ? 1.0 : (double)NAN};
     if (status == DEA_OK) {
         status = write_part(&p, defaults, model, name, error);

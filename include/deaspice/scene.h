@@ -180,7 +180,10 @@ typedef struct dea_window {
 /** A transient from t = 0 on. */
 typedef struct dea_transient {
     double until;   /**< end [s], > 0 */
-    double every;   /**< interval of the samples [s], 0 < every <= until, default until/1000 */
+    double every;   /**< interval of the samples, of logarithmic ones the longest [s], 0 < every <= until, default until/1000 */
+    bool logarithmic; /**< samples at 0, at `first`, and from there evenly in the logarithm of time; default false */
+    double first;     /**< of logarithmic samples, the first behind 0 [s], 0 < first < until, default until/1e6 */
+    size_t points_per_decade; /**< of logarithmic samples, 1 ... 10000, default 50; 0: not given */
     double grid;    /**< power of ten that makes a whole number of `every`: sample i lies at (every grid) i/grid [1/s]; 0: none */
     bool from_bias; /**< starts in the relaxed equilibrium under the first voltage (true), or at rest (default) */
     dea_window averages[DEA_WINDOWS];

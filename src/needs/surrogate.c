@@ -28,7 +28,7 @@ static bool add_probe(dea_surrogate *s, size_t index, double age)
 /* The last sample at or before a time. */
 static size_t sample_at(const dea_scene *scene, size_t rows, double time)
 {
-    size_t index = (size_t)fmin(time / scene->transient.every, (double)(rows - 1));
+    size_t index = (size_t)fmin(dea_layout_index(scene, time), (double)(rows - 1));
     while (index > 0 && dea_layout_place(scene, index) > time) {
         index--;
     }

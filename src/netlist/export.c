@@ -12,6 +12,21 @@ void dea_export_head(const dea_export *export, const char *meaning)
             scene->models[0]->name, scene->models[0]->equation, export->dialect->title, meaning);
 }
 
+void dea_export_band(const dea_export *export, const char *u, const char *v)
+{
+    const dea_scene *scene = export->scene;
+    const size_t last = dea_layout_of(scene).rows - 1;
+    const dea_mobility_band band = {.from = scene->ac.from,
+                                    .to = dea_layout_place(scene, last),
+                                    .points_per_decade = last > 0 ? scene->ac.points_per_decade : 0,
+                                    .count = 1};
+    fprintf(export->out,
+            "* results: displacement v(%s) [m] and velocity v(%s) [m/s] per volt, input admittance -v(current) [S]\n"
+            "HCURRENT current 0 VSOURCE 1\n.print ac vm(%s) vp(%s) vm(%s) vp(%s) vm(current) vp(current)\n%s",
+            u, v, u, u, v, v, export->dialect->ac);
+    dea_cards_write_band(&band, export->out);
+}
+
 static dea_status refuse_models(const dea_scene *scene, dea_error *error)
 {
     if (scene->model_count > 1) {

@@ -97,7 +97,6 @@ static void write_curves(const dea_export_drive *w, const char *node)
 {
     const dea_curve_cards cards = {.out = w->out,
                                    .dialect = w->dialect,
-                                   .number = dea_part_number,
                                    .signal = &w->signal,
                                    .count = w->signal.count,
                                    .node = node};
@@ -169,7 +168,7 @@ void dea_export_drive_analysis(const dea_export_drive *w, const char *velocity)
     fputs("* .tran print interval, end, begin of the output, tmax [s]. tmax sets the accuracy: a tenth of it makes the error a "
           "hundredth\n.tran ",
           w->out);
-    dea_part_number(w->out, transient->every);
+    dea_part_number(w->out, transient->logarithmic ? transient->until / 1000.0 : transient->every);
     fputc(' ', w->out);
     dea_part_number(w->out, transient->until);
     fputs(" 0 ", w->out);

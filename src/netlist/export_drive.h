@@ -2,7 +2,8 @@
 #ifndef DEA_EXPORT_DRIVE_H
 #define DEA_EXPORT_DRIVE_H
 
-#include "engine/ngspice/pieces.h"
+#include "drive/signal.h"
+#include "network/pace.h"
 #include "netlist/export.h"
 
 typedef struct dea_export_drive {

@@ -16,19 +16,12 @@ typedef struct writer {
     dea_mobility_state start;
 } writer;
 
-static void end_source(const writer *w)
-{
-    dea_dialect_source_end(w->dialect, w->out);
-}
-
 /* The displacement of a linear film in the mobility analogy: n times the force of its spring. */
 static void write_displacement(const writer *w)
 {
     if (!isnan(w->mobility.stiffness) && !w->analogy->loop) {
         fputs("* displacement of the edge [m]\n", w->out);
-        dea_dialect_source_begin(w->dialect, w->out, DEA_VOLTAGE, "DISP", "disp", "0");
-        fputs(w->cards.node, w->out);
-        end_source(w);
+        dea_part_text_source(&w->cards.text, DEA_VOLTAGE, "DISP", "disp", "0", w->cards.node);
     }
 }
 
@@ -54,12 +47,7 @@ static void write_charge(const writer *w)
     fputs("* film: charge C(u) U on its capacitance at rest [F], whose current i = d(C U)/dt the film takes\n", out);
     dea_part_value(out, "c_rest", w->mobility.rest);
     dea_part_value(out, "q_start", charge);
-    dea_dialect_source_begin(w->dialect, out, DEA_VOLTAGE, "CHARGE", "drive", "0");
-    fputs("v(film)*(", out);
-    dea_part_text_write(&w->cards.text, w->mobility.network.capacitance);
-    fputs(")/", out);
-    dea_dialect_parameter(w->dialect, out, "c_rest");
-    end_source(w);
+    dea_part_text_source(&w->cards.text, DEA_VOLTAGE, "CHARGE", "drive", "0", "v(film)*([])/[c_rest]", w->mobility.network.capacitance);
     fputs("VFILM drive charge 0\nCCHARGE charge 0 {c_rest} ic={q_start}\nFFILM film 0 VFILM 1\n", out);
 }
 
@@ -198,32 +186,6 @@ dea_status dea_export_transient(dea_export *export, dea_error *error)
     return status;
 }
 
-/* One card for the grid of the scene; its last frequency need not lie on it and has a card of its own in ngspice. */
-static void write_band(const writer *w)
-{
-    const dea_scene *scene = w->export->scene;
-    const size_t last = dea_layout_of(scene).rows - 1;
-    fputs("* results: displacement v(disp) [m] and velocity v(edge) [m/s] per volt, input admittance -v(current) [S]\n"
-          "HCURRENT current 0 VSOURCE 1\n"
-          ".print ac vm(disp) vp(disp) vm(edge) vp(edge) vm(current) vp(current)\n",
-          w->out);
-    fputs(w->export->dialect->ac, w->out);
-    if (last > 0) {
-        fprintf(w->out, ".ac dec %zu ", scene->ac.points_per_decade);
-        dea_part_number(w->out, scene->ac.from);
-        fputc(' ', w->out);
-        dea_part_number(w->out, dea_layout_place(scene, last));
-        fputc('\n', w->out);
-    } else {
-        fputs(".ac lin 1 ", w->out);
-        dea_part_number(w->out, scene->ac.from);
-        fputc(' ', w->out);
-        dea_part_number(w->out, scene->ac.from);
-        fputc('\n', w->out);
-    }
-    fputs(".end\n", w->out);
-}
-
 dea_status dea_export_ac(dea_export *export, dea_error *error)
 {
     if (export->scene->models[0]->membrane) {
@@ -244,7 +206,7 @@ dea_status dea_export_ac(dea_export *export, dea_error *error)
         dea_export_head(export, meaning);
         dea_cards_write_small(&w.dynamics, &bias, &form, w.out);
         fprintf(w.out, "* source of 1 V\nVSOURCE %s 0 dc 0 ac 1\n", w.dynamics.series > 0.0 ? "source" : "film");
-        write_band(&w);
+        dea_export_band(export, "disp", "edge");
     }
     dea_dynamics_close(&w.dynamics);
     return status;

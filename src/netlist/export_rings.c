@@ -40,25 +40,9 @@ static double apart(const mark *coarse, const mark *fine)
     return fmax(edge, fine->omega > 0.0 ? fabs(coarse->omega / fine->omega - 1.0) : 0.0);
 }
 
-static void write_band(const dea_export *export, size_t edge)
-{
-    const dea_scene *scene = export->scene;
-    const size_t last = dea_layout_of(scene).rows - 1;
-    fprintf(export->out,
-            "* results: displacement v(u%zu) [m] and velocity v(v%zu) [m/s] per volt, input admittance -v(current) [S]\n"
-            "HCURRENT current 0 VSOURCE 1\n.print ac vm(u%zu) vp(u%zu) vm(v%zu) vp(v%zu) vm(current) vp(current)\n",
-            edge, edge, edge, edge, edge, edge);
-    fputs(export->dialect->ac, export->out);
-    fprintf(export->out, last > 0 ? ".ac dec %zu " : ".ac lin %zu ", last > 0 ? scene->ac.points_per_decade : 1);
-    dea_part_number(export->out, scene->ac.from);
-    fputc(' ', export->out);
-    dea_part_number(export->out, dea_layout_place(scene, last));
-    fputs("\n.end\n", export->out);
-}
-
 dea_status dea_export_ac_rings(dea_export *export, dea_error *error)
 {
-    char meaning[256];
+    char meaning[256], u[24], v[24];
     double gap = INFINITY;
     if (export->analogy_given && export->analogy->loop) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the membrane is written in the mobility analogy: leave out --analogy");
@@ -75,7 +59,9 @@ dea_status dea_export_ac_rings(dea_export *export, dea_error *error)
         dea_export_head(export, meaning);
         fprintf(export->out, "* expected error of the response: %.0e\n", gap);
         dea_rings_small_write(&small, export->out);
-        write_band(export, b->membrane.rings.edge + 1);
+        snprintf(u, sizeof u, "u%zu", b->membrane.rings.edge + 1);
+        snprintf(v, sizeof v, "v%zu", b->membrane.rings.edge + 1);
+        dea_export_band(export, u, v);
     }
     free(b);
     return status;

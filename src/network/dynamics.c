@@ -163,7 +163,8 @@ static dea_status place(const dea_scene *scene, dea_dynamics *d, dea_error *erro
     dea_film_prepare(&film, &d->point.film);
     dea_point_place(&film, &d->point);
     if (!dea_point_valid(&d->point) || !(dea_electrode_mass(scene) >= 0.0)) {
-        return dea_fail(error, DEA_ERROR_USAGE, "the scene has a number out of its range");
+        char fault[DEA_FAULT_LENGTH];
+        return dea_fail(error, DEA_ERROR_USAGE, "%s", dea_film_fault(&d->point.film, fault));
     }
     return DEA_OK;
 }
@@ -454,7 +455,7 @@ double dea_dynamics_velocity_charged(dea_dynamics *dynamics, double u, double vo
 dea_sample dea_sample_refused(double time, double voltage, dea_state state)
 {
     const double none = (double)NAN;
-    return (dea_sample){time, voltage, none, none, none, none, none, none, none, none, state};
+    return (dea_sample){time, voltage, none, none, none, none, none, none, none, none, none, state};
 }
 
 /* Current of the source: through R_s, or d(C U)/dt and the leakage. */
@@ -554,6 +555,7 @@ bool dea_dynamics_sample(dea_dynamics *dynamics, const dea_moment *moment, dea_s
         const dea_edge e = dea_dynamics_edge(dynamics, moment->u);
         sample->current = current(dynamics, &e, moment);
         sample->charge = e.capacitance * moment->voltage;
+        sample->capacitance = e.capacitance;
     }
     sample->focal_length = row.focal_length;
     sample->film_voltage = moment->voltage;

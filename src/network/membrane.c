@@ -558,6 +558,7 @@ static bool fill_sample(const dea_membrane *m, const dea_membrane_look *look, co
     if (m->film.port) {
         sample->current = dea_membrane_current(m, look, moment, v);
         sample->charge = row.charge;
+        sample->capacitance = row.capacitance;
     }
     return true;
 }

@@ -45,14 +45,6 @@ static bool keep_larger(dea_spot *spot, dea_spot here, bool sound)
     return takes;
 }
 
-/* In time the charge over the film's voltage, which is that of the source where nothing lies between them. */
-static double capacitance_of(const dea_layout *layout, const void *row, double charge)
-{
-    const double told = column_of(layout, row, "capacitance_F"), film = column_of(layout, row, "film_voltage_V");
-    const double voltage = isnan(film) ? column_of(layout, row, "voltage_V") : film;
-    return isnan(told) && voltage != 0.0 ? charge / voltage : told;
-}
-
 static void take_row(dea_answer *answer, const dea_layout *layout, dea_spot here, const void *row)
 {
     answer->states[here.state]++;
@@ -68,7 +60,7 @@ static void take_row(dea_answer *answer, const dea_layout *layout, dea_spot here
     keep_larger(&answer->field, here, false);
     here.value = column_of(layout, row, "charge_C");
     if (keep_larger(&answer->charge, here, false)) {
-        answer->capacitance = capacitance_of(layout, row, here.value);
+        answer->capacitance = column_of(layout, row, "capacitance_F");
     }
 }
 

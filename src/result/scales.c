@@ -85,6 +85,7 @@ static void set_least(dea_scales *scales, const dea_dynamics *d, const rest *fil
                                  .force = missed * film->force,
                                  .charge = missed * film->capacitance * largest,
                                  .film_voltage = missed * largest,
+                                 .capacitance = film->capacitance,
                                  .focal_length = missed * fmax(0.0, d->focal_length)};
 }
 
@@ -152,6 +153,7 @@ dea_sample dea_scales_of(const dea_scales *scales, const dea_sample *samples, si
         peak.charge = fmax(peak.charge, fabs(samples[i].charge));
         peak.focal_length = fmax(peak.focal_length, fabs(samples[i].focal_length));
         peak.film_voltage = fmax(peak.film_voltage, fabs(samples[i].film_voltage));
+        peak.capacitance = fmax(peak.capacitance, fabs(samples[i].capacitance));
     }
     peak.velocity = fmax(peak.velocity, peak.displacement * scales->pace);
     peak.current =

@@ -131,6 +131,8 @@ dea_status dea_waveform_finish(dea_reader *reader);
 dea_status dea_study_finish(dea_reader *reader);
 /* Reads a number of radii, 2 ... DEA_RADII_MAX. */
 dea_status dea_reader_radii(dea_reader *reader, const dea_ref *ref, const dea_node *node, size_t *count);
+/* Reads a number of points per decade, 1 ... 10000. */
+dea_status dea_reader_per_decade(dea_reader *reader, const dea_ref *ref, const dea_node *node, size_t *count);
 /* Refuses a sweep of the frame radius beside the key @p path, whose radii are the same of all points. */
 dea_status dea_reader_frame(dea_reader *reader, const char *path);
 /* Gives a bias that the study's own key has not set the static voltage of the drive; fails where there is none. */

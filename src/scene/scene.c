@@ -31,7 +31,7 @@ static dea_status scene_clear(dea_scene *scene)
                   .waveform = dea_waveform_none(),
                   .series_resistance = NAN,
                   .leakage_resistance = NAN},
-        .transient = {.until = NAN, .every = NAN},
+        .transient = {.until = NAN, .every = NAN, .first = NAN},
         .ac = {.from = NAN, .to = NAN, .points_per_decade = 50, .bias = NAN},
         .modes = {.bias = NAN},
         .force = {.from = NAN, .to = NAN, .points = 61},

@@ -78,6 +78,8 @@ typedef struct dea_study {
     void (*lay)(const dea_scene *scene, dea_layout *layout);
     /* Coordinate of row @p index; NULL where rows do not lie along one. */
     double (*place)(const dea_scene *scene, size_t index);
+    /* Its inverse, between rows and past the last one too; NULL where nobody asks. */
+    double (*index)(const dea_scene *scene, double place);
     /* Makes what stands behind the rows of a failed point; NULL: nothing stands there. */
     void (*fail)(const dea_layout *layout, void *point);
     /* True where the engine has it; NULL: where it has one of its solves[]. */

@@ -245,7 +245,7 @@ static void bash_completes(void **state)
         {"fit only", "only.csv"},
         {"export --as kic", "kicad"},
         {"export --dialect x", "xyce"},
-        {"init ''", "dot lens transient ac modes profile sweep"},
+        {"init ''", "dot lens transient ac modes profile force sweep"},
         {"materials vhb-4910-", "vhb-4910-neo-hookean"},
         {"completion ''", "bash zsh fish"},
         {"check --resu", ""},
@@ -271,7 +271,7 @@ static void bash_completes(void **state)
 
 static void every_scene_to_start_from_runs(void **state)
 {
-    static const char *const kinds[] = {"dot", "lens", "transient", "ac", "modes", "profile", "sweep"};
+    static const char *const kinds[] = {"dot", "lens", "transient", "ac", "modes", "profile", "force", "sweep"};
     (void)state;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         static char straight[TEXT_LENGTH];
@@ -365,7 +365,7 @@ static void run_prints_csv(void **state)
     RUN("run", "dot.yaml", "--engine", "direct");
     assert_int_equal(last.status, 0);
     assert_int_equal(lines_of(last.out), 10);
-    assert_true(strncmp(last.out, "coverage,strain,displacement_m,force_N,field_V_per_m,capacitance_F,charge_C,area_strain,state\n",
+    assert_true(strncmp(last.out, "coverage,strain,displacement_m,force_N,field_V_per_m,capacitance_F,charge_C,area_strain,energy_J,state\n",
                         94) == 0);
     assert_non_null(strstr(last.out, ",ok\n"));
     assert_string_equal(last.err, "");

@@ -14,18 +14,6 @@ static const double radian_steps = 3.0;
 /* Most time steps of one netlist, for what its plot takes of memory [numbers]. */
 static const double most_numbers = 2e7;
 
-/* The library shortens a step to an eighth where Newton's method does not settle, and goes on with that for ever where rounding
- * alone keeps it from doing so: a netlist that takes so many times its steps and so many points more behind each corner is run
- * again with absolute tolerances so many times as large. */
-static const double collapse = 2.0;
-static const double corner_points = 100.0;
-static const double first_points = 500.0;
-static const double loosen = 100.0;
-static const double loosest = 1e4;
-
-/* Parts of an edge that is shorter than a time step, at fineness 1. */
-static const double edge_parts = 2.0;
-
 /* Time of a state over a step, below which steps do not resolve it: its slope is then that of the parabola through its neighbours. */
 static const double unresolved = 0.5;
 
@@ -404,49 +392,25 @@ static dea_state absorb(runner *r, const dea_ngspice_table *table, double from, 
 
 /* ---- pieces */
 
-/* Points after which the steps of a netlist have collapsed. */
-static size_t most_points(const runner *r, const dea_mobility_piece *piece)
+/* The states of the runner, the charge as the voltage that it makes at rest. */
+static dea_status write_piece(const void *user, const dea_mobility_piece *piece, char **text, dea_error *error)
 {
-    const dea_signal *signal = piece->signal;
-    double corners = 0.0;
-    for (size_t i = piece->segment; i < signal->count && signal->segments[i].from < piece->to; i++) {
-        corners += r->parts;
-    }
-    return (size_t)(first_points + corner_points * corners + collapse * (piece->to - piece->from) / piece->step);
-}
-
-static dea_status run_once(const runner *r, const dea_mobility_piece *piece, dea_ngspice_table *table, bool *collapsed, dea_error *error)
-{
+    const runner *r = user;
     const dea_rings_track *t = r->track;
-    const dea_membrane *membrane = &t->flight.membrane;
-    const size_t most = most_points(r, piece);
-    dea_rings_label labels[DEA_NGSPICE_COLUMNS];
-    const char *names[DEA_NGSPICE_COLUMNS] = {"time"};
     double *states = t->room + 6 * t->states;
-    char *text;
     memcpy(states, r->state, t->states * sizeof *states);
     if (t->flight.motion.charged) {
-        states[charge_of(r)] /= dea_point_capacitance(&membrane->film.point);
+        states[charge_of(r)] /= dea_point_capacitance(&t->flight.membrane.film.point);
     }
-    for (size_t i = 0; i < t->states; i++) {
-        labels[i] = dea_rings_state_node(membrane, i);
-        names[i + 1] = labels[i].text;
-    }
-    dea_status status = dea_rings_deck_write(t->network, membrane, piece, states, &text, error);
-    if (status == DEA_OK) {
-        dea_ngspice_limit(t->library, most);
-        status = dea_ngspice_run_all(t->library, text, names, t->columns, table, error);
-        free(text);
-    }
-    *collapsed = status == DEA_OK && table->count >= most;
-    return status;
+    return dea_rings_deck_write(t->network, &t->flight.membrane, piece, states, text, error);
 }
 
 static dea_status run_netlist(runner *r, double from, double to, size_t segment, dea_state *end, double *reached, dea_error *error)
 {
     const dea_rings_track *t = r->track;
-    dea_ngspice_table table = {0};
-    bool collapsed = false;
+    dea_rings_label labels[DEA_NGSPICE_COLUMNS];
+    const char *names[DEA_NGSPICE_COLUMNS] = {"time"};
+    dea_ngspice_table table;
     dea_mobility_piece piece = {.signal = t->signal,
                                 .segment = segment,
                                 .from = from,
@@ -455,12 +419,12 @@ static dea_status run_netlist(runner *r, double from, double to, size_t segment,
                                 .parts = r->parts,
                                 .tolerance = fmin(1e-7, 1e-3 * t->scene->accuracy),
                                 .loose = r->loose};
-    dea_status status = run_once(r, &piece, &table, &collapsed, error);
-    while (collapsed && r->loose < loosest) {
-        dea_ngspice_table_free(&table);
-        piece.loose = r->loose *= loosen;
-        status = run_once(r, &piece, &table, &collapsed, error);
+    for (size_t i = 0; i < t->states; i++) {
+        labels[i] = dea_rings_state_node(&t->flight.membrane, i);
+        names[i + 1] = labels[i].text;
     }
+    const dea_status status = dea_deck_run(t->library, &piece, write_piece, r, names, t->columns, &table, error);
+    r->loose = piece.loose;
     if (status == DEA_OK) {
         *end = absorb(r, &table, from, to, reached);
     }
@@ -533,7 +497,7 @@ dea_status dea_rings_track_run(dea_rings_track *t, double fineness, dea_rings_tr
     }
     const size_t n = t->states;
     dea_audit energies = {0};
-    runner r = {.track = t, .loose = 1.0, .parts = ceil(edge_parts / fineness), .state = points,
+    runner r = {.track = t, .loose = 1.0, .parts = dea_deck_parts(fineness), .state = points,
                 .a = {0.0, points + n, points + 2 * n}, .b = {0.0, points + 3 * n, points + 4 * n},
                 .between = {0.0, points + 5 * n, points + 6 * n}};
     *trace = (dea_rings_trace){.samples = trace->samples};

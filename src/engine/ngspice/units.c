@@ -144,6 +144,7 @@ dea_status dea_units_enter(const dea_units *units, const dea_scene *scene, dea_s
     enter_wave(units, &inside->drive.waveform);
     inside->transient.until *= units->time;
     inside->transient.every *= units->time;
+    inside->transient.first *= units->time;
     inside->transient.grid /= units->time;
     for (size_t i = 0; i < inside->transient.average_count; i++) {
         inside->transient.averages[i].from *= units->time;
@@ -174,6 +175,7 @@ void dea_units_return_sample(const dea_units *units, dea_sample *sample)
     sample->charge /= charge(units);
     sample->focal_length /= units->length;
     sample->film_voltage /= units->voltage;
+    sample->capacitance /= charge(units) / units->voltage;
 }
 
 void dea_units_return_response(const dea_units *units, dea_response *row)

@@ -22,7 +22,7 @@ static dea_status refuse_models(const dea_scene *scene, dea_error *error)
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the motion of the model %s is no netlist: --as subckt is its part",
                         scene->models[0]->name);
     }
-    if (scene->models[0]->membrane && dea_study_of(scene)->timed && scene->electrode.sheet_resistance > 0.0) {
+    if (scene->models[0]->membrane && dea_study_of(scene)->along && scene->electrode.sheet_resistance > 0.0) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the potential along a sheet resistance of the model %s is no netlist: --model ring "
                                                       "has one resistance for it", scene->models[0]->name);
     }

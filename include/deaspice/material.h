@@ -119,6 +119,7 @@ typedef struct dea_material {
     size_t entry_count;                 /**< entries in use of a law that is a list, else 1 */
     double permittivity;                /**< relative, at stretch 0 of the line below [1], > 0 */
     double permittivity_per_stretch;    /**< slope of the relative permittivity over stretch [1], default 0 */
+    bool permittivity_follows;          /**< it is that of the strained film (true) or of the pre-stretched one (false, default) */
     double density;                     /**< [kg/m^3], > 0, NAN: no inertia */
     double retardation;                 /**< Kelvin-Voigt retardation time [s], > 0, NAN: none */
     double modulus;                     /**< operating modulus Y [Pa], > 0, NAN: dsigma/dlambda at the pre-stretch */
@@ -137,6 +138,8 @@ typedef struct dea_film {
     bool valid;                          /**< constants in range, and the pre-stretch where the law holds */
     double prestretch;                   /**< lambda_pre [1] */
     double permittivity;                 /**< absolute permittivity at the pre-stretch, of a stack times layers^2 [F/m] */
+    double electrostriction;             /**< slope of the permittivity over the mean stretch, over that at the pre-stretch, where it
+                                            follows the strain, else 0 [1] */
     double breakdown;                    /**< breakdown strength [V/m], +inf: none */
     double slope;                        /**< dsigma/dlambda at the pre-stretch [Pa] */
     double curvature;                    /**< d2sigma/dlambda2 at the pre-stretch [Pa] */

@@ -25,14 +25,24 @@ static double push_of_lens(double b, double s)
     return sum / (rest * rest);
 }
 
+/* int_1^{1+s} (1 + e)^4 e/x dx with 1 + e = (1 - B x)/(1 - B), where `push` is that without e: what a permittivity that is linear
+ * in e adds. (1 + e)/x = 1/(x (1 - B)) - B/(1 - B). */
+static double more_push_of_lens(double b, double e, double push)
+{
+    const double second = e * (2.0 + e), fifth = second * (2.0 + second) * (1.0 + e) + e; /* (1 + e)^5 - 1 */
+    return push * b / (1.0 - b) + 0.2 * fifth;
+}
+
 /* Dot: C_0 lambda_a^4. Lens: C_0 + int 2 F/U^2 du, because the equi-biaxial annulus is not the true area [F]. */
 static double capacitance_of(const dea_point *point, double strain)
 {
     if (point->kind == DEA_DOT) {
         return dea_point_disc_capacitance(point, strain);
     }
-    const double b = point->coverage;
-    return dea_point_full_capacitance(point) * (1.0 - b * b - 4.0 * b * b * push_of_lens(b, strain));
+    const double b = point->coverage, active = -b * strain / (1.0 - b), push = push_of_lens(b, strain);
+    const double rise = 1.25 * point->film.electrostriction * point->film.prestretch;
+    const double first = dea_point_electric(point).first;
+    return dea_point_full_capacitance(point) * (1.0 - b * b - 4.0 * b * b * (first * push + rise * more_push_of_lens(b, active, push)));
 }
 
 /* Strain that the passive film gives back per strain of the active one. */
@@ -49,11 +59,12 @@ static void fill(const dea_point *point, double pressure, double active, dea_row
     const double strain = dot ? active : passive;
     const double stretch = 1.0 + active;
     const double square = stretch * stretch;
+    const dea_electric electric = dea_film_electric(&point->film, point->film.square * square);
     const double area = dea_point_cross_section(point) / (1.0 + strain); /* A(lambda_a) = 2 pi r_a H/(lambda_pre^2 lambda_a) */
     const bool taut = point->film.prestretch * (1.0 + passive) > 1.0;
     dea_row_fill(row, point,
                  (dea_found){.strain = strain,
-                             .force = dea_point_sign(point) * area * pressure * square * square,
+                             .force = dea_point_sign(point) * area * pressure * square * square * electric.first,
                              .stretch = point->film.square * square,
                              .capacitance = capacitance_of(point, strain),
                              .taut = taut});
@@ -143,6 +154,18 @@ static dea_expr push_by_moments(const dea_symbols *symbols, dea_expr s)
     return MUL(s, sum);
 }
 
+/* The push where the permittivity follows the strain, of that where it does not and more_push_of_lens(). */
+static dea_expr following_push(const dea_symbols *symbols, dea_expr push)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_expr b = symbols->coverage, e = dea_symbols_annulus_strain(symbols);
+    const dea_expr second = MUL(e, ADD(NUM(2.0), e)), fourth = MUL(second, ADD(NUM(2.0), second));
+    const dea_expr fifth = ADD(MUL(fourth, ADD(NUM(1.0), e)), e);
+    const dea_expr more = ADD(DIV(MUL(push, b), SUB(NUM(1.0), b)), SCALE(0.2, fifth));
+    const dea_expr first = dea_symbols_electric(symbols, NUM(1.0), NUM(1.0)).first;
+    return ADD(MUL(first, push), MUL(SCALE(1.25, MUL(symbols->electrostriction, symbols->prestretch)), more));
+}
+
 /* Dot: C = C_0 lambda_a^4. Lens: C = C_0 + int 2 F/U^2 du because the equi-biaxial annulus is not the true area, with
  * F/U^2 = -2 pi r_a eps lambda_pre^2 (1 + e)^4/(H (1 + s)), s and e the strains of disc and annulus, both proportional to u. */
 static dea_expr capacitance(const dea_symbols *symbols, dea_expr strain)
@@ -150,7 +173,8 @@ static dea_expr capacitance(const dea_symbols *symbols, dea_expr strain)
     dea_pool *pool = symbols->pool;
     const dea_expr rest = dea_symbols_capacitance(symbols);
     if (symbols->kind == DEA_DOT) {
-        return MUL(rest, SQUARE(SQUARE(ADD(NUM(1.0), strain))));
+        const dea_expr stretch = ADD(NUM(1.0), strain);
+        return MUL(MUL(rest, dea_symbols_electric(symbols, stretch, stretch).own), SQUARE(SQUARE(stretch)));
     }
     const dea_expr radius = MUL(symbols->coverage, symbols->frame_radius);
     const dea_expr front = MUL(symbols->permittivity, DIV(SQUARE(MUL(radius, symbols->prestretch)), symbols->film_thickness));
@@ -159,7 +183,8 @@ static dea_expr capacitance(const dea_symbols *symbols, dea_expr strain)
     const dea_expr push = coverage < 0.5 ? push_by_logarithm(symbols, strain)
                           : part         ? push_by_rule(symbols, strain)
                                          : push_by_moments(symbols, strain);
-    return SUB(rest, MUL(SCALE(4.0 * DEA_PI, front), push));
+    const bool constant = dea_expr_constant(pool, symbols->electrostriction) == 0.0;
+    return SUB(rest, MUL(SCALE(4.0 * DEA_PI, front), constant ? push : following_push(symbols, push)));
 }
 
 /* Edge equation of physics.md, section 5: A(lambda_a) times the stress differences to the pre-stretch, as two springs and a

@@ -51,9 +51,11 @@ static inline balance balance_at(const film_pair *pair, double e)
 
 static dea_path_place place_at(const void *user, double e)
 {
-    const balance b = balance_at(user, e);
-    const double cube = (1.0 + e) * (1.0 + e) * (1.0 + e);
-    return (dea_path_place){b.load, b.slope, cube * (1.0 + e), 4.0 * cube};
+    const film_pair *pair = user;
+    const balance b = balance_at(pair, e);
+    const double square = (1.0 + e) * (1.0 + e), cube = square * (1.0 + e);
+    const dea_electric electric = dea_film_electric(pair->film, pair->film->square * square);
+    return (dea_path_place){b.load, b.slope, electric.first * square * square, 2.0 * cube * (electric.first + electric.second)};
 }
 
 /* Strain of the active film at which a region vanishes, or the energy of the material ends. */
@@ -247,7 +249,8 @@ static void find(const dea_point *points, size_t count, const double *ratio, con
         } else if (!(w.stiffness[l] > 0.0) || !isfinite(m[l])) {
             found[l] = false;
         } else {
-            found[l] = is_first(&w, l, &path) || dea_path_trace(&path, m[l], &strain[l]);
+            const bool constant = points[l].film.electrostriction == 0.0; /* as the films abreast are taken */
+            found[l] = (constant && is_first(&w, l, &path)) || dea_path_trace(&path, m[l], &strain[l]);
         }
     }
 }

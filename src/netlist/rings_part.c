@@ -32,7 +32,8 @@ static void make_nominal(const dea_symbols *symbols, dea_rings_part *part, int s
     const dea_expr l1 = ADD(NUM(1.0), e[0]), l2 = ADD(NUM(1.0), e[1]);
     const dea_expr fourth = SQUARE(SQUARE(symbols->prestretch));
     const dea_expr push = SCALE(1e-6, MUL(symbols->permittivity, DIV(fourth, SQUARE(symbols->film_thickness))));
-    const dea_expr square = MUL(push, SQUARE(dea_expr_node(pool, VOLTS)));
+    const dea_expr electric = dea_symbols_electric(symbols, l1, l2).first;
+    const dea_expr square = MUL(MUL(push, electric), SQUARE(dea_expr_node(pool, VOLTS)));
     for (int a = 0; a < 2; a++) {
         const dea_expr held = ADD(dea_expr_node(pool, HELD1 + a), MUL(damp, part->rates[strain][a]));
         const dea_expr film = DIV(SUB(held, MUL(part->rest, e[a])), ADD(NUM(1.0), e[a]));
@@ -89,12 +90,13 @@ void dea_rings_part_make(const dea_symbols *symbols, const dea_rings_numbers *nu
     }
     make_weights(symbols, part, numbers->density, numbers->areal);
     const dea_expr l1 = ADD(NUM(1.0), dea_expr_node(pool, DEA_RINGS_E1)), l2 = ADD(NUM(1.0), dea_expr_node(pool, DEA_RINGS_E2));
-    part->swell = dea_expr_change(pool, MUL(SQUARE(l1), SQUARE(l2)));
+    const dea_symbols_factors electric = dea_symbols_electric(symbols, l1, l2);
+    part->swell = dea_expr_change(pool, MUL(electric.own, MUL(SQUARE(l1), SQUARE(l2))));
     const dea_expr square = SQUARE(symbols->prestretch), r_a = MUL(symbols->frame_radius, symbols->coverage);
     part->frame_radius = symbols->frame_radius;
     part->field = MUL(SCALE(1e-6, DIV(MUL(symbols->layers, square), symbols->film_thickness)), MUL(l1, l2));
     const dea_expr size = SCALE(symbols->kind == DEA_DOT ? 2.0 * DEA_PI : -2.0 * DEA_PI, MUL(symbols->permittivity, DIV(square, symbols->film_thickness)));
-    part->force = MUL(MUL(size, r_a), MUL(l1, SQUARE(l2)));
+    part->force = MUL(MUL(MUL(size, electric.first), r_a), MUL(l1, SQUARE(l2)));
 }
 
 static const char *const stress_names[2] = {"s", "t"}, *const held_names[2] = {"x", "y"}, *const film_names[2] = {"f", "g"};

@@ -123,7 +123,11 @@ bool dea_membrane_look_at(const dea_membrane *m, const double *u, dea_membrane_l
             return false;
         }
         const double area = at->stretch[0] * at->stretch[1];
-        sum += ring->electroded ? ring->volume * area * area : 0.0;
+        const double own = dea_film_electric(&m->film.point.film, area).own;
+        if (!(own > 0.0)) {
+            return false; /* there is no such film */
+        }
+        sum += ring->electroded ? ring->volume * own * area * area : 0.0;
     }
     const double thickness = m->film.point.film_thickness;
     look->edge = u[m->rings.edge];
@@ -156,7 +160,8 @@ void dea_membrane_push(const dea_membrane *m, const dea_membrane_look *look, dou
     memset(push, 0, m->rings.node_count * sizeof *push);
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         const double *l = look->rings[r].stretch;
-        const double f[2] = {-unit * l[0] * l[1] * l[1], -unit * l[0] * l[0] * l[1]};
+        const double k = unit * dea_film_electric(&m->film.point.film, l[0] * l[1]).first;
+        const double f[2] = {-k * l[0] * l[1] * l[1], -k * l[0] * l[0] * l[1]};
         if (m->rings.rings[r].electroded) {
             pull_ring(m, r, f, push);
         }
@@ -207,7 +212,8 @@ void dea_membrane_force(const dea_membrane *m, const dea_membrane_look *look, do
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         const dea_ring *ring = &m->rings.rings[r];
         const dea_ring_look *at = &look->rings[r];
-        const double area = at->stretch[0] * at->stretch[1], pressure = ring->electroded ? k * area : 0.0;
+        const double area = at->stretch[0] * at->stretch[1], electric = dea_film_electric(&m->film.point.film, area).first;
+        const double pressure = ring->electroded ? k * electric * area : 0.0;
         double s[2];
         for (int a = 0; a < 2; a++) {
             s[a] = at->nominal[a] - pressure * at->stretch[1 - a] + (x ? x[r][a] / at->stretch[a] : 0.0);
@@ -219,14 +225,17 @@ void dea_membrane_force(const dea_membrane *m, const dea_membrane_look *look, do
 
 /* ds_a/dlambda_b of a ring: of the film, of its electrical part k lambda_a lambda_b^2, of x_a/lambda_a at constant x_a, and of a
  * damper. */
-static void ring_tangent(const dea_ring_look *at, double k, const double *x, double share, double t[2][2])
+static void ring_tangent(const dea_film *film, const dea_ring_look *at, double k, const double *x, double share, double t[2][2])
 {
+    const double area = at->stretch[0] * at->stretch[1];
+    const dea_electric electric = dea_film_electric(film, area);
     for (int a = 0; a < 2; a++) {
         const double l = at->stretch[a];
         for (int b = 0; b < 2; b++) {
-            const double electric = a == b ? k * at->stretch[1 - a] * at->stretch[1 - a] : 2.0 * k * at->stretch[0] * at->stretch[1];
+            const double other = at->stretch[1 - a];
+            const double softening = a == b ? k * electric.second * other * other : k * (electric.first + electric.second) * area;
             const double lever = a == b && x ? x[a] / (l * l) : 0.0;
-            t[a][b] = at->tangent[a][b] - electric - lever + share * at->slope[a][b] / l;
+            t[a][b] = at->tangent[a][b] - softening - lever + share * at->slope[a][b] / l;
         }
     }
 }
@@ -236,7 +245,7 @@ bool dea_membrane_elliptic(const dea_membrane *m, const dea_membrane_look *look,
     const double k = square_of(m, voltage);
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         double t[2][2];
-        ring_tangent(&look->rings[r], m->rings.rings[r].electroded ? k : 0.0, x ? x[r] : NULL, share, t);
+        ring_tangent(&m->film.point.film, &look->rings[r], m->rings.rings[r].electroded ? k : 0.0, x ? x[r] : NULL, share, t);
         if (!(t[0][0] > 0.0)) {
             return false;
         }
@@ -270,7 +279,7 @@ void dea_membrane_stiffness(const dea_membrane *m, const dea_membrane_look *look
     memset(stiffness, 0, m->rings.node_count * m->rings.node_count * sizeof *stiffness);
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         double t[2][2];
-        ring_tangent(&look->rings[r], m->rings.rings[r].electroded ? k : 0.0, x ? x[r] : NULL, share, t);
+        ring_tangent(&m->film.point.film, &look->rings[r], m->rings.rings[r].electroded ? k : 0.0, x ? x[r] : NULL, share, t);
         assemble_ring(m, r, t, stiffness);
     }
     stiffness[m->rings.edge * (m->rings.node_count + 1)] += m->film.point.load;
@@ -462,7 +471,7 @@ static double edge_force(const dea_membrane *m, const dea_membrane_look *look, d
     const size_t r = dot ? inner : inner + 1;
     const double *l = look->rings[r].stretch;
     return (dot ? 1.0 : -1.0) * 2.0 * DEA_PI * m->rings.rings[r].radius * m->film.point.film_thickness * square_of(m, voltage) *
-           l[0] * l[1] * l[1];
+           dea_film_electric(&m->film.point.film, l[0] * l[1]).first * l[0] * l[1] * l[1];
 }
 
 /* Largest of values at the rings of an element, between them too where it could pass a limit: a polynomial leaves the range of its
@@ -488,7 +497,8 @@ static void fill_row(const dea_membrane *m, const dea_membrane_look *look, doubl
         const dea_ring_look *at = &look->rings[r];
         area[r] = at->stretch[0] * at->stretch[1];
         for (int a = 0; a < 2; a++) {
-            loss[a][r] = (m->rings.rings[r].electroded ? k * area[r] * at->stretch[1 - a] : 0.0) - at->nominal[a];
+            const double pull = k * dea_film_electric(&m->film.point.film, area[r]).first * area[r] * at->stretch[1 - a];
+            loss[a][r] = (m->rings.rings[r].electroded ? pull : 0.0) - at->nominal[a];
         }
     }
     for (int i = 0; i < 4; i++) {

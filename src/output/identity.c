@@ -94,6 +94,9 @@ static void put_lists(FILE *out, const dea_scene *scene)
     put_numbers(out, "material.prony", &material->prony[0].g, 2 * material->prony_count);
     put_numbers(out, "material.stretches", material->stretches, 2);
     fprintf(out, "material.moduli=%s\n", material->instantaneous ? "instantaneous" : "long-term");
+    if (material->permittivity_follows) {
+        fputs("material.permittivity.follows=strain\n", out);
+    }
     fprintf(out, "drive.waveform.kind=%d\n", (int)wave->kind);
     fprintf(out, "drive.waveform.choice=%zu\n", wave->choice);
     put_numbers(out, "drive.waveform.sines", &wave->sines[0].offset, wave->sine_count * sizeof wave->sines[0] / sizeof(double));

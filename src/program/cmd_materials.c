@@ -75,7 +75,8 @@ static void print_constants(const dea_material *material)
     if (material->stretches[1] > 0)
         printf("%-22s %.9g to %.9g\n", "data of stretches", material->stretches[0], material->stretches[1]);
     if (fabs(material->permittivity_per_stretch) > 0)
-        printf("%-22s %.9g %+.9g stretch\n", "permittivity", material->permittivity, material->permittivity_per_stretch);
+        printf("%-22s %.9g %+.9g %s\n", "permittivity", material->permittivity, material->permittivity_per_stretch,
+               material->permittivity_follows ? "stretch, that of the strained film" : "stretch");
     else
         print_number("permittivity", material->permittivity, "");
     print_optional("density", material->density, " kg/m^3");

@@ -213,10 +213,18 @@ static dea_status permittivity_check(dea_reader *reader)
     const dea_scene *scene = reader->scene;
     const size_t constant = offsetof(dea_scene, material.permittivity);
     const size_t slope = offsetof(dea_scene, material.permittivity_per_stretch);
+    const bool follows = scene->material.permittivity_follows;
     const double value = dea_material_permittivity(&scene->material, scene->actuator.prestretch);
+    const double pull = dea_material_permittivity(&scene->material, (follows ? 1.25 : 1.0) * scene->actuator.prestretch);
     if (swept(reader, constant) || swept(reader, slope) || swept(reader, offsetof(dea_scene, actuator.prestretch)) ||
-        value > 0.0) {
+        (value > 0.0 && pull > 0.0)) {
         return DEA_OK;
+    }
+    if (value > 0.0) {
+        return dea_place_fail(dea_reader_place(reader, slope, "material"), reader->error, "material.permittivity.per_stretch",
+                              "%g: a film whose permittivity follows that shrinks under voltage at the pre-stretch %g; accepted: "
+                              "constant + 1.25 per_stretch prestretch > 0",
+                              scene->material.permittivity_per_stretch, scene->actuator.prestretch);
     }
     return dea_place_fail(dea_reader_place(reader, slope, "material"), reader->error, "material.permittivity",
                           "falls to %g at the pre-stretch %g; accepted: a permittivity > 0 there", value,

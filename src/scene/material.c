@@ -308,7 +308,17 @@ dea_status dea_read_permittivity(dea_reader *reader, const dea_ref *ref, const d
     const dea_status status = dea_read_scalar(reader, ref, node);
     if (!status) {
         reader->scene->material.permittivity_per_stretch = 0.0;
+        reader->scene->material.permittivity_follows = false;
     }
+    return status;
+}
+
+dea_status dea_read_follows(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    static const char *const words[] = {"prestretch", "strain", NULL};
+    size_t index = 0;
+    const dea_status status = dea_reader_word(reader, ref, node, words, &index);
+    reader->scene->material.permittivity_follows = !status && index == 1;
     return status;
 }
 

@@ -293,6 +293,7 @@ static dea_status write_transient(writer *w, dea_error *error)
         return status;
     }
     const dea_cards_numbers numbers = {w->start, w->dynamics.mass, 1.0};
+    dea_cards_declare(&w->cards);
     if (w->dynamics.series == 0.0) { /* for write_charge() */
         dea_part_text_root(&w->cards.text, "capacity");
         dea_part_text_use_aside(&w->cards.text, w->mobility.network.capacitance);
@@ -325,7 +326,7 @@ static writer writer_of(dea_export *export)
 dea_status dea_export_transient(dea_export *export, dea_error *error)
 {
     writer w = writer_of(export);
-    const dea_cards_form form = {export->dialect, export->analogy, false};
+    const dea_cards_form form = {.dialect = export->dialect, .analogy = export->analogy};
     dea_status status =
         dea_mobility_prepare(export->scene, export->scene->models[0], export->analogy, &w.dynamics, &w.mobility, error);
     if (status == DEA_OK) {
@@ -384,7 +385,7 @@ dea_status dea_export_ac(dea_export *export, dea_error *error)
         return dea_export_ac_rings(export, error);
     }
     writer w = writer_of(export);
-    const dea_cards_form form = {export->dialect, export->analogy, false};
+    const dea_cards_form form = {.dialect = export->dialect, .analogy = export->analogy};
     char meaning[256];
     dea_status status = dea_dynamics_open(export->scene, export->scene->models[0], &w.dynamics, error);
     dea_mobility_bias bias = {.voltage = export->scene->ac.bias / (1.0 + w.dynamics.series * w.dynamics.conductance)};

@@ -6,6 +6,7 @@
 
 #include "deaspice/needs.h"
 #include "program/omissions.h"
+#include "result/compare.h"
 #include "study/study.h"
 
 static const double choice_fine = 0.05; /* of a model error's bound: accuracy of the runs that measure it */

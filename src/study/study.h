@@ -4,12 +4,18 @@
 #define DEA_STUDY_H
 
 #include "deaspice/engine.h"
-#include "result/compare.h"
 
 struct dea_drawer;
 struct dea_export;
 struct dea_key;
 struct dea_reader;
+
+/* How the difference of two numbers counts. */
+typedef enum dea_measure {
+    DEA_OVER_ITSELF, /* relative to the reference's own number */
+    DEA_OVER_PEAK,   /* relative to the scale of its column over the run (result/scales.h) */
+    DEA_OVER_RADIAN  /* an angle in degrees: absolute, in radian, whole turns taken off */
+} dea_measure;
 
 /* A column that engines must agree on. */
 typedef struct dea_study_column {

@@ -10,7 +10,7 @@
 /* The engine's text: numbers, in the analogy in which nothing but nodes is added. */
 static dea_cards_form engine_form(void)
 {
-    return (dea_cards_form){dea_dialect_find("ngspice"), dea_analogy_at(0), true};
+    return (dea_cards_form){.dialect = dea_dialect_find("ngspice"), .analogy = dea_analogy_at(0), .numbers = true};
 }
 
 typedef struct writer {
@@ -165,10 +165,12 @@ dea_status dea_mobility_write(const dea_mobility *mobility, const dea_mobility_p
     *text = NULL;
     writer w = {.mobility = mobility, .dynamics = mobility->dynamics, .piece = piece, .out = open_memstream(text, &length)};
     const dea_cards_form form = engine_form();
-    const bool ready = w.out && dea_cards_open(mobility, &form, w.out, &w.cards);
+    bool ready = w.out && dea_cards_open(mobility, &form, w.out, &w.cards);
     if (ready) {
+        dea_cards_declare(&w.cards);
         write_piece(&w);
     }
+    ready = ready && !w.cards.text.exhausted;
     dea_cards_close(&w.cards);
     return finish(w.out, ready, text, error);
 }

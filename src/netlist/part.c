@@ -612,13 +612,12 @@ static void add_film(const dea_scene *scene, dea_part_parameter *list, size_t *c
     add(list, count, "electrode_mass", "kg/m^2", "mass per area of the electrodes", or_zero(scene->actuator.electrode_mass));
     add(list, count, "retardation", "s", "Kelvin-Voigt retardation time, 0: none", or_zero(material->retardation));
     for (size_t i = 0; i < material->prony_count || i < PART_BRANCHES; i++) {
-        const dea_prony none = {0.0, 1.0};
-        const dea_prony *branch = i < material->prony_count ? &material->prony[i] : &none;
+        const dea_prony branch = i < material->prony_count ? dea_material_branch(material, i) : (dea_prony){0.0, 1.0};
         char name[32];
         snprintf(name, sizeof name, "g%zu", i + 1);
-        add(list, count, name, "1", "share of the branch in the instantaneous modulus, 0: none", branch->g);
+        add(list, count, name, "1", "share of the branch in the instantaneous modulus, 0: none", branch.g);
         snprintf(name, sizeof name, "tau%zu", i + 1);
-        add(list, count, name, "s", "relaxation time of the branch", branch->tau);
+        add(list, count, name, "s", "relaxation time of the branch", branch.tau);
     }
 }
 

@@ -71,7 +71,8 @@ bool dea_dynamics_relax(dea_dynamics *d, const dea_scene *scene)
         rest -= material->prony[i].g;
     }
     for (size_t i = 0; i < material->prony_count && rest > 0.0; i++) {
-        add_branch(d, scene->reduction.branches[i], (dea_branch){material->prony[i].g / rest, material->prony[i].tau});
+        const dea_prony branch = dea_material_branch(material, i);
+        add_branch(d, scene->reduction.branches[i], (dea_branch){branch.g / rest, branch.tau});
     }
     share_out(d);
     join_branches(d);
@@ -176,6 +177,10 @@ dea_status dea_dynamics_settle(const dea_scene *scene, const dea_model *model, d
                         .refractive_index = scene->actuator.refractive_index,
                         .linear = model->linear != NULL && !scene->electrode.law && !(scene->load.stiffness > 0.0)};
     d->softens = !scene->reduction.softening;
+    const double shift = dea_material_shift(&scene->material);
+    if (!(shift > 0.0 && isfinite(shift))) {
+        return dea_fail(error, DEA_ERROR_USAGE, "the shift factors of the material do not reach the temperature %g K", scene->material.temperature);
+    }
     if (!dea_dynamics_relax(d, scene)) {
         return dea_fail(error, DEA_ERROR_USAGE, "the shares g of the branches sum to 1 or more");
     }

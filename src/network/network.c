@@ -117,7 +117,7 @@ static bool given(const dea_pool *pool, dea_expr ref)
     return pool->terms[ref].varies || !isnan(dea_expr_constant(pool, ref));
 }
 
-/* Long-term share of the elastic constants, 1 - sum g_i where they are instantaneous. */
+/* dea_material_long_term_share(). */
 static dea_expr long_term_share(dea_pool *pool, const dea_scene *scene, const dea_axis *axis)
 {
     dea_expr share = NUM(1.0);
@@ -125,6 +125,12 @@ static dea_expr long_term_share(dea_pool *pool, const dea_scene *scene, const de
         for (size_t i = 0; i < scene->material.prony_count; i++) {
             share = SUB(share, scalar(pool, scene, axis, &scene->material.prony[i].g));
         }
+    }
+    const dea_expr temperature = scalar(pool, scene, axis, &scene->material.temperature);
+    const dea_expr slope = scalar(pool, scene, axis, &scene->material.modulus_slope);
+    if (given(pool, temperature) && given(pool, slope)) {
+        const dea_expr above = SUB(temperature, scalar(pool, scene, axis, &scene->material.modulus_reference));
+        share = MUL(share, ADD(NUM(1.0), MUL(slope, above)));
     }
     return share;
 }

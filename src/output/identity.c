@@ -92,6 +92,7 @@ static void put_lists(FILE *out, const dea_scene *scene)
         put_numbers(out, "material.constants", material->constants, material->entry_count * material->law->constant_count);
     }
     put_numbers(out, "material.prony", &material->prony[0].g, 2 * material->prony_count);
+    put_numbers(out, "material.shift", material->shift.table[0], 2 * material->shift.count);
     put_numbers(out, "material.stretches", material->stretches, 2);
     fprintf(out, "material.moduli=%s\n", material->instantaneous ? "instantaneous" : "long-term");
     if (material->permittivity_follows) {

@@ -158,7 +158,7 @@ static dea_status derive_rings(part *p, const dea_symbols *symbols, dea_error *e
     if (!p->rings) {
         return tell_memory(error);
     }
-    const dea_rings_numbers numbers = {dea_expr_symbol(pool, RHO), dea_expr_symbol(pool, AREAL), dea_expr_symbol(pool, DAMP)};
+    const dea_rings_numbers numbers = {dea_expr_symbol(pool, RHO), dea_expr_symbol(pool, AREAL), dea_expr_symbol(pool, DAMP), 1e6, 0.0};
     dea_rings_part_make(symbols, &numbers, p->branches, p->rings);
     return DEA_OK;
 }
@@ -211,7 +211,7 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
     p->mass = moving_mass(&symbols);
     p->divide = MUL(symbols.frame_radius, symbols.coverage);
     p->width = dea_symbols_annulus_width(&symbols);
-    if (model->membrane) {
+    if (model->membrane && !pool->exhausted) {
         status = derive_rings(p, &symbols, error);
     }
     if (status == DEA_OK) {

@@ -16,11 +16,11 @@ static const double small = 0.03;
 /* Share of the stiffness at rest at which a film without mass folds. */
 static const double folded = 1e-4;
 
-dea_status dea_rings_flight_open(const dea_sundials *sun, const dea_scene *scene, const dea_model *model,
-                                 const dea_signal *signal, dea_rings_mesh mesh, dea_rings_flight *f, dea_error *error)
+dea_status dea_rings_flight_prepare(const dea_scene *scene, const dea_model *model, const dea_signal *signal, dea_rings_mesh mesh,
+                                    dea_rings_flight *f, dea_error *error)
 {
-    *f = (dea_rings_flight){.sun = sun, .scene = scene, .signal = signal, .rows = dea_layout_of(scene).rows};
-    dea_status status = dea_membrane_open(scene, model, mesh, &f->membrane, error);
+    *f = (dea_rings_flight){.scene = scene, .signal = signal, .rows = dea_layout_of(scene).rows};
+    const dea_status status = dea_membrane_open(scene, model, mesh, &f->membrane, error);
     if (status != DEA_OK) {
         return status;
     }
@@ -28,6 +28,17 @@ dea_status dea_rings_flight_open(const dea_sundials *sun, const dea_scene *scene
         return dea_fail(error, DEA_ERROR_ENGINE, "the film is not stable at rest");
     }
     f->peaks = dea_peak_is_known(scene, &f->membrane.film, signal);
+    return DEA_OK;
+}
+
+dea_status dea_rings_flight_open(const dea_sundials *sun, const dea_scene *scene, const dea_model *model,
+                                 const dea_signal *signal, dea_rings_mesh mesh, dea_rings_flight *f, dea_error *error)
+{
+    const dea_status status = dea_rings_flight_prepare(scene, model, signal, mesh, f, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    f->sun = sun;
     const sunindextype count = (sunindextype)f->motion.count;
     f->y = sun->N_VNew_Serial(count, sun->context);
     f->yp = f->y ? sun->N_VClone(f->y) : NULL;
@@ -153,12 +164,10 @@ static void set_tolerances(dea_rings_flight *f)
     }
 }
 
-/* Algebraic displacements at the begin of a segment. */
-static bool jump(dea_rings_flight *f)
+bool dea_rings_jump(dea_rings_flight *f, double *y)
 {
     const dea_rings_motion *m = &f->motion;
     double before[DEA_RINGS_NODES];
-    double *y = NV_DATA_S(f->y);
     if (!dea_rings_algebraic(m) || m->charged) {
         return true;
     }
@@ -201,7 +210,7 @@ static dea_state fly_segment(dea_rings_flight *f)
 {
     const dea_segment *segment = f->motion.segment;
     double *y = NV_DATA_S(f->y), *rates = NV_DATA_S(f->yp);
-    if (!jump(f) || !dea_rings_rates(&f->motion, 0.0, y, rates) ||
+    if (!dea_rings_jump(f, y) || !dea_rings_rates(&f->motion, 0.0, y, rates) ||
         (f->trace->count == 0 && !dea_rings_record(f, 0.0, y, rates, false))) {
         return DEA_STATE_PULL_IN;
     }
@@ -215,10 +224,9 @@ static dea_state fly_segment(dea_rings_flight *f)
     return dea_rings_implicit(f, turning);
 }
 
-static dea_membrane_energy energy_of(dea_rings_flight *f, double time)
+dea_membrane_energy dea_rings_energy(dea_rings_flight *f, double time, const double *y)
 {
     const dea_rings_motion *m = &f->motion;
-    const double *y = NV_DATA_S(f->y);
     const bool seen = dea_rings_glance(m, time, y, &f->state);
     return dea_membrane_energy_of(&f->membrane, seen ? f->state.voltage : (double)NAN, y, y + m->nodes, y + m->z);
 }
@@ -238,13 +246,13 @@ void dea_rings_flight_run(dea_rings_flight *f, double tolerance, dea_rings_trace
         trace->end = DEA_STATE_PULL_IN;
         return;
     }
-    const dea_membrane_energy first = energy_of(f, 0.0);
+    const dea_membrane_energy first = dea_rings_energy(f, 0.0, NV_DATA_S(f->y));
     for (size_t i = 0; trace->end == DEA_STATE_OK && i < f->signal->count; i++) {
         m->segment = &f->signal->segments[i];
         trace->end = fly_segment(f);
     }
     if (summary && trace->end == DEA_STATE_OK) {
-        const dea_membrane_energy last = energy_of(f, m->segment->to - m->segment->from);
+        const dea_membrane_energy last = dea_rings_energy(f, m->segment->to - m->segment->from, NV_DATA_S(f->y));
         dea_membrane_audit_close(&audit, &f->membrane, &first, &last, summary);
     }
 }

@@ -48,6 +48,9 @@ typedef struct dea_rings_flight {
 dea_status dea_rings_flight_open(const dea_sundials *sun, const dea_scene *scene, const dea_model *model,
                                  const dea_signal *signal, dea_rings_mesh mesh, dea_rings_flight *flight, dea_error *error);
 void dea_rings_flight_close(dea_rings_flight *flight);
+/* All of it that knows no SUNDIALS: another engine keeps its samples and energies by it. */
+dea_status dea_rings_flight_prepare(const dea_scene *scene, const dea_model *model, const dea_signal *signal, dea_rings_mesh mesh,
+                                    dea_rings_flight *flight, dea_error *error);
 /* IDA with its matrix; part of opening. */
 dea_status dea_rings_implicit_open(dea_rings_flight *flight, dea_error *error);
 void dea_rings_implicit_close(dea_rings_flight *flight);
@@ -57,6 +60,11 @@ void dea_rings_flight_run(dea_rings_flight *flight, double tolerance, dea_rings_
 /* Shrinks the sizes of the unknowns to what the last run reached, where that is much less; true where it did. */
 bool dea_rings_flight_fit(dea_rings_flight *flight);
 
+/* Takes the displacements of a film without mass and damper to where the voltage at the begin of the segment wants them; false where
+ * there is no such place. */
+bool dea_rings_jump(dea_rings_flight *flight, double *y);
+/* What is stored at y. */
+dea_membrane_energy dea_rings_energy(dea_rings_flight *flight, double time, const double *y);
 /* Time of the next sample [s], infinite behind the last. */
 double dea_rings_next_sample(const dea_rings_flight *flight);
 /* Keeps y, with its derivative, as the next sample, at a time of the segment; @p charging: y' tells the current. False where the

@@ -140,6 +140,12 @@ static bool massless_rates(const dea_rings_motion *m, double time, dea_rings_sta
     return solve_definite(m->nodes, matrix, rates);
 }
 
+bool dea_rings_massless(const dea_rings_motion *m, double time, const double *y, double *rates)
+{
+    dea_rings_state state;
+    return dea_rings_look(m, time, y, NULL, &state) && massless_rates(m, time, &state, rates);
+}
+
 bool dea_rings_rates(const dea_rings_motion *m, double time, const double *y, double *rates)
 {
     dea_rings_state state;

@@ -48,6 +48,8 @@ bool dea_rings_look(const dea_rings_motion *motion, double time, const double *y
 void dea_rings_relaxing(const dea_rings_motion *motion, const dea_rings_state *state, const double *y, double *rates);
 /* y' at y: what stands there is replaced. False where the film cannot be or nothing holds it. */
 bool dea_rings_rates(const dea_rings_motion *motion, double time, const double *y, double *rates);
+/* Those of the displacements of a film without mass alone, from the rates of z and q that stand there. */
+bool dea_rings_massless(const dea_rings_motion *motion, double time, const double *y, double *rates);
 
 /* The matrix of Newton's method with all unknowns but u eliminated. */
 typedef struct dea_rings_schur {

@@ -1,19 +1,15 @@
 /* Transients of a membrane: runs at tighter tolerances on finer meshes, until two of them show that the answer is good enough. */
-#include <float.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 
-#include "engine/ida/rings_flight.h"
-#include "result/scales.h"
+#include "engine/rings_gap.h"
+#include "network/rings_mesh.h"
 #include "support/lapack.h"
 
 enum { MOST_RUNS = 6 };
 
 static const double first_tolerance = 0.05; /* of the accuracy */
 static const double first_share = 0.2;      /* from one tolerance to the next */
-static const double doubt = 1.5;            /* most that the error of the better of two runs is taken for, over their difference */
-static const double smooth_enough = 1.0;    /* of smoothness over the spacing of the nodes */
 static const double gains_nothing = 0.5;    /* a difference that falls by less than that stays too large */
 static const double least_tolerance = 3e-12; /* what rounding of the stiffest nodes leaves */
 static const double certain = 1e-7; /* an end of the motion counts from this tolerance on */
@@ -28,105 +24,8 @@ typedef struct search {
     dea_rings_trace traces[2]; /* owned samples: of the run before, and of the last */
     dea_rings_flight *flight;  /* owned: of the last */
     size_t rows;
-    double loosest, coverage;
+    double loosest;
 } search;
-
-/* What two runs differ by. */
-typedef struct gap {
-    double answer;         /* of the column that is worst against what it promises, times its allowance [1] */
-    double displacement;   /* of displacement and its means, over their peaks [1] */
-    dea_rate_errors rates; /* of velocity and current */
-} gap;
-
-/* The columns that are compared. */
-static const size_t columns[] = {offsetof(dea_sample, displacement), offsetof(dea_sample, velocity), offsetof(dea_sample, force),
-                                 offsetof(dea_sample, current),      offsetof(dea_sample, charge),   offsetof(dea_sample, film_voltage),
-                                 offsetof(dea_sample, focal_length)};
-
-static double at(const dea_sample *sample, size_t offset)
-{
-    return *(const double *)((const char *)sample + offset);
-}
-
-static double mean(const search *s, const dea_rings_trace *trace, size_t window)
-{
-    const dea_window *w = &s->scene->transient.averages[window];
-    return trace->integrals[window] / (w->to - w->from);
-}
-
-/* True where the film has numbers all over a window. */
-static bool covers(const search *s, const dea_rings_trace *trace, size_t window)
-{
-    const double last = trace->count > 0 ? trace->samples[trace->count - 1].time : -1.0;
-    return trace->end == DEA_STATE_OK || s->scene->transient.averages[window].to <= last;
-}
-
-/* Largest difference of a column over the samples that both have; NAN counts as none. */
-static double column_gap(const dea_rings_trace *a, const dea_rings_trace *b, size_t offset)
-{
-    const size_t count = a->count < b->count ? a->count : b->count;
-    double largest = 0.0;
-    for (size_t i = 0; i < count; i++) {
-        largest = fmax(largest, fabs(at(&a->samples[i], offset) - at(&b->samples[i], offset)));
-    }
-    return largest;
-}
-
-static gap difference(const search *s)
-{
-    const dea_rings_trace *a = &s->traces[0], *b = &s->traces[1];
-    const dea_sample scale = dea_scales_of(&s->scales, b->samples, b->count);
-    gap g = {0};
-    for (size_t c = 0; c < sizeof columns / sizeof *columns; c++) {
-        const double apart = column_gap(a, b, columns[c]);
-        const double share = apart > 0.0 ? apart / at(&scale, columns[c]) : 0.0;
-        g.answer = fmax(g.answer, share / dea_scales_allowance(columns[c]));
-    }
-    g.displacement = column_gap(a, b, offsetof(dea_sample, displacement)) / fmax(scale.displacement, DBL_MIN);
-    for (size_t i = 0; i < s->scene->transient.average_count; i++) {
-        const bool both = covers(s, a, i) && covers(s, b, i);
-        g.displacement = fmax(g.displacement, both ? fabs(mean(s, a, i) - mean(s, b, i)) / scale.displacement : 0.0);
-    }
-    g.answer = fmax(g.answer, g.displacement);
-    g.rates.velocity = column_gap(a, b, offsetof(dea_sample, velocity));
-    g.rates.current = column_gap(a, b, offsetof(dea_sample, current));
-    return g;
-}
-
-/* ---- meshes. Every kink of the voltage sends a wave out. Where damper and charging smooth it over more than the time that it takes
- * between two nodes, every node more cuts the error of the mesh by one factor; else it falls with a power of their number. */
-
-/* Coverage below which the annulus, much longer than its inner radius, has its nodes even in ln R. */
-static const double small_disc = 0.1;
-
-/* Time over which all waves are smooth, over the time that one takes from centre to frame [1]. */
-static double smoothness(const search *s)
-{
-    const dea_membrane *m = &s->flight->membrane;
-    const dea_dynamics *d = &m->film;
-    const double crossing = 3.83 / s->flight->motion.rest.slowest; /* J1(3.83) = 0 at the frame */
-    const double charging = d->series * s->flight->motion.rest.capacitance;
-    return m->heavy ? fmax(2.0 * DEA_PI * d->retardation, charging) / crossing : INFINITY;
-}
-
-/* Share of the nodes that an element takes that is so long, of two. */
-static size_t degree_of(double nodes, double length, double least)
-{
-    return (size_t)fmin(DEA_RINGS_DEGREE, fmax(least, ceil(nodes * (0.4 + 1.2 * length))));
-}
-
-static dea_rings_mesh mesh_of(const search *s, double nodes)
-{
-    const double coverage = s->coverage;
-    return (dea_rings_mesh){degree_of(nodes, coverage, 3.0), degree_of(nodes, 1.0 - coverage, 3.0), coverage < small_disc};
-}
-
-/* Nodes of an element for a first run. */
-static double first_nodes(const search *s)
-{
-    const double digits = -log10(s->scene->accuracy);
-    return 2.5 + 1.45 * digits;
-}
 
 /* One run on a mesh of its own, which takes the place of the last. */
 static dea_status run_on(search *s, dea_rings_mesh mesh, double tolerance, dea_summary *summary, dea_error *error)
@@ -147,43 +46,31 @@ static dea_status run_on(search *s, dea_rings_mesh mesh, double tolerance, dea_s
     return DEA_OK;
 }
 
-/* What the error of the better of two runs is taken for, over their difference, and by how much more nodes it has: where the film is
- * not smooth the errors of both are alike. */
-static double trust_of(const search *s, double nodes)
-{
-    return smoothness(s) * nodes > smooth_enough ? 0.75 : doubt;
-}
-
-static double finer(const search *s, double nodes)
-{
-    return smoothness(s) * nodes > smooth_enough ? nodes + 2.0 : 1.5 * nodes;
-}
-
 /* Leaves the better run of the last two in traces[1]; *good false where the accuracy was not reached. */
 static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates, bool *good, dea_error *error)
 {
     const double accuracy = s->scene->accuracy;
-    double tolerance = s->loosest = first_tolerance * accuracy, nodes = first_nodes(s), last = INFINITY;
+    double tolerance = s->loosest = first_tolerance * accuracy, nodes = dea_rings_first_nodes(accuracy), last = INFINITY;
     *good = false;
-    dea_status status = run_on(s, mesh_of(s, nodes), tolerance, NULL, error);
+    dea_status status = run_on(s, dea_rings_mesh_of(s->scene, nodes), tolerance, NULL, error);
     for (int i = 0; i < MOST_RUNS && status == DEA_OK && s->traces[1].end != DEA_STATE_FAILED; i++) {
-        const dea_rings_mesh before = mesh_of(s, nodes);
-        nodes = finer(s, nodes);
+        const dea_rings_mesh before = dea_rings_mesh_of(s->scene, nodes);
+        nodes = dea_rings_more_nodes(&s->flight->membrane, &s->flight->motion.rest, nodes);
         tolerance = fmax(first_share * tolerance, least_tolerance);
         *summary = dea_summary_failed();
-        status = run_on(s, mesh_of(s, nodes), tolerance, summary, error);
+        status = run_on(s, dea_rings_mesh_of(s->scene, nodes), tolerance, summary, error);
         if (status != DEA_OK) {
             return status;
         }
-        const gap apart = difference(s);
-        const double trust = trust_of(s, nodes);
+        const dea_rings_gap apart = dea_rings_gap_of(s->scene, &s->scales, &s->traces[0], &s->traces[1]);
+        const double trust = dea_rings_mesh_trust(&s->flight->membrane, &s->flight->motion.rest, nodes);
         const bool doubtful = s->traces[1].end == DEA_STATE_PULL_IN && tolerance > certain;
         const bool comparable = s->traces[0].count == s->traces[1].count;
         summary->error = fmax(apart.displacement * trust, fmax(10.0 * tolerance, 0.1 * accuracy));
         *rates = (dea_rate_errors){apart.rates.velocity * trust, apart.rates.current * trust};
         *good = fmax(apart.answer * trust, 10.0 * tolerance) <= accuracy && comparable && !doubtful;
         const bool hopeless = comparable && !(apart.answer < gains_nothing * last);
-        const bool finest = mesh_of(s, nodes).disc == before.disc && mesh_of(s, nodes).annulus == before.annulus;
+        const bool finest = dea_rings_mesh_of(s->scene, nodes).disc == before.disc && dea_rings_mesh_of(s->scene, nodes).annulus == before.annulus;
         if (*good || s->traces[1].end == DEA_STATE_FAILED || hopeless || finest) {
             return status;
         }
@@ -211,7 +98,7 @@ static void fill(const search *s, const dea_rings_trace *trace, bool good, dea_s
 static void tell_averages(const search *s, const dea_rings_trace *trace, dea_summary *summary)
 {
     for (size_t i = 0; i < s->scene->transient.average_count; i++) {
-        const double u = mean(s, trace, i);
+        const double u = dea_rings_mean(s->scene, trace, i);
         summary->averages[i] = (dea_average){u / s->flight->membrane.film.radius, u};
     }
 }
@@ -260,9 +147,7 @@ static dea_status fly(search *s, dea_sample *samples, dea_summary *summary, dea_
 
 static dea_status search_open(search *s, dea_error *error)
 {
-    const dea_actuator *actuator = &s->scene->actuator;
     s->rows = dea_layout_of(s->scene).rows;
-    s->coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
     s->scales = dea_scales_open(s->scene, s->model);
     s->flight = calloc(1, sizeof *s->flight);
     for (int i = 0; i < 2; i++) {

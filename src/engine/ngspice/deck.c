@@ -23,30 +23,27 @@ typedef struct writer {
 
 /* Corners of a segment up to its end. The library meets each, and from one to the next takes four steps at least, which it would
  * not shorten for an edge that is shorter than one: corners on its line do that. */
-static void write_ramp(const writer *w, const dea_segment *segment)
+static void write_ramp(FILE *out, const dea_mobility_piece *p, const dea_segment *segment)
 {
-    const dea_mobility_piece *p = w->piece;
     const double from = fmax(segment->from, p->from);
     const double end = fmin(segment->to, p->to);
     const bool brief = segment->start != segment->end && end - from < p->parts * p->step;
     const double parts = brief ? p->parts : 1.0;
     for (double part = 1.0; part <= parts; part++) {
         const double time = part == parts ? end : from + (end - from) * (part / parts);
-        fputc(' ', w->out);
-        dea_part_number(w->out, time - p->from);
-        fputc(' ', w->out);
-        dea_part_number(w->out, dea_segment_voltage(p->signal, segment, time));
+        fputc(' ', out);
+        dea_part_number(out, time - p->from);
+        fputc(' ', out);
+        dea_part_number(out, dea_segment_voltage(p->signal, segment, time));
     }
 }
 
-/* The voltage of the source from the begin of the piece on: its segments as breakpoints, or a sine. */
-static void write_source(const writer *w, const char *node)
+void dea_deck_source(FILE *out, const dea_mobility_piece *p, const char *node)
 {
-    const dea_mobility_piece *p = w->piece;
     const dea_segment *segment = &p->signal->segments[p->segment];
-    fputs("* voltage of the source [V]\n", w->out);
+    fputs("* voltage of the source [V]\n", out);
     if (segment->sine) {
-        const dea_curve_cards cards = {.out = w->out,
+        const dea_curve_cards cards = {.out = out,
                                        .dialect = engine_form().dialect,
                                        .number = dea_part_number,
                                        .signal = p->signal,
@@ -57,13 +54,13 @@ static void write_source(const writer *w, const char *node)
         dea_curve_cards_write(&cards);
         return;
     }
-    fprintf(w->out, "VSOURCE %s 0 ", node);
-    fputs("pwl(0 ", w->out);
-    dea_part_number(w->out, dea_segment_voltage(p->signal, segment, p->from));
+    fprintf(out, "VSOURCE %s 0 ", node);
+    fputs("pwl(0 ", out);
+    dea_part_number(out, dea_segment_voltage(p->signal, segment, p->from));
     for (size_t i = p->segment; i < p->signal->count && p->signal->segments[i].from < p->to; i++) {
-        write_ramp(w, &p->signal->segments[i]);
+        write_ramp(out, p, &p->signal->segments[i]);
     }
-    fputs(")\n", w->out);
+    fputs(")\n", out);
 }
 
 static double current_tolerance(const writer *w)
@@ -139,7 +136,7 @@ static void write_piece(writer *w)
     fputs("* moving dielectric elastomer actuator, numbers in units in which they are of size 1\n", w->out);
     dea_cards_write_numbers(&w->cards, &numbers);
     dea_cards_write_network(&w->cards);
-    write_source(w, series ? "source" : "film");
+    dea_deck_source(w->out, p, series ? "source" : "film");
     write_fit(w);
     fputs(".ic", w->out);
     dea_cards_write_start(&w->cards, &numbers, dea_segment_voltage(p->signal, &p->signal->segments[p->segment], p->from));

@@ -35,6 +35,8 @@ typedef struct dea_mobility_vectors {
     size_t count;
 } dea_mobility_vectors;
 
+/* The voltage of the source from the begin of the piece on: its segments as breakpoints, or a sine. */
+void dea_deck_source(FILE *out, const dea_mobility_piece *piece, const char *node);
 /* Netlist of one piece of a transient; on DEA_OK the caller frees *text. */
 dea_status dea_mobility_write(const dea_mobility *mobility, const dea_mobility_piece *piece, char **text, dea_error *error);
 /* The vectors of its plot, time first. */

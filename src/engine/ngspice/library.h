@@ -7,8 +7,8 @@
 
 typedef struct dea_ngspice dea_ngspice;
 
-/* Three stresses with the most branches, and room. */
-enum { DEA_NGSPICE_COLUMNS = 256 };
+/* A membrane of 60 nodes with six branches. */
+enum { DEA_NGSPICE_COLUMNS = 1024 };
 
 /* What came of a circuit: vectors of its plot, each with a value per point, or with real and imaginary part where it is complex.
  */

@@ -8,6 +8,10 @@
 
 /* Units in which a transient runs. */
 dea_status dea_ngspice_units(const dea_scene *scene, const dea_model *model, dea_units *units, dea_error *error);
+/* The same of the membrane, and one transient of it inside its units. */
+dea_status dea_ngspice_units_rings(const dea_scene *scene, const dea_model *model, dea_units *units, dea_error *error);
+dea_status dea_ngspice_transient_rings(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_sample *samples,
+                                       dea_summary *summary, dea_error *error);
 /* One transient, as dea_engine says. */
 dea_status dea_ngspice_transient(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_sample *samples,
                                  dea_summary *summary, dea_error *error);

@@ -41,12 +41,6 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
     if (!model->network && !model->membrane) {
         return "it has no network form that ngspice could solve";
     }
-    if (model->membrane && (scene->load.stiffness > 0.0 || scene->load.mass > 0.0)) {
-        return "its rings of film carry no load";
-    }
-    if (model->membrane && dea_study_of(scene)->timed) {
-        return "it does not step the membrane in time";
-    }
     if (dea_study_of(scene)->timed && scene->accuracy < 1e-6) {
         return "its trapezoidal rule is good to 1e-6 in a transient, the scene wants more";
     }
@@ -235,7 +229,7 @@ const dea_engine dea_engine_ngspice = {
     .block = 5000,
     .omits = ~0u,
     .costs = {[DEA_STUDY_SWEEP] = {0, 4e-6, 1e-5, 1e-4},
-              [DEA_STUDY_TRANSIENT] = {[DEA_FORM_LINEAR] = 0.1, [DEA_FORM_HYPERELASTIC] = 0.2},
+              [DEA_STUDY_TRANSIENT] = {[DEA_FORM_LINEAR] = 0.1, [DEA_FORM_HYPERELASTIC] = 0.2, [DEA_FORM_MEMBRANE] = 4.0},
               [DEA_STUDY_AC] = {[DEA_FORM_LINEAR] = 1e-2, [DEA_FORM_HYPERELASTIC] = 1e-2, [DEA_FORM_MEMBRANE] = 0.1}},
     .library = dea_ngspice_name,
     .refuses = refuses,

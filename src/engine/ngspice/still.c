@@ -141,7 +141,7 @@ static dea_status write_deck(const dea_rings_line *line, const line_job *job, si
     if (out) {
         fputs("* exact membrane as a network of rings\n", out);
         status = dea_rings_line_write(line, dea_dialect_at(0), out, error);
-        fputs("vindex k 0 0\n.options itl1=100 itl2=100 gminsteps=0 srcsteps=0 reltol=", out);
+        fputs("VINDEX k 0 0\n.options itl1=100 itl2=100 gminsteps=0 srcsteps=0 reltol=", out);
         dea_part_number(out, fmin(1e-7, job->accuracy));
         fputs(" vntol=", out);
         dea_part_number(out, 1e-11 * strain);
@@ -151,7 +151,7 @@ static dea_status write_deck(const dea_rings_line *line, const line_job *job, si
         for (size_t n = 1; n < line->mesh.disc + line->mesh.annulus; n++) {
             fprintf(out, " v(xline%zu.u%zu)", line->number, n);
         }
-        fprintf(out, "\n.dc vindex %zu %zu 1\n.end\n", from, to);
+        fprintf(out, "\n.dc VINDEX %zu %zu 1\n.end\n", from, to);
     }
     if (!dea_text_close(out) || status != DEA_OK) {
         free(*text);

@@ -698,14 +698,15 @@ dea_status dea_ngspice_transient(dea_ngspice *library, const dea_scene *scene, c
     dea_units units;
     dea_scene inside;
     *summary = dea_summary_failed();
-    dea_status status = dea_ngspice_units(scene, model, &units, error);
+    dea_status status = (model->membrane ? dea_ngspice_units_rings : dea_ngspice_units)(scene, model, &units, error);
     if (status == DEA_OK) {
         status = dea_units_enter(&units, scene, &inside, error);
     }
     if (status != DEA_OK) {
         return status;
     }
-    status = run_inside(library, &inside, model, units.time, samples, summary, error);
+    status = model->membrane ? dea_ngspice_transient_rings(library, &inside, model, samples, summary, error)
+                             : run_inside(library, &inside, model, units.time, samples, summary, error);
     dea_units_leave(&inside);
     if (status != DEA_OK) {
         return status;

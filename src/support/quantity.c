@@ -148,11 +148,13 @@ static const spelling *spelling_find(const char *text)
     return NULL;
 }
 
-/* Spells a unit in ASCII; false where it does not fit. */
+/* Spells a unit in ASCII, 1/MPa as MPa-1; false where it does not fit. */
 static bool unit_spell(const char *text, char out[UNIT_LENGTH])
 {
+    static const char over[] = "1/";
+    const size_t begin = strncmp(text, over, strlen(over)) == 0 && !strpbrk(text + strlen(over), "*./^ ") ? strlen(over) : 0;
     size_t used = 0;
-    for (size_t at = 0; text[at];) {
+    for (size_t at = begin; text[at];) {
         const spelling *sign = spelling_find(text + at);
         const size_t length = sign ? strlen(sign->meant) : 1;
         if (used + length >= UNIT_LENGTH) {
@@ -161,6 +163,9 @@ static bool unit_spell(const char *text, char out[UNIT_LENGTH])
         memcpy(out + used, sign ? sign->meant : text + at, length);
         used += length;
         at += sign ? strlen(sign->written) : 1;
+    }
+    if (begin > 0 && used + 2 < UNIT_LENGTH) {
+        used += (size_t)snprintf(out + used, UNIT_LENGTH - used, "-1");
     }
     out[used] = '\0';
     return true;

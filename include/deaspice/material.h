@@ -214,6 +214,11 @@ DEA_API void dea_film_biaxials(const dea_film *film, size_t count, const double 
 DEA_API void dea_film_changes(const dea_film *film, size_t count, const double *strains, const dea_changes *changes);
 /** Film of a law at rest under an equi-biaxial pre-stretch >= 0, its permittivity 0, without breakdown. */
 DEA_API dea_film dea_law_film(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], double prestretch);
+/** Room for what dea_film_fault() writes. */
+enum { DEA_FAULT_LENGTH = 160 };
+/** Why a film that is not valid, or whose scene is not, cannot rest: the constant whose straight chains the pre-stretch passes, else
+ * only that a number is out of its range; into @p text, which is returned. */
+DEA_API const char *dea_film_fault(const dea_film *film, char text[DEA_FAULT_LENGTH]);
 
 #ifdef __cplusplus
 }

@@ -54,6 +54,8 @@ DEA_API bool dea_measure_edge(const dea_sample *samples, size_t count, const dea
  */
 DEA_API size_t dea_measure_edges(const dea_scene *scene, const dea_sample *samples, size_t count, const dea_summary *summary,
                                  dea_edge_answer answers[DEA_EDGES]);
+/** Longest interval of the samples that see the swing behind a step [s]. */
+DEA_API double dea_measure_interval(const dea_scene *scene, const dea_summary *summary);
 /** True where the film swings and a sample behind an edge can still see that. */
 DEA_API bool dea_measure_lives(const dea_scene *scene, const dea_summary *summary);
 /** True where the film swings and its samples show how: DEA_SAMPLES_A_SWING of them or more. */

@@ -36,6 +36,7 @@ typedef struct dea_row {
     double charge;       /**< C U, signed as the voltage [C] */
     double area_strain;  /**< change of the electroded area over that at rest: disc of a dot, annulus of a lens [1] */
     double focal_length; /**< of a lens with optics [m]; NAN: none, or no cap of liquid has the focal length at rest */
+    double energy;       /**< of the electric field in the film, C U^2/2: what a recovering driver gets back [J] */
     dea_state state;
 } dea_row;
 
@@ -45,7 +46,7 @@ DEA_API dea_row dea_row_failed(void);
 /** Name of a state as results print it. */
 DEA_API const char *dea_state_name(dea_state state);
 
-/** Numeric columns of a row, the last of them only for a lens with optics: name, unit, offset in dea_row; the state column follows them. */
+/** Numeric columns of a row, the focal length only for a lens with optics: name, unit, offset in dea_row; the state column follows them. */
 typedef struct dea_column {
     const char *name;      /**< e.g. "displacement_m" */
     const char *long_name; /**< e.g. "radial displacement of the disc edge" */
@@ -53,7 +54,7 @@ typedef struct dea_column {
     size_t offset;         /**< of the double in dea_row */
 } dea_column;
 
-enum { DEA_ROW_COLUMNS = 8 };
+enum { DEA_ROW_COLUMNS = 9 };
 DEA_API extern const dea_column dea_row_columns[DEA_ROW_COLUMNS];
 
 /** One sample of a transient; from a pull_in or failed on, all numbers but time and voltage are NAN. */
@@ -68,6 +69,7 @@ typedef struct dea_sample {
     double charge;       /**< of the film, where the scene has an electrical port [C] */
     double focal_length; /**< of a lens with optics [m] */
     double film_voltage; /**< across the film, where the scene has a series resistance [V] */
+    double capacitance;  /**< of the film as it is deformed, where the scene has an electrical port [F] */
     dea_state state;
 } dea_sample;
 
@@ -149,7 +151,7 @@ typedef struct dea_weakest {
 } dea_weakest;
 
 /** Number of columns of a layout, and of those of a shape or a profile. */
-enum { DEA_LAYOUT_COLUMNS = 10, DEA_SPREAD_COLUMNS = 8 };
+enum { DEA_LAYOUT_COLUMNS = 12, DEA_SPREAD_COLUMNS = 8 };
 
 /** How the result of one point of a study lies in memory: its rows, then its summary or its band. */
 typedef struct dea_layout {
@@ -173,6 +175,8 @@ DEA_API void dea_layout_spread(dea_layout *layout, const dea_column *columns, si
 DEA_API dea_layout dea_layout_of(const dea_scene *scene);
 /** Time of sample @p index of a transient, frequency of row @p index of an AC study. */
 DEA_API double dea_layout_place(const dea_scene *scene, size_t index);
+/** Row of a transient whose sample lies at a time, between two of them and past the last one too; not cut to those there are. */
+DEA_API double dea_layout_index(const dea_scene *scene, double time);
 /** Radius number @p index of what rows tell over the radius, that of the film at rest and 0 V [m]. */
 DEA_API double dea_layout_radius(const dea_scene *scene, const dea_layout *layout, size_t index);
 /** Entry of a row at a radius. */

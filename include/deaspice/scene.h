@@ -58,7 +58,24 @@ typedef struct dea_electrode {
 typedef struct dea_edge_load {
     double mass;      /**< [kg], > 0, NAN: none */
     double stiffness; /**< of a spring to the frame, against the radial displacement of the edge [N/m], > 0, NAN: none */
+    double damping;   /**< mechanical resistance between edge and frame [N s/m], > 0, NAN: none */
+    double force;     /**< static, onto the edge, outward positive, over the whole circumference [N], NAN: none */
 } dea_edge_load;
+
+/** A second film in the same frame, joined to the first at r_a by a rigid ring, so that both edges move by the same u; a dot beside a
+ * lens pushes against it. What is NAN is that of the first film. */
+typedef struct dea_antagonist {
+    bool there;
+    dea_kind kind;
+    double frame_radius;   /**< r [m], that of the first film */
+    double coverage;       /**< B [1], that of the first film */
+    double film_thickness; /**< H before pre-stretch [m], > 0 */
+    double layers;         /**< films of that thickness [1], whole, >= 1 */
+    double prestretch;     /**< [1], >= 1 */
+    double voltage;        /**< static, across it [V], default 0 */
+    bool own_material;     /**< it has one, else that of the first film */
+    dea_material material;
+} dea_antagonist;
 
 /** Kinds of waveform, in the order of the table src/drive/waves.c. A file and a list of points are both points. */
 typedef enum dea_wave_kind {
@@ -138,7 +155,8 @@ typedef struct dea_axis {
     X(DEA_STUDY_TRANSIENT, transient)                                                                                            \
     X(DEA_STUDY_AC, ac)                                                                                                          \
     X(DEA_STUDY_MODES, modes)                                                                                                    \
-    X(DEA_STUDY_PROFILE, profile)
+    X(DEA_STUDY_PROFILE, profile)                                                                                                \
+    X(DEA_STUDY_FORCE, force)
 
 /** What a study asks for. */
 typedef enum dea_study_kind {
@@ -162,7 +180,10 @@ typedef struct dea_window {
 /** A transient from t = 0 on. */
 typedef struct dea_transient {
     double until;   /**< end [s], > 0 */
-    double every;   /**< interval of the samples [s], 0 < every <= until, default until/1000 */
+    double every;   /**< interval of the samples, of logarithmic ones the longest [s], 0 < every <= until, default until/1000 */
+    bool logarithmic; /**< samples at 0, at `first`, and from there evenly in the logarithm of time; default false */
+    double first;     /**< of logarithmic samples, the first behind 0 [s], 0 < first < until, default until/1e6 */
+    size_t points_per_decade; /**< of logarithmic samples, 1 ... 10000, default 50; 0: not given */
     double grid;    /**< power of ten that makes a whole number of `every`: sample i lies at (every grid) i/grid [1/s]; 0: none */
     bool from_bias; /**< starts in the relaxed equilibrium under the first voltage (true), or at rest (default) */
     dea_window averages[DEA_WINDOWS];
@@ -187,6 +208,12 @@ typedef struct dea_modes_study {
 typedef struct dea_profile {
     size_t points; /**< radii from the centre to the frame, 2 ... DEA_RADII_MAX, default 101 */
 } dea_profile;
+
+/** Displacements at which the edge is held, to - from apart in even steps. */
+typedef struct dea_force_study {
+    double from, to; /**< [m], both between -r_a and r - r_a */
+    size_t points;   /**< 2 ... DEA_RADII_MAX, default 61 */
+} dea_force_study;
 
 /** How a branch of the Prony series enters a moving network. */
 typedef enum dea_branch_form {
@@ -213,6 +240,7 @@ typedef struct dea_scene {
     dea_actuator actuator;
     dea_electrode electrode;
     dea_edge_load load;
+    dea_antagonist antagonist;
     dea_material material;
     dea_drive drive;
     const struct dea_model *models[DEA_SCENE_MODELS]; /**< models to run one after the other, model_count of them */
@@ -229,6 +257,7 @@ typedef struct dea_scene {
     dea_ac ac;               /**< of an AC study */
     dea_modes_study modes;   /**< of a study of modes */
     dea_profile profile;     /**< of a study of profiles */
+    dea_force_study force;   /**< of a study of forces */
     dea_axis *axes;          /**< axes of the sweep, or of `over`, in the order of the file; none is one point */
     size_t axis_count;
     struct dea_files *files; /**< those that were read for it, owned; NULL: none */

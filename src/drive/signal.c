@@ -57,7 +57,7 @@ static bool joins(builder *b, double to, double start, double end)
 /* An edge that rounding alone keeps off the time of a sample lies there, so that the sample sees what is before the edge. */
 static double on_grid(const builder *b, double time)
 {
-    const double index = round(time / b->scene->transient.every);
+    const double index = round(dea_layout_index(b->scene, time));
     if (!(index >= 0.0 && index < DEA_SAMPLES_MAX)) {
         return time;
     }

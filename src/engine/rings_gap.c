@@ -7,7 +7,7 @@
 /* The columns that are compared. */
 static const size_t columns[] = {offsetof(dea_sample, displacement), offsetof(dea_sample, velocity), offsetof(dea_sample, force),
                                  offsetof(dea_sample, current),      offsetof(dea_sample, charge),   offsetof(dea_sample, film_voltage),
-                                 offsetof(dea_sample, focal_length)};
+                                 offsetof(dea_sample, focal_length), offsetof(dea_sample, capacitance)};
 
 const size_t *dea_rings_column(size_t index)
 {

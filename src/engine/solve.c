@@ -99,14 +99,20 @@ static dea_status solve_by(const dea_plan *plan, dea_sessions *sessions, const d
 
 /* ---- one engine after the other */
 
-/* True where the numbers of the point are in their ranges: in a grid a corner can lie outside. */
-static bool is_valid(const dea_plan *plan, size_t number)
+static dea_point placed(const dea_plan *plan, size_t number)
 {
     dea_point point;
     dea_scene here = *plan->scene;
     dea_axes_place(&here, number);
     dea_film_prepare(&here, &point.film);
     dea_point_place(&here, &point);
+    return point;
+}
+
+/* True where the numbers of the point are in their ranges: in a grid a corner can lie outside. */
+static bool is_valid(const dea_plan *plan, size_t number)
+{
+    const dea_point point = placed(plan, number);
     return dea_point_valid(&point);
 }
 
@@ -193,10 +199,11 @@ static void explain_rows(const dea_plan *plan, const dea_errand *range, const de
     }
     if (failed == 0)
         return;
-    char place[256];
+    char place[256], fault[DEA_FAULT_LENGTH];
     dea_plan_place(plan->scene, range->first + at, place, sizeof place);
-    const char *why = is_valid(plan, range->first + at) ? "the engine found no answer that passes its own check"
-                                                        : "a number is out of its range";
+    const dea_point point = placed(plan, range->first + at);
+    const char *why =
+        dea_point_valid(&point) ? "the engine found no answer that passes its own check" : dea_film_fault(&point.film, fault);
     dea_fail(error, DEA_OK, "%zu of %zu points failed, the first at %zu%s: %s", failed, range->count, range->first + at, place,
              why);
 }

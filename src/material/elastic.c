@@ -1,5 +1,6 @@
 /* What follows from a law and its constants alone. */
 #include <math.h>
+#include <stdio.h>
 
 #include "deaspice/material.h"
 
@@ -69,6 +70,20 @@ dea_film dea_law_film(const dea_law *law, const double constants[DEA_LAW_CONSTAN
     film.w11 = stress.w11;
     film.w12 = stress.w12;
     return film;
+}
+
+const char *dea_film_fault(const dea_film *film, char text[DEA_FAULT_LENGTH])
+{
+    const dea_law *law = film->law;
+    const double locking = law->locking ? law->locking(film->constants) : INFINITY;
+    if (film->j >= locking) {
+        const size_t last = law->constant_count - 1;
+        snprintf(text, DEA_FAULT_LENGTH, "%s = %g is too small for the pre-stretch %g, where I1 - 3 is %.6g: the chains are straight at %.6g",
+                 law->constants[last].name, film->constants[last], film->prestretch, film->j, locking);
+    } else {
+        snprintf(text, DEA_FAULT_LENGTH, "a number is out of its range");
+    }
+    return text;
 }
 
 dea_biaxial dea_film_biaxial(const dea_film *film, double e1, double e2)

@@ -2,14 +2,14 @@
 
 #include <math.h>
 
-static const double loosest = 1e-3; /* accuracy that a trial is run at [1] */
+static const double loosest = 1e-3; /* accuracy that does for a trial where an engine does not promise what is wanted [1] */
 
-/* Tightens to what the engine promises, from wanted on; false where it can do nothing of it. */
+/* Loosens to what the engine promises, from wanted on; false where it can do nothing of it. */
 static bool can_do(dea_trial *trial, const dea_engine *engine, const dea_reduction *reduction, double wanted)
 {
     dea_scene reduced = trial->scene;
     reduced.reduction = *reduction;
-    for (double accuracy = fmin(wanted, loosest); accuracy <= loosest; accuracy *= 10.0) {
+    for (double accuracy = wanted; accuracy <= fmax(wanted, loosest); accuracy *= 10.0) {
         trial->scene.accuracy = reduced.accuracy = accuracy;
         if (!dea_engine_refuses(engine, &trial->scene, trial->model) && !dea_engine_refuses(engine, &reduced, trial->model)) {
             return true;

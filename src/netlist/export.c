@@ -2,6 +2,8 @@
 
 #include "study/study.h"
 
+#include <math.h>
+
 void dea_export_head(const dea_export *export, const char *meaning)
 {
     const dea_scene *scene = export->scene;
@@ -18,6 +20,10 @@ static dea_status refuse_models(const dea_scene *scene, dea_error *error)
     }
     if (scene->models[0]->membrane && dea_study_of(scene)->timed) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the motion of the model %s is no netlist: --as subckt is its part",
+                        scene->models[0]->name);
+    }
+    if (scene->models[0]->membrane && !dea_study_of(scene)->along && (fabs(scene->load.force) > 0.0 || scene->antagonist.there)) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s as a netlist carries no force and no second film at rest: --model ring does",
                         scene->models[0]->name);
     }
     if (!scene->models[0]->network && !scene->models[0]->membrane) {

@@ -197,7 +197,7 @@ static void write_analysis(writer *w)
     fputs("* .tran print interval, end, begin of the output, tmax [s]. tmax sets the accuracy: a tenth of it makes the error a "
           "hundredth\n.tran ",
           w->out);
-    dea_part_number(w->out, transient->every);
+    dea_part_number(w->out, transient->logarithmic ? transient->until / 1000.0 : transient->every);
     fputc(' ', w->out);
     dea_part_number(w->out, transient->until);
     fputs(" 0 ", w->out);
@@ -265,15 +265,14 @@ static dea_status set_start(writer *w, dea_error *error)
     dea_dynamics *d = &w->dynamics;
     const double source = w->signal.segments[0].start;
     const bool follows = dea_dynamics_is_free(d) && d->series == 0.0;
-    bool there = true;
-    double voltage = 0.0;
+    double voltage;
     w->start = (dea_mobility_state){0};
-    if (w->export->scene->transient.from_bias) {
-        voltage = source / (1.0 + d->series * d->conductance);
-        there = dea_dynamics_equilibrium(d, voltage, &w->start.u);
+    bool there = dea_dynamics_begin(d, d->biased, source, &w->start.u, &voltage);
+    if (there) {
         const dea_edge e = dea_dynamics_edge(d, w->start.u);
         dea_edge_relax(d, &e, w->start.z);
-    } else if (follows) {
+    }
+    if (there && follows && !d->biased) {
         there = dea_dynamics_follow(d, source, w->start.z, &w->start.u);
     }
     if (!there) {

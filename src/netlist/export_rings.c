@@ -6,6 +6,7 @@
 
 #include "netlist/export.h"
 #include "netlist/rings_small.h"
+#include "network/rings_mesh.h"
 
 /* What tells how good a mesh is: the edge under the bias, and the first mode about it. */
 typedef struct mark {
@@ -52,7 +53,7 @@ static double apart(const mark *coarse, const mark *fine)
 /* The coarsest mesh that is good to the scene's accuracy, or the finest; *gap: its error. */
 static dea_status choose(const dea_scene *scene, biased *b, double *gap, dea_error *error)
 {
-    const bool wide = dea_membrane_usual_mesh(scene).logarithmic;
+    const bool wide = dea_rings_usual_mesh(scene).logarithmic;
     mark marks[2];
     size_t degree = 4;
     dea_status status = open_mesh(scene, (dea_rings_mesh){degree, degree, wide}, b, &marks[0], error);

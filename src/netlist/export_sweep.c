@@ -61,7 +61,7 @@ static double solve_at(const line_text *l, size_t i)
     dea_film_prepare(&here, &point.film);
     dea_point_place(&here, &point);
     if (dea_point_valid(&point)) {
-        here.models[0]->solve(&point, 1e-9, &row);
+        dea_model_solve(here.models[0], &point, 1e-9, &row);
     }
     return row.displacement;
 }

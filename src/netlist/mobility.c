@@ -286,6 +286,25 @@ static void write_mass(dea_cards *c)
     write_store(c, c->form.analogy->mass, "MASS", c->ends[0], c->ends[1], "m_edge", "v_start");
 }
 
+static void write_load(dea_cards *c)
+{
+    if (c->dynamics->damping > 0.0) {
+        place(c);
+        fprintf(c->out, "* mechanical resistance of the load [N s/m]%s\nRLOAD %s %s {r_load}\n",
+                c->form.analogy->loop ? "" : ", whose inverse is the resistor", c->ends[0], c->ends[1]);
+    }
+}
+
+static void write_mass_numbers(const dea_cards *c, double mass)
+{
+    if (mass > 0.0) {
+        dea_part_value(c->out, "m_edge", mass);
+    }
+    if (c->dynamics->damping > 0.0) {
+        dea_part_value(c->out, "r_load", resistance(c, c->dynamics->damping));
+    }
+}
+
 /* Closes the loop over a source of 0 V, whose current is the velocity; v(edge) is then the velocity as in the other analogy. */
 static void close_loop(const dea_cards *c)
 {
@@ -620,8 +639,8 @@ void dea_cards_write_numbers(dea_cards *c, const dea_cards_numbers *n)
     } else {
         write_hyperelastic_numbers(c, &n->start);
     }
+    write_mass_numbers(c, c->dynamics->mass > 0.0 ? n->mass : 0.0);
     if (c->dynamics->mass > 0.0) {
-        dea_part_value(c->out, "m_edge", n->mass);
         dea_part_value(c->out, "v_start", n->start.v);
     }
 }
@@ -630,7 +649,8 @@ void dea_cards_write_network(dea_cards *c)
 {
     fputs(DEA_CARDS_BEGIN, c->out);
     for (int i = 0; i < c->mobility->network.element_count && !c->form.cures; i++) {
-        fprintf(c->out, "* %s: %s\n", c->mobility->network.elements[i].name, c->mobility->network.elements[i].meaning);
+        const dea_element *element = &c->mobility->network.elements[i];
+        fprintf(c->out, "* %s%s: %s\n", element->second ? "second film, " : "", element->name, element->meaning);
     }
     dea_part_text_nodes(&c->text); /* the sources refer to them */
     write_resistors(c);
@@ -646,6 +666,7 @@ void dea_cards_write_network(dea_cards *c)
         write_linear_springs(c);
     }
     write_mass(c);
+    write_load(c);
     close_loop(c);
     fputs(DEA_CARDS_END, c->out);
 }
@@ -703,9 +724,7 @@ void dea_cards_write_small(dea_dynamics *d, const dea_mobility_bias *bias, const
     dea_part_value(out, "c_film", e.capacitance);
     dea_part_value(out, "transduction", 2.0 * e.push * bias->voltage);
     write_linear_numbers(&c, dea_dynamics_stiffness(d, bias->u, bias->voltage, true), dea_edge_viscous(d, &e), NULL);
-    if (d->mass > 0.0) {
-        dea_part_value(out, "m_edge", d->mass);
-    }
+    write_mass_numbers(&c, d->mass);
     fputs(DEA_CARDS_BEGIN, out);
     write_resistors(&c);
     fputs("* capacitance of the film at the bias [F]\nCFILM film 0 {c_film}\n"
@@ -717,6 +736,7 @@ void dea_cards_write_small(dea_dynamics *d, const dea_mobility_bias *bias, const
     fputs("* springs of the relaxed film at the bias and of the voltage\n", out);
     write_linear_springs(&c);
     write_mass(&c);
+    write_load(&c);
     close_loop(&c);
     fputs(DEA_CARDS_END, out);
 }

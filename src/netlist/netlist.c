@@ -50,7 +50,8 @@ void dea_still_cards_write_network(dea_still_cards *cards, size_t ramp)
     FILE *out = text->out;
     fputs(DEA_CARDS_BEGIN, out);
     for (int i = 0; i < cards->network->element_count; i++) {
-        fprintf(out, "* %s: %s\n", cards->network->elements[i].name, cards->network->elements[i].meaning);
+        const dea_element *element = &cards->network->elements[i];
+        fprintf(out, "* %s%s: %s\n", element->second ? "second film, " : "", element->name, element->meaning);
     }
     dea_part_text_nodes(&cards->text);
     fputs("* elastic force of all springs [N], from the edge to the frame\n", out);
@@ -107,6 +108,18 @@ static void write_axis(FILE *out, const dea_netlist_study *study)
     fputs(")\n", out);
 }
 
+/* The displacement of an edge that is held, as a voltage of the index k. */
+static void write_hold(FILE *out, const dea_netlist_study *study)
+{
+    fputs("* what holds the edge: its current is the force on it\n.param hold_from=", out);
+    dea_part_number(out, study->held->from);
+    fputs(" hold_span=", out);
+    dea_part_number(out, study->held->to - study->held->from);
+    fputs(" hold_last=", out);
+    dea_part_number(out, (double)(study->count - 1));
+    fputs("\nBHOLD edge 0 v=({hold_from})+({hold_span})*v(k)/{hold_last}\n", out);
+}
+
 static double first_of(const dea_netlist_study *study)
 {
     return study->axis ? study->axis->values[study->from] : 0.0;
@@ -120,6 +133,9 @@ static void write_all(dea_still_cards *cards, const dea_netlist_study *study)
     dea_still_cards_write_numbers(cards);
     dea_still_cards_write_network(cards, study->ramp);
     write_axis(out, study);
+    if (study->held) {
+        write_hold(out, study);
+    }
     fputs(".nodeset v(edge)=0", out);
     if (study->axis) {
         fputs(" v(axis)=", out);
@@ -132,7 +148,7 @@ static void write_all(dea_still_cards *cards, const dea_netlist_study *study)
     dea_part_number(out, 1e-21 * study->length_scale);
     fputs(" abstol=", out);
     dea_part_number(out, 1e-21 * study->force_scale);
-    fputs("\n.save v(edge)\n", out);
+    fputs(study->held ? "\n.save bhold#branch\n" : "\n.save v(edge)\n", out);
     const size_t last = study->ramp ? study->ramp : study->from + study->count - 1;
     fprintf(out, ".dc VINDEX %zu %zu 1\n.end\n", study->ramp ? 0 : study->from, last);
 }

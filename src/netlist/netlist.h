@@ -30,6 +30,7 @@ void dea_still_cards_write_start(dea_still_cards *cards, const char *inside, dou
 typedef struct dea_netlist_study {
     const dea_axis *axis; /* the swept scalar, symbol 0 of the network; NULL: one point */
     size_t from, count;   /* part of the axis */
+    const dea_force_study *held; /* the edge is held at count displacements, BHOLD by name; NULL: it is free */
     size_t ramp;          /* > 0: one point whose load grows from 0 to all of it in so many steps; axis is NULL then */
     double tolerance;     /* relative, of every node [1] */
     double force_scale;   /* size of a force, for the current tolerance [N] */

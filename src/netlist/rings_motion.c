@@ -127,9 +127,21 @@ static void write_node(const dea_rings_motion_cards *c, const dea_rings_writer *
 
 static void write_load(const dea_rings_motion_cards *c, const dea_rings_writer *w)
 {
-    if (c->membrane->film.point.load > 0.0) {
+    const dea_dynamics *film = &c->membrane->film;
+    const char *edge = c->moving.free ? "u" : "edge";
+    if (film->point.load > 0.0) {
         fputs("* spring of the load between edge and frame\n", w->out);
-        fprintf(w->out, "GLOAD %s 0 u 0 {%s}\n", c->moving.free ? "u" : "edge", dea_rings_parameter(w, c->load).text);
+        fprintf(w->out, "GLOAD %s 0 u 0 {%s}\n", edge, dea_rings_parameter(w, c->load).text);
+    }
+    if (film->damping > 0.0) {
+        fprintf(w->out, "* mechanical resistance of the load [N s/m], whose inverse is the resistor\nRLOAD %s 0 ", edge);
+        dea_part_number(w->out, 1.0 / film->damping);
+        fputc('\n', w->out);
+    }
+    if (film->point.force != 0.0) {
+        fprintf(w->out, "* force of the load onto the edge [N], outward\nILOAD 0 %s ", edge);
+        dea_part_number(w->out, film->point.force);
+        fputc('\n', w->out);
     }
 }
 

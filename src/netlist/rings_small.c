@@ -175,6 +175,11 @@ void dea_rings_small_write(const dea_rings_small *small, FILE *out)
     for (size_t n = 0; n < m->rings.node_count; n++) {
         write_node(out, small, n, 2.0 * push[n] * small->voltage);
     }
+    if (m->film.damping > 0.0) {
+        fprintf(out, "* mechanical resistance of the load [N s/m]\nRLOAD v%zu 0 ", m->rings.edge + 1);
+        dea_part_number(out, 1.0 / m->film.damping);
+        fputc('\n', out);
+    }
     if (m->film.point.load > 0.0) {
         fprintf(out, "* spring of the load between edge and frame [N/m]\nGLOAD v%zu 0 u%zu 0 ", m->rings.edge + 1, m->rings.edge + 1);
         dea_part_number(out, m->film.point.load);

@@ -20,6 +20,14 @@ static void set_masses(const dea_scene *scene, dea_membrane *m)
     m->masses[m->rings.edge] += m->heavy && scene->load.mass > 0.0 ? scene->load.mass : 0.0;
 }
 
+const char dea_load_stalled[] = "load.damping alone leaves the other nodes of the membrane without an equation of motion: it takes "
+                                "material.density or material.retardation too";
+
+bool dea_load_stalls(const dea_scene *scene)
+{
+    return scene->load.damping > 0.0 && isnan(scene->material.density) && isnan(scene->material.retardation);
+}
+
 /* A ring at the frame has no node of its own: any does, with a hoop of 0. */
 static void find_own(dea_membrane *m)
 {
@@ -41,13 +49,6 @@ dea_status dea_membrane_open(const dea_scene *scene, const dea_model *model, dea
         find_own(m);
     }
     return status;
-}
-
-dea_rings_mesh dea_membrane_usual_mesh(const dea_scene *scene)
-{
-    const dea_actuator *actuator = &scene->actuator;
-    const double coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
-    return (dea_rings_mesh){8, 16, coverage < 0.1};
 }
 
 static double square_of(const dea_membrane *m, double voltage)
@@ -220,7 +221,7 @@ void dea_membrane_force(const dea_membrane *m, const dea_membrane_look *look, do
         }
         pull_ring(m, r, s, force);
     }
-    force[m->rings.edge] -= m->film.point.load * look->edge;
+    force[m->rings.edge] += m->film.point.force - m->film.point.load * look->edge;
 }
 
 /* ds_a/dlambda_b of a ring: of the film, of its electrical part k lambda_a lambda_b^2, of x_a/lambda_a at constant x_a, and of a
@@ -435,6 +436,9 @@ bool dea_membrane_follow(const dea_membrane *m, double voltage, const double *z,
 bool dea_membrane_still(const dea_membrane *m, double voltage, double *u)
 {
     memset(u, 0, m->rings.node_count * sizeof *u);
+    if (m->film.point.force != 0.0 && !follow(m, 0.0, 0.0, NULL, u)) {
+        return false;
+    }
     return follow(m, 0.0, voltage, NULL, u);
 }
 
@@ -564,6 +568,7 @@ static bool fill_sample(const dea_membrane *m, const dea_membrane_look *look, co
     if (m->film.port) {
         sample->current = dea_membrane_current(m, look, moment, v);
         sample->charge = row.charge;
+        sample->capacitance = row.capacitance;
     }
     return true;
 }
@@ -571,11 +576,12 @@ static bool fill_sample(const dea_membrane *m, const dea_membrane_look *look, co
 /* The first sample of a run from rest, over a resistance that the network leaves out: the film has no charge yet. */
 static bool sample_uncharged(const dea_membrane *m, const dea_moment *moment, dea_sample *sample)
 {
-    static const double still[DEA_RINGS_NODES] = {0.0};
+    static const double none[DEA_RINGS_NODES] = {0.0};
+    double still[DEA_RINGS_NODES];
     const dea_moment at = {.time = moment->time, .source = moment->source, .charging = true,
                            .charge_slope = moment->source / m->film.dropped};
     dea_membrane_look look;
-    return dea_membrane_look_at(m, still, &look) && fill_sample(m, &look, &at, still, still, sample);
+    return dea_membrane_still(m, 0.0, still) && dea_membrane_look_at(m, still, &look) && fill_sample(m, &look, &at, still, none, sample);
 }
 
 bool dea_membrane_sample(const dea_membrane *m, const dea_membrane_look *look, const dea_moment *moment, const double *u,
@@ -608,13 +614,12 @@ static bool find_modes(const dea_membrane *m, double *stiffness, dea_membrane_re
 
 bool dea_membrane_at_rest(const dea_membrane *m, dea_membrane_rest *rest)
 {
-    static const double still[DEA_RINGS_NODES] = {0.0};
     const size_t n = m->rings.node_count, edge = m->rings.edge;
-    double stiffness[DEA_RINGS_NODES * DEA_RINGS_NODES], held[DEA_RINGS_NODES * DEA_RINGS_NODES];
+    double still[DEA_RINGS_NODES], stiffness[DEA_RINGS_NODES * DEA_RINGS_NODES], held[DEA_RINGS_NODES * DEA_RINGS_NODES];
     double push[DEA_RINGS_NODES], shape[DEA_RINGS_NODES], stiff[DEA_RINGS_NODES];
     dea_membrane_look look;
     *rest = (dea_membrane_rest){0};
-    if (!dea_membrane_look_at(m, still, &look)) {
+    if (!dea_membrane_still(m, 0.0, still) || !dea_membrane_look_at(m, still, &look)) {
         return false;
     }
     dea_membrane_push(m, &look, push);
@@ -686,6 +691,7 @@ void dea_membrane_audit_add(dea_audit *audit, const dea_membrane *m, const dea_m
         nominal_of(m, look, x);
         ohmic += ring_power(m, x, rates);
     }
+    ohmic += d->damping * v[m->rings.edge] * v[m->rings.edge];
     audit->work += weight * (series ? moment->source * flow : 0.5 * capacitance_rate(m, look, v) * square + leak);
     audit->dissipated += weight * ohmic;
     audit->largest = fmax(fmax(audit->largest, kinetic_energy(m, v)), fmax(fabs(audit->work), fabs(audit->dissipated)));
@@ -716,7 +722,8 @@ static double way_integral(const dea_membrane *m, const double *u, const double 
         sum += dea_gauss_weight(g) * ring_power(m, f, rates);
     }
     const size_t edge = m->rings.edge;
-    return z ? sum : sum + 0.5 * m->film.point.load * (to[edge] - u[edge]) * (to[edge] + u[edge]);
+    const double way_of_edge = to[edge] - u[edge];
+    return z ? sum : sum + (0.5 * m->film.point.load * (to[edge] + u[edge]) - m->film.point.force) * way_of_edge;
 }
 
 void dea_membrane_audit_jump(dea_audit *audit, const dea_membrane *m, const double *u, const double *to, const double *z)

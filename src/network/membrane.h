@@ -43,8 +43,9 @@ typedef struct dea_membrane_look {
 dea_status dea_membrane_open(const dea_scene *scene, const dea_model *model, dea_rings_mesh mesh, dea_membrane *membrane,
                              dea_error *error);
 
-/* Nodes that tell the film at rest, and its first mode, to round-off; around a small disc they lie evenly in ln R. */
-dea_rings_mesh dea_membrane_usual_mesh(const dea_scene *scene);
+/* True where a load's damper alone would resist a membrane: its other nodes have no equation of motion then; and that in words. */
+bool dea_load_stalls(const dea_scene *scene);
+extern const char dea_load_stalled[];
 
 /* Number of the z. */
 static inline size_t dea_membrane_relaxed(const dea_membrane *membrane)

@@ -49,6 +49,13 @@ dea_rings_mesh dea_rings_mesh_of(const dea_scene *scene, double nodes)
     return quiet ? quiet_mesh(nodes, b) : mesh;
 }
 
+dea_rings_mesh dea_rings_usual_mesh(const dea_scene *scene)
+{
+    const dea_actuator *actuator = &scene->actuator;
+    const double coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
+    return (dea_rings_mesh){8, 16, coverage < small_disc};
+}
+
 double dea_rings_first_nodes(double accuracy)
 {
     return 2.5 - 1.45 * log10(accuracy);

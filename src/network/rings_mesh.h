@@ -6,6 +6,8 @@
 
 #include "network/membrane.h"
 
+/* Nodes that tell the film at rest, and its first mode, to round-off; around a small disc they lie evenly in ln R. */
+dea_rings_mesh dea_rings_usual_mesh(const dea_scene *scene);
 /* The mesh of a scene for so many nodes an element, on average. */
 dea_rings_mesh dea_rings_mesh_of(const dea_scene *scene, double nodes);
 /* Nodes of an element for a first run. */

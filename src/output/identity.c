@@ -91,6 +91,18 @@ static void put_lists(FILE *out, const dea_scene *scene)
         fprintf(out, "material.law=%s\n", material->law->name);
         put_numbers(out, "material.constants", material->constants, material->entry_count * material->law->constant_count);
     }
+    const dea_antagonist *other = &scene->antagonist;
+    if (other->there) {
+        fprintf(out, "antagonist.kind=%d\nantagonist.material.law=%s\n", (int)other->kind, other->own_material ? other->material.law->name : "");
+        put_numbers(out, "antagonist.material.constants", other->material.constants, other->own_material ? DEA_LAW_CONSTANTS : 0);
+        put_number(out, "antagonist.material.permittivity", other->material.permittivity);
+        put_number(out, "antagonist.material.permittivity.per_stretch", other->material.permittivity_per_stretch);
+        put_number(out, "antagonist.material.density", other->material.density);
+        put_number(out, "antagonist.material.modulus", other->material.modulus);
+        put_number(out, "antagonist.material.breakdown", other->material.breakdown);
+        put_numbers(out, "antagonist.material.prony", &other->material.prony[0].g, 2 * other->material.prony_count);
+        fprintf(out, "antagonist.material.moduli=%s\n", other->material.instantaneous ? "instantaneous" : "long-term");
+    }
     put_numbers(out, "material.prony", &material->prony[0].g, 2 * material->prony_count);
     put_numbers(out, "material.shift", material->shift.table[0], 2 * material->shift.count);
     put_numbers(out, "material.stretches", material->stretches, 2);

@@ -172,7 +172,8 @@ static bool is_used(const dea_scene *scene, const dea_key *key)
     while (!begins_with(key->path, parts[part].path)) {
         part++;
     }
-    const bool listed = (key->law && key->law != scene->material.law) || key->stride > 0;
+    const dea_law *law = begins_with(key->path, "electrode.") ? scene->electrode.law : scene->material.law;
+    const bool listed = (key->law && key->law != law) || key->stride > 0;
     return parts[part].used && key->offset != DEA_KEY_NOWHERE && (key->kinds & kind) != 0 && !listed;
 }
 
@@ -188,7 +189,8 @@ static bool is_first_of_its_place(const dea_scene *scene, const dea_key *key, si
     return true;
 }
 
-/* A scalar under its path without the section. */
+/* A scalar under its path without the section, one of the electrode under its whole path: a skin has a law and a density as the
+ * film has. */
 static void put_scalar(grid *file, const dea_key *key)
 {
     char name[DEA_NAME_LENGTH];
@@ -198,7 +200,7 @@ static void put_scalar(grid *file, const dea_key *key)
     if (isnan(value) || !dea_key_find(key->path, &ref)) {
         return;
     }
-    size_t components = 0;
+    size_t components = begins_with(key->path, "electrode.") ? 1 : 0;
     for (const char *dot = strchr(key->path, '.'); dot; dot = strchr(dot + 1, '.')) {
         components++;
     }
@@ -219,19 +221,17 @@ static void put_scalars(grid *file)
 }
 
 /* The constants of a law that is a list, entry after entry, under one name each. */
-static void put_listed_law(grid *file)
+static void put_listed_law(grid *file, const char *of, const dea_law *law, const double *constants, size_t count)
 {
-    const dea_material *material = &file->scene->material;
-    const size_t stride = material->law->constant_count;
-    for (size_t k = 0; k < stride && material->law->entries > 1; k++) {
+    const size_t stride = law ? law->constant_count : 0;
+    for (size_t k = 0; k < stride && law->entries > 1; k++) {
         char name[DEA_NAME_LENGTH];
         double values[DEA_LAW_CONSTANTS];
-        for (size_t i = 0; i < material->entry_count; i++) {
-            values[i] = material->constants[i * stride + k];
+        for (size_t i = 0; i < count; i++) {
+            values[i] = constants[i * stride + k];
         }
-        snprintf(name, sizeof name, "%s_%s%s", material->law->name, material->law->constants[k].name,
-                 material->law->constants[k].modulus ? "_Pa" : "");
-        grid_keep(file, file->nc.nc_put_att_double(file->file, NC_GLOBAL, name, NC_DOUBLE, material->entry_count, values));
+        snprintf(name, sizeof name, "%s%s_%s%s", of, law->name, law->constants[k].name, law->constants[k].modulus ? "_Pa" : "");
+        grid_keep(file, file->nc.nc_put_att_double(file->file, NC_GLOBAL, name, NC_DOUBLE, count, values));
     }
 }
 
@@ -286,7 +286,8 @@ static void put_provenance(grid *file, const char *engine)
     put_text(file, NC_GLOBAL, "material", scene->material.name);
     put_text(file, NC_GLOBAL, "material_source", scene->material.source);
     put_scalars(file);
-    put_listed_law(file);
+    put_listed_law(file, "", scene->material.law, scene->material.constants, scene->material.entry_count);
+    put_listed_law(file, "electrode_", scene->electrode.law, scene->electrode.constants, scene->electrode.entry_count);
     put_prony(file);
     put_shift(file);
     if (file->study->timed) {

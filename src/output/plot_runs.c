@@ -511,7 +511,7 @@ static void measure_along(sheet *page, bool logarithmic)
     const size_t rows = page->runs->layout.rows;
     const double first = dea_layout_place(scene, 0);
     page->along = (dea_span){INFINITY, -INFINITY, logarithmic || page->response};
-    page->time = page->response ? (dea_scale){.factor = 1.0} : dea_scale_choose(dea_layout_place(scene, rows - 1), "s");
+    page->time = page->response || logarithmic ? (dea_scale){.factor = 1.0, .unit = "s"} : dea_scale_choose(dea_layout_place(scene, rows - 1), "s");
     dea_span_take(&page->along, page->time.factor * (logarithmic && !(first > 0.0) ? dea_layout_place(scene, 1) : first));
     dea_span_take(&page->along, page->time.factor * dea_layout_place(scene, rows - 1));
 }
@@ -537,7 +537,7 @@ dea_status dea_plot_draw_runs(dea_plot *plot, dea_error *error)
                   .top = dea_plot_top(scene->title),
                   .canvas = picture->canvas};
     dea_legend legend = {.count = 0};
-    measure_along(&page, picture->log_x);
+    measure_along(&page, picture->log_x || (!page.response && scene->transient.logarithmic));
     if (page.response) {
         compose_pair(&page, offsetof(dea_response, displacement), offsetof(dea_response, displacement_phase),
                      "Displacement per volt", "m", "/V");

@@ -257,7 +257,7 @@ static void print_edge(const dea_findings *findings, const dea_edge_answer *edge
 static void print_aliases(const dea_findings *findings)
 {
     const dea_scene placed = dea_scene_of_run(findings->scene, 0), *scene = &placed;
-    const double every = scene->transient.every, resonance = findings->summary.resonance;
+    const double every = dea_measure_interval(scene, &findings->summary), resonance = findings->summary.resonance;
     const dea_waveform *wave = &scene->drive.waveform;
     if (findings->edge_count == 0 && dea_measure_lives(scene, &findings->summary) && every * resonance > aliased) {
         fputs("samples every ", stderr);
@@ -281,7 +281,7 @@ static void print_edges(const dea_findings *findings)
     if (findings->edge_count > 0 && dea_measure_lives(scene, &findings->summary) &&
         !dea_measure_shows(scene, &findings->summary)) {
         fputs("no rise and settling times: samples every ", stderr);
-        print_quantity(scene->transient.every, "s");
+        print_quantity(dea_measure_interval(scene, &findings->summary), "s");
         fputs(" do not show the first resonance, those every ", stderr);
         print_digits(outwards(1.0 / (DEA_SAMPLES_A_SWING * resonance), false), "s", 3);
         fputs(" would\n", stderr);

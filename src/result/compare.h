@@ -5,7 +5,7 @@
 #include "deaspice/result.h"
 #include "study/study.h"
 
-enum { DEA_COMPARED_COLUMNS = 8 };
+enum { DEA_COMPARED_COLUMNS = 10 };
 
 /* One compared column: where it lies in a row, and how. */
 typedef struct dea_compared {

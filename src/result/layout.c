@@ -24,6 +24,12 @@ double dea_layout_place(const dea_scene *scene, size_t index)
     return study->place ? study->place(scene, index) : 0.0;
 }
 
+double dea_layout_index(const dea_scene *scene, double time)
+{
+    const dea_study *study = dea_study_of(scene);
+    return study->index ? study->index(scene, time) : 0.0;
+}
+
 double dea_layout_radius(const dea_scene *scene, const dea_layout *layout, size_t index)
 {
     return scene->actuator.frame_radius * (double)index / (double)(layout->spread_points - 1);

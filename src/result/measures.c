@@ -239,14 +239,29 @@ size_t dea_measure_edges(const dea_scene *scene, const dea_sample *samples, size
     return found;
 }
 
+/* Behind any other waveform than a step the swing may live to the end. */
+double dea_measure_interval(const dea_scene *scene, const dea_summary *summary)
+{
+    const dea_transient *transient = &scene->transient;
+    const dea_waveform *wave = &scene->drive.waveform;
+    if (!transient->logarithmic || wave->kind != DEA_WAVE_STEP || !isnan(wave->period)) {
+        return transient->every;
+    }
+    const double life = -log(band) / summary->decay; /* of an undamped swing without end */
+    const double end = (isnan(wave->step.off) ? wave->step.on : wave->step.off) + wave->step.rise + life;
+    const double ratio = pow(10.0, 1.0 / (double)transient->points_per_decade);
+    return end < transient->until ? fmax(transient->first, end * (1.0 - 1.0 / ratio)) : transient->every;
+}
+
 bool dea_measure_lives(const dea_scene *scene, const dea_summary *summary)
 {
-    return summary->resonance > 0.0 && exp(-summary->decay * scene->transient.every) > band;
+    const double shortest = scene->transient.logarithmic ? scene->transient.first : scene->transient.every;
+    return summary->resonance > 0.0 && exp(-summary->decay * shortest) > band;
 }
 
 bool dea_measure_shows(const dea_scene *scene, const dea_summary *summary)
 {
-    return summary->resonance * scene->transient.every <= 1.0 / DEA_SAMPLES_A_SWING;
+    return summary->resonance * dea_measure_interval(scene, summary) <= 1.0 / DEA_SAMPLES_A_SWING;
 }
 
 /* Vertex of the parabola through three points of ln(magnitude) over ln(frequency), the middle one being the largest. */

@@ -28,6 +28,11 @@
         .path = name, .read = reader, .offset = DEA_KEY_NOWHERE, .kinds = DEA_KEY_BOTH, .accepted = help                         \
     }
 
+#define OTHER_IN(mapping, name, reader, help)                                                                                    \
+    {                                                                                                                            \
+        .path = name, .read = reader, .offset = DEA_KEY_NOWHERE, .kinds = DEA_KEY_BOTH, .within = mapping, .accepted = help      \
+    }
+
 /* The axes over which a study repeats, in its own mapping. */
 #define OVER(name)                                                                                                               \
     {                                                                                                                            \

@@ -6,25 +6,19 @@
 #include "scene/key_forms.h"
 #include "output/picture.h"
 #include "study/study.h"
-#include "support/number.h"
 
 #define AC "study.ac"
 
-enum { PER_DECADE_MAX = 10000 };
-
 static dea_status read_points_per_decade(dea_reader *reader, const dea_ref *ref, const dea_node *node)
 {
-    if (node->kind != DEA_NODE_SCALAR || !dea_count_read(node->text, PER_DECADE_MAX, &reader->scene->ac.points_per_decade)) {
-        return dea_reader_refuse(reader, ref, node, "out of range");
-    }
-    return DEA_OK;
+    return dea_reader_per_decade(reader, ref, node, &reader->scene->ac.points_per_decade);
 }
 
 static const dea_key keys[] = {
     OTHER(AC, dea_read_mapping, "a mapping with from, to, points_per_decade, bias and over, e.g. {from: 1 Hz, to: 10 kHz}"),
     PART(AC ".from", ac.from, "Hz", "_Hz", 0, INFINITY, true, 0, AC, "a frequency > 0, e.g. 1 Hz"),
     PART(AC ".to", ac.to, "Hz", "_Hz", 0, INFINITY, true, 0, AC, "a frequency >= from, e.g. 10 kHz"),
-    OTHER(AC ".points_per_decade", read_points_per_decade, "a whole number 1 ... 10000"),
+    OTHER_IN(AC, AC ".points_per_decade", read_points_per_decade, "a whole number 1 ... 10000"),
     PART(AC ".bias", ac.bias, "V", "_V", -INFINITY, INFINITY, true, 1, AC, "a voltage, e.g. 4500 V"),
     OVER(AC ".over"),
 };

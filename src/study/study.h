@@ -38,6 +38,7 @@ typedef struct dea_study {
     bool along;    /* rows of a point lie along a coordinate, their first column; else a point is one row, a dea_row */
     bool timed;    /* rows are dea_sample, and a dea_summary stands behind them */
     bool phasors;  /* rows are dea_response, and a dea_band stands behind them */
+    bool still;    /* the film rests: no current flows */
     bool stations; /* rows are dea_station, and a dea_weakest stands behind them */
     bool waveform; /* takes a waveform instead of drive.voltage */
     const char *bias;      /* key of the voltage that it has instead of drive.voltage, NULL: none */
@@ -77,6 +78,8 @@ typedef struct dea_study {
     void (*lay)(const dea_scene *scene, dea_layout *layout);
     /* Coordinate of row @p index; NULL where rows do not lie along one. */
     double (*place)(const dea_scene *scene, size_t index);
+    /* Its inverse, between rows and past the last one too; NULL where nobody asks. */
+    double (*index)(const dea_scene *scene, double place);
     /* Makes what stands behind the rows of a failed point; NULL: nothing stands there. */
     void (*fail)(const dea_layout *layout, void *point);
     /* True where the engine has it; NULL: where it has one of its solves[]. */

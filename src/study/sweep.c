@@ -1,6 +1,5 @@
 /* Statics: the scene at every combination of values of its axes. */
 #include <math.h>
-#include <string.h>
 
 #include "netlist/export.h"
 #include "scene/key_forms.h"
@@ -20,12 +19,16 @@ static const dea_study_column compared[] = {
     {offsetof(dea_row, charge), DEA_OVER_ITSELF, "charge"},
     {offsetof(dea_row, area_strain), DEA_OVER_ITSELF, "area_strain"},
     {offsetof(dea_row, focal_length), DEA_OVER_ITSELF, "focal_length"},
+    {offsetof(dea_row, energy), DEA_OVER_ITSELF, "energy"},
 };
 
 static void lay(const dea_scene *scene, dea_layout *layout)
 {
-    memcpy(layout->columns, dea_row_columns, sizeof dea_row_columns);
-    layout->column_count = isnan(scene->actuator.focal_length) ? DEA_ROW_COLUMNS - 1 : DEA_ROW_COLUMNS;
+    for (size_t i = 0; i < DEA_ROW_COLUMNS; i++) {
+        if (dea_row_columns[i].offset != offsetof(dea_row, focal_length) || !isnan(scene->actuator.focal_length)) {
+            dea_layout_add(layout, dea_row_columns[i]);
+        }
+    }
 }
 
 static bool offered(const dea_engine *engine)

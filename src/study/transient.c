@@ -15,6 +15,7 @@
 
 #define TRANSIENT "study.transient"
 #define AVERAGE TRANSIENT ".average"
+#define SAMPLES TRANSIENT ".samples"
 
 /* ---- reading */
 
@@ -61,10 +62,28 @@ static dea_status read_start(dea_reader *reader, const dea_ref *ref, const dea_n
     return status;
 }
 
+static dea_status read_samples(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    static const char *const words[] = {"even", "log", NULL};
+    size_t index = 0;
+    const dea_status status = dea_reader_word(reader, ref, node, words, &index);
+    reader->scene->transient.logarithmic = !status && index == 1;
+    return status;
+}
+
+static dea_status read_points_per_decade(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    return dea_reader_per_decade(reader, ref, node, &reader->scene->transient.points_per_decade);
+}
+
 static const dea_key keys[] = {
-    OTHER(TRANSIENT, dea_read_mapping, "a mapping with until, every, average, start and over, e.g. {until: 25 s, every: 10 ms}"),
+    OTHER(TRANSIENT, dea_read_mapping,
+          "a mapping with until, every, samples, from, points_per_decade, average, start and over, e.g. {until: 25 s, every: 10 ms}"),
     PART(TRANSIENT ".until", transient.until, "s", "_s", 0, INFINITY, true, 0, TRANSIENT, "a time > 0, e.g. 25 s"),
     PART(TRANSIENT ".every", transient.every, "s", "_s", 0, INFINITY, true, 0, TRANSIENT, "a time > 0, e.g. 10 ms"),
+    OTHER(SAMPLES, read_samples, "even, log"),
+    PART(TRANSIENT ".from", transient.first, "s", "_s", 0, INFINITY, true, 0, SAMPLES, "a time > 0, e.g. 1 us"),
+    OTHER_IN(SAMPLES, TRANSIENT ".points_per_decade", read_points_per_decade, "a whole number 1 ... 10000"),
     OTHER(AVERAGE, read_average, "a window of time, e.g. {from: 6 s, to: 8 s}, or a list of at most 8"),
     PART(AVERAGE ".from", transient.averages[0].from, "s", "_s", 0, INFINITY, false, 0, AVERAGE, "a time >= 0, e.g. 6 s"),
     PART(AVERAGE ".to", transient.averages[0].to, "s", "_s", 0, INFINITY, true, 0, AVERAGE, "a time > from, e.g. 8 s"),
@@ -102,19 +121,71 @@ static dea_status windows_finish(dea_reader *reader)
     return DEA_OK;
 }
 
+/* Ratio of the times of two neighbours among logarithmic samples. */
+static double ratio_of(const dea_transient *transient)
+{
+    return pow(10.0, 1.0 / (double)transient->points_per_decade);
+}
+
+/* Rows of a transient: one at 0, and logarithmic ones from `first` on up to the end, which need not lie on their grid. */
+static double rows_of(const dea_transient *transient)
+{
+    if (!transient->logarithmic) {
+        return floor(transient->until / transient->every * (1.0 + 1e-12)) + 1.0;
+    }
+    const double decades = log10(transient->until / transient->first);
+    return ceil(decades * (double)transient->points_per_decade * (1.0 - 1e-12)) + 2.0;
+}
+
+/* Where the keys of one kind of samples stand beside the other. */
+static dea_status samples_apart(dea_reader *reader)
+{
+    const bool logarithmic = reader->scene->transient.logarithmic;
+    const dea_node *every = dea_reader_given(reader, offsetof(dea_scene, transient.every))->node;
+    const dea_node *first = dea_reader_given(reader, offsetof(dea_scene, transient.first))->node;
+    const dea_node *points = dea_tree_find(reader->root, TRANSIENT ".points_per_decade");
+    if (logarithmic && every) {
+        return dea_place_fail(&every->key_at, reader->error, TRANSIENT ".every",
+                              "contradicts samples: log; accepted: from and points_per_decade, or samples: even");
+    }
+    if (!logarithmic && (first || points)) {
+        return dea_place_fail(first ? &first->key_at : &points->key_at, reader->error,
+                              first ? TRANSIENT ".from" : TRANSIENT ".points_per_decade",
+                              "belongs to samples: log; accepted: every, or samples: log");
+    }
+    return DEA_OK;
+}
+
+static dea_status logarithmic_finish(dea_reader *reader)
+{
+    dea_transient *transient = &reader->scene->transient;
+    const size_t first = offsetof(dea_scene, transient.first);
+    transient->first = isnan(transient->first) ? transient->until / 1e6 : transient->first;
+    transient->points_per_decade = transient->points_per_decade == 0 ? 50 : transient->points_per_decade;
+    if (!(transient->first < transient->until)) {
+        return fail_value(reader, first, TRANSIENT, TRANSIENT ".from", "out of range", transient->first, "a time > 0 and < until");
+    }
+    transient->every = fmax(transient->first, transient->until * (1.0 - 1.0 / ratio_of(transient)));
+    return rows_of(transient) <= DEA_SAMPLES_MAX ? windows_finish(reader)
+                                                 : fail_value(reader, first, TRANSIENT, TRANSIENT ".from", "too many samples",
+                                                              transient->first, "at most 4000000 samples up to until");
+}
+
 static dea_status finish(dea_reader *reader)
 {
     dea_transient *transient = &reader->scene->transient;
     const size_t every = offsetof(dea_scene, transient.every);
-    if (isnan(transient->until)) {
-        return dea_reader_missing(reader, TRANSIENT, TRANSIENT ".until");
+    const dea_status status = isnan(transient->until) ? dea_reader_missing(reader, TRANSIENT, TRANSIENT ".until")
+                                                      : samples_apart(reader);
+    if (status || transient->logarithmic) {
+        return status ? status : logarithmic_finish(reader);
     }
     transient->every = isnan(transient->every) ? transient->until / 1000.0 : transient->every;
     if (!(transient->every > 0.0 && transient->every <= transient->until)) {
         return fail_value(reader, every, TRANSIENT, TRANSIENT ".every", "out of range", transient->every,
                           "a time > 0 and <= until");
     }
-    if (!(floor(transient->until / transient->every * (1.0 + 1e-12)) + 1.0 <= DEA_SAMPLES_MAX)) {
+    if (!(rows_of(transient) <= DEA_SAMPLES_MAX)) {
         return fail_value(reader, every, TRANSIENT, TRANSIENT ".every", "too many samples", transient->every,
                           "at most 4000000 samples up to until");
     }
@@ -141,6 +212,9 @@ static void identify(FILE *out, const dea_scene *scene)
         fprintf(out, "%s%.17g,%.17g", i > 0 ? "," : "", transient->averages[i].from, transient->averages[i].to);
     }
     fprintf(out, "\n" TRANSIENT ".start=%s\n", transient->from_bias ? "bias" : "rest");
+    if (transient->logarithmic) {
+        fprintf(out, TRANSIENT ".points_per_decade=%zu\n", transient->points_per_decade);
+    }
 }
 
 /* ---- rows */
@@ -154,7 +228,8 @@ static void lay(const dea_scene *scene, dea_layout *layout)
     dea_layout_add(layout, (dea_column){"strain", "radial strain of the disc edge", "1", offsetof(dea_sample, strain)});
     dea_layout_add(layout, (dea_column){"velocity_m_per_s", "velocity of the disc edge", "m/s", offsetof(dea_sample, velocity)});
     dea_layout_add(layout, (dea_column){"force_N", "electrostatic force over the full circumference", "N", offsetof(dea_sample, force)});
-    if (series || !isnan(scene->drive.leakage_resistance)) {
+    const bool port = series || !isnan(scene->drive.leakage_resistance);
+    if (port) {
         dea_layout_add(layout, (dea_column){"current_A", "current of the source", "A", offsetof(dea_sample, current)});
         dea_layout_add(layout, (dea_column){"charge_C", "charge of the film", "C", offsetof(dea_sample, charge)});
     }
@@ -164,7 +239,10 @@ static void lay(const dea_scene *scene, dea_layout *layout)
     if (series) {
         dea_layout_add(layout, (dea_column){"film_voltage_V", "voltage across the film", "V", offsetof(dea_sample, film_voltage)});
     }
-    layout->rows = (size_t)floor(scene->transient.until / scene->transient.every * (1.0 + 1e-12)) + 1;
+    if (port) {
+        dea_layout_add(layout, (dea_column){"capacitance_F", "capacitance of the deformed film", "F", offsetof(dea_sample, capacitance)});
+    }
+    layout->rows = (size_t)rows_of(&scene->transient);
     layout->row_size = sizeof(dea_sample);
     layout->state_offset = offsetof(dea_sample, state);
     layout->point_size = layout->rows * sizeof(dea_sample) + sizeof(dea_summary);
@@ -172,10 +250,26 @@ static void lay(const dea_scene *scene, dea_layout *layout)
 
 static double place(const dea_scene *scene, size_t index)
 {
-    const double every = scene->transient.every, grid = scene->transient.grid;
+    const dea_transient *transient = &scene->transient;
+    const double every = transient->every, grid = transient->grid;
     double whole;
+    if (transient->logarithmic) {
+        const double decades = ((double)index - 1.0) / (double)transient->points_per_decade;
+        return index == 0 ? 0.0 : fmin(transient->first * pow(10.0, decades), transient->until);
+    }
     const bool decimal = grid > 0.0 && dea_number_over(every, grid, &whole);
     return fmin(decimal ? whole * (double)index / grid : every * (double)index, scene->transient.until);
+}
+
+/* Inverse of place(), between samples too. */
+static double index_of(const dea_scene *scene, double time)
+{
+    const dea_transient *transient = &scene->transient;
+    if (!transient->logarithmic) {
+        return time / transient->every;
+    }
+    const double behind = 1.0 + log10(time / transient->first) * (double)transient->points_per_decade;
+    return time < transient->first ? time / transient->first : behind;
 }
 
 static void fail(const dea_layout *layout, void *point)
@@ -192,6 +286,7 @@ static const dea_study_column compared[] = {
     {offsetof(dea_sample, charge), DEA_OVER_PEAK, "charge"},
     {offsetof(dea_sample, focal_length), DEA_OVER_PEAK, "focal_length"},
     {offsetof(dea_sample, film_voltage), DEA_OVER_PEAK, "film_voltage"},
+    {offsetof(dea_sample, capacitance), DEA_OVER_PEAK, "capacitance"},
 };
 
 static const dea_column figures[] = {
@@ -326,6 +421,7 @@ const dea_study dea_study_transient = {
     .identify = identify,
     .lay = lay,
     .place = place,
+    .index = index_of,
     .fail = fail,
     .offered = offered,
     .solve = solve,

@@ -14,6 +14,7 @@ static const struct {
     {offsetof(dea_sample, velocity), "velocity"}, {offsetof(dea_sample, force), "force"},
     {offsetof(dea_sample, current), "current"},   {offsetof(dea_sample, charge), "charge"},
     {offsetof(dea_sample, focal_length), "focal_length"}, {offsetof(dea_sample, film_voltage), "film_voltage"},
+    {offsetof(dea_sample, capacitance), "capacitance"},
 };
 
 /* How far off the truth of a column may be [its unit]; the others follow from displacement and voltage. */

@@ -306,6 +306,7 @@ dea_row film_state(const true_film *f, true_numbers n)
                      .charge = (double)(n.capacitance * n.voltage),
                      .area_strain = (double)((f->dot ? disc : -disc) / electroded_area(f, f->divide)),
                      .focal_length = isnan((double)f->focal_length) ? (double)NAN : (double)film_focal_length(f, n.strain),
+                     .energy = (double)(0.5L * n.capacitance * n.voltage * n.voltage),
                      .state = n.field > f->breakdown ? DEA_STATE_BREAKDOWN
                               : n.taut               ? DEA_STATE_OK
                                                      : DEA_STATE_SLACK};

@@ -9,7 +9,7 @@
 #include "engine/line.h"
 #include "promises.h"
 
-enum { COLUMNS = 8 };
+enum { COLUMNS = 9 };
 
 static const double negligible = 1e-9;  /* share of a column's largest value below which numbers count as that */
 static const double least_swing = 0.01; /* share of what the largest voltage does at rest that a peak counts as */
@@ -32,6 +32,7 @@ static const column columns[] = {
     {DEA_STUDY_SWEEP, offsetof(dea_row, charge), OVER_ITSELF, "charge"},
     {DEA_STUDY_SWEEP, offsetof(dea_row, area_strain), OVER_ITSELF, "area_strain"},
     {DEA_STUDY_SWEEP, offsetof(dea_row, focal_length), OVER_ITSELF, "focal_length"},
+    {DEA_STUDY_SWEEP, offsetof(dea_row, energy), OVER_ITSELF, "energy"},
     {DEA_STUDY_TRANSIENT, offsetof(dea_sample, displacement), OVER_PEAK, "displacement"},
     {DEA_STUDY_TRANSIENT, offsetof(dea_sample, strain), OVER_PEAK, "strain"},
     {DEA_STUDY_AC, offsetof(dea_response, displacement), OVER_ITSELF, "displacement"},

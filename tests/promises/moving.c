@@ -565,6 +565,7 @@ static bool record(motion *m, double time, long double here, const state *s)
         .charge = (double)s->q,
         .focal_length = isnan((double)f->focal_length) ? (double)NAN : (double)film_focal_length(f, s->u / f->divide),
         .film_voltage = f->series > 0.0L ? (double)s->w : (double)NAN,
+        .capacitance = row.capacitance,
         .state = row.state};
     return true;
 }
@@ -866,7 +867,7 @@ true_run moving_truth(const dea_scene *scene, const dea_model *model, double fac
     const double none = (double)NAN;
     for (size_t i = truth.good; i < truth.count; i++) {
         const double time = dea_layout_place(scene, i);
-        truth.samples[i] = (dea_sample){time, none, none, none, none, none, none, none, none, none, DEA_STATE_PULL_IN};
+        truth.samples[i] = (dea_sample){time, none, none, none, none, none, none, none, none, none, none, DEA_STATE_PULL_IN};
     }
     dea_signal_close(&m->signal);
     free(m);

@@ -135,7 +135,7 @@ static double found(const outcome *out, const fact *f)
         assert_true(transient->averages[0].from == f->at && transient->averages[0].to == f->to);
         return dea_layout_summary(&out->layout, out->points + f->point * out->layout.point_size)->averages[0].strain;
     }
-    const size_t row = (size_t)lround(f->at / out->scene.transient.every);
+    const size_t row = (size_t)lround(dea_layout_index(&out->scene, f->at));
     double value;
     memcpy(&value, (const char *)&samples[row] + f->column, sizeof value);
     return value;

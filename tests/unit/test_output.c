@@ -115,6 +115,7 @@ static dea_row row_make(size_t number)
                      .capacitance = 1e-10 + x,
                      .charge = 2.0 - x,
                      .area_strain = 0.5 * x,
+                     .energy = 0.25 * x,
                      .focal_length = 0.02 + x,
                      .state = DEA_STATE_OK};
 }
@@ -167,7 +168,7 @@ static void point_make(const dea_scene *scene, const dea_layout *layout, size_t 
         void *row = (char *)point + i * layout->row_size;
         if (scene->study == DEA_STUDY_TRANSIENT) {
             const double u = sample_displacement(number, at);
-            *(dea_sample *)row = (dea_sample){at, 4500.0, u, u / 0.015, 0.25, 0.5, 1e-6, 2e-6, NAN, 4400.0, DEA_STATE_OK};
+            *(dea_sample *)row = (dea_sample){at, 4500.0, u, u / 0.015, 0.25, 0.5, 1e-6, 2e-6, NAN, 4400.0, 2.5e-10, DEA_STATE_OK};
         } else {
             const double x = at / (100.0 * (double)(number + 1));
             *(dea_response *)row =
@@ -293,11 +294,11 @@ static void csv_holds_axes_then_numbers_then_the_state(void **state)
     assert_int_equal(dea_writer_points(writer, 0, rows, 4, &error), DEA_OK);
     assert_int_equal(dea_writer_finish(writer, true, &error), DEA_OK);
     assert_string_equal(file_text(in_folder("a.csv")),
-                        "voltage_V,coverage,strain,displacement_m,force_N,field_V_per_m,capacitance_F,charge_C,area_strain,state\n"
-                        "0,0.10000000000000001,0,0,0.25,1000000,1e-10,2,0,ok\n"
-                        "0,0.90000000000000002,0.001,1.0000000000000001e-05,1.25,500000,1.0000000001,1,0.5,ok\n"
-                        "4500,0.10000000000000001,0.002,2.0000000000000002e-05,2.25,333333.33333333331,2.0000000001,0,1,slack\n"
-                        "4500,0.90000000000000002,,,,,,,,pull_in\n");
+                        "voltage_V,coverage,strain,displacement_m,force_N,field_V_per_m,capacitance_F,charge_C,area_strain,energy_J,state\n"
+                        "0,0.10000000000000001,0,0,0.25,1000000,1e-10,2,0,0,ok\n"
+                        "0,0.90000000000000002,0.001,1.0000000000000001e-05,1.25,500000,1.0000000001,1,0.5,0.25,ok\n"
+                        "4500,0.10000000000000001,0.002,2.0000000000000002e-05,2.25,333333.33333333331,2.0000000001,0,1,0.5,slack\n"
+                        "4500,0.90000000000000002,,,,,,,,,pull_in\n");
 }
 
 static void csv_names_the_model_where_there_are_several(void **state)
@@ -309,9 +310,9 @@ static void csv_names_the_model_where_there_are_several(void **state)
     assert_int_equal(dea_writer_open(&scene, "direct", in_folder("a.csv"), NULL, &writer, &error), DEA_OK);
     assert_int_equal(rows_write(writer, 2, 1, &error), DEA_OK);
     assert_int_equal(dea_writer_finish(writer, true, &error), DEA_OK);
-    assert_string_equal(file_text(in_folder("a.csv")), "model,strain,displacement_m,force_N,field_V_per_m,capacitance_F,charge_C,area_strain,state\n"
-                        "lumped,0,0,0.25,1000000,1e-10,2,0,ok\n"
-                        "coverage,0.001,1.0000000000000001e-05,1.25,500000,1.0000000001,1,0.5,ok\n");
+    assert_string_equal(file_text(in_folder("a.csv")), "model,strain,displacement_m,force_N,field_V_per_m,capacitance_F,charge_C,area_strain,energy_J,state\n"
+                        "lumped,0,0,0.25,1000000,1e-10,2,0,0,ok\n"
+                        "coverage,0.001,1.0000000000000001e-05,1.25,500000,1.0000000001,1,0.5,0.25,ok\n");
 }
 
 static void csv_of_a_transient_holds_the_run_before_every_sample(void **state)
@@ -327,10 +328,10 @@ static void csv_of_a_transient_holds_the_run_before_every_sample(void **state)
     for (size_t number = 0; number < 4; number++) {
         dea_sample *samples = (dea_sample *)(void *)point;
         for (size_t i = 0; i < 3; i++) {
-            samples[i] = (dea_sample){0.5 * (double)i, 4500.0, 0.125, 0.25, 2.0, 0.5, 3.0, 4.0, 5.0, 6.0, DEA_STATE_OK};
+            samples[i] = (dea_sample){0.5 * (double)i, 4500.0, 0.125, 0.25, 2.0, 0.5, 3.0, 4.0, 5.0, 6.0, 7.0, DEA_STATE_OK};
         }
         if (number == 3) {
-            samples[2] = (dea_sample){1.0, 4500.0, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, DEA_STATE_PULL_IN};
+            samples[2] = (dea_sample){1.0, 4500.0, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, DEA_STATE_PULL_IN};
         }
         assert_int_equal(dea_writer_points(writer, number, point, 1, &error), DEA_OK);
     }
@@ -338,11 +339,11 @@ static void csv_of_a_transient_holds_the_run_before_every_sample(void **state)
     assert_int_equal(dea_writer_finish(writer, true, &error), DEA_OK);
     const char *text = file_text(in_folder("a.csv"));
     static const char begin[] =
-        "model,step_voltage_V,time_s,voltage_V,displacement_m,strain,velocity_m_per_s,force_N,current_A,charge_C,film_voltage_V,state\n"
-        "lumped,0,0,4500,0.125,0.25,2,0.5,3,4,6,ok\n"
-        "lumped,0,0.5,4500,0.125,0.25,2,0.5,3,4,6,ok\n";
+        "model,step_voltage_V,time_s,voltage_V,displacement_m,strain,velocity_m_per_s,force_N,current_A,charge_C,film_voltage_V,capacitance_F,state\n"
+        "lumped,0,0,4500,0.125,0.25,2,0.5,3,4,6,7,ok\n"
+        "lumped,0,0.5,4500,0.125,0.25,2,0.5,3,4,6,7,ok\n";
     assert_int_equal(strncmp(text, begin, strlen(begin)), 0);
-    assert_non_null(strstr(text, "\ncoverage,4500,0.5,4500,0.125,0.25,2,0.5,3,4,6,ok\ncoverage,4500,1,4500,,,,,,,,pull_in\n"));
+    assert_non_null(strstr(text, "\ncoverage,4500,0.5,4500,0.125,0.25,2,0.5,3,4,6,7,ok\ncoverage,4500,1,4500,,,,,,,,,pull_in\n"));
 }
 
 static void csv_of_a_frequency_response_holds_magnitudes_and_phases(void **state)
@@ -666,6 +667,26 @@ static void netcdf_keeps_the_scalars_that_the_study_used(void **state)
         const double value = netcdf_attribute(library, in_folder("a.nc"), cases[i].name);
         assert_true(isnan(cases[i].value) ? isnan(value) : value == cases[i].value);
     }
+    dlclose(library);
+}
+
+/* A skin of the same kind of law as the film, and lighter. */
+static void netcdf_tells_the_skin_from_the_film(void **state)
+{
+    (void)state;
+    const size_t counts[] = {2};
+    dea_scene scene = transient_make(1, counts, 1, 3);
+    dea_error error = {0};
+    scene.material.density = 1080.0;
+    scene.electrode = (dea_electrode){
+        .law = scene.material.law, .constants = {5000.0, 1.0, 2.0}, .entry_count = 1, .thickness = 25e-6, .density = 1010.0, .sheet_resistance = NAN};
+    assert_int_equal(points_write(&scene, in_folder("a.nc"), 1, &error), DEA_OK);
+    void *library = netcdf_library();
+    assert_true(netcdf_attribute(library, in_folder("a.nc"), "density_kg_per_m3") == 1080.0);
+    assert_true(netcdf_attribute(library, in_folder("a.nc"), "electrode_density_kg_per_m3") == 1010.0);
+    assert_true(netcdf_attribute(library, in_folder("a.nc"), "electrode_thickness_m") == 25e-6);
+    assert_true(netcdf_attribute(library, in_folder("a.nc"), "yeoh_C1_Pa") == 178426.0);
+    assert_true(netcdf_attribute(library, in_folder("a.nc"), "electrode_yeoh_C1_Pa") == 5000.0);
     dlclose(library);
 }
 
@@ -1215,6 +1236,7 @@ int main(void)
         IN_FOLDER(netcdf_of_a_transient_holds_time_samples_and_summaries),
         IN_FOLDER(netcdf_of_a_frequency_response_lies_along_frequency),
         IN_FOLDER(netcdf_keeps_the_scalars_that_the_study_used),
+        IN_FOLDER(netcdf_tells_the_skin_from_the_film),
         IN_FOLDER(picture_shows_hostile_titles_as_text),
         IN_FOLDER(long_curves_make_small_pictures),
         IN_FOLDER(two_long_axes_make_a_map),

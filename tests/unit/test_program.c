@@ -365,7 +365,7 @@ static void run_prints_csv(void **state)
     RUN("run", "dot.yaml", "--engine", "direct");
     assert_int_equal(last.status, 0);
     assert_int_equal(lines_of(last.out), 10);
-    assert_true(strncmp(last.out, "coverage,strain,displacement_m,force_N,field_V_per_m,capacitance_F,charge_C,area_strain,state\n",
+    assert_true(strncmp(last.out, "coverage,strain,displacement_m,force_N,field_V_per_m,capacitance_F,charge_C,area_strain,energy_J,state\n",
                         94) == 0);
     assert_non_null(strstr(last.out, ",ok\n"));
     assert_string_equal(last.err, "");

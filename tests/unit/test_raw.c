@@ -196,11 +196,11 @@ static void point_make(const dea_scene *scene, const dea_layout *layout, size_t 
         const double at = dea_layout_place(scene, i), u = displacement_at(number, i), x = (double)number;
         void *row = (char *)point + i * layout->row_size;
         if (scene->study == DEA_STUDY_TRANSIENT) {
-            *(dea_sample *)row = (dea_sample){at, 4500.0, u, u / 0.015, 0.25, 0.5, 1e-6, 2e-6, NAN, 4400.0, DEA_STATE_OK};
+            *(dea_sample *)row = (dea_sample){at, 4500.0, u, u / 0.015, 0.25, 0.5, 1e-6, 2e-6, NAN, 4400.0, 2.5e-10, DEA_STATE_OK};
         } else if (scene->study == DEA_STUDY_AC) {
             *(dea_response *)row = (dea_response){at, 1e-9 * at, -15.0 * (double)i, 1e9 / at, -90.0, DEA_STATE_OK};
         } else {
-            *(dea_row *)row = (dea_row){0.001 * x, 1e-5 * x, 0.25 + x, 1e6 / (1.0 + x), 1e-10 + x, -x, 0.5 * x, NAN, DEA_STATE_OK};
+            *(dea_row *)row = (dea_row){0.001 * x, 1e-5 * x, 0.25 + x, 1e6 / (1.0 + x), 1e-10 + x, -x, 0.5 * x, NAN, 0.1 * x, DEA_STATE_OK};
         }
     }
 }
@@ -251,7 +251,7 @@ static void transient_is_a_plot_over_time(void **state)
     static const char *const names[][2] = {{"time", "time"},         {"voltage_V", "voltage"},       {"displacement_m", "notype"},
                                            {"strain", "notype"},     {"velocity_m_per_s", "notype"}, {"force_N", "notype"},
                                            {"current_A", "current"}, {"charge_C", "charge"},         {"film_voltage_V", "voltage"},
-                                           {"state", "notype"}};
+                                           {"capacitance_F", "notype"}, {"state", "notype"}};
     const dea_scene scene = transient_make(0, 1);
     scene_write(&scene, "a.raw");
     plots_read("a.raw");
@@ -261,12 +261,12 @@ static void transient_is_a_plot_over_time(void **state)
     assert_string_equal(plots->name, "Transient Analysis");
     assert_non_null(strstr(plots->command, "ngspice"));
     assert_false(plots->complex);
-    check_vectors(plots, names, 10);
+    check_vectors(plots, names, 11);
     assert_int_equal(plots->points, 50);
     for (size_t i = 0; i < 50; i++) {
         const double u = displacement_at(0, i);
-        const double wanted[] = {0.5 * (double)i, 4500.0, u, u / 0.015, 0.25, 0.5, 1e-6, 2e-6, 4400.0, 0.0};
-        assert_memory_equal(plots->numbers + 10 * i, wanted, sizeof wanted);
+        const double wanted[] = {0.5 * (double)i, 4500.0, u, u / 0.015, 0.25, 0.5, 1e-6, 2e-6, 4400.0, 2.5e-10, 0.0};
+        assert_memory_equal(plots->numbers + 11 * i, wanted, sizeof wanted);
     }
 }
 
@@ -302,7 +302,7 @@ static void sweep_has_one_plot_for_each_run_of_its_longest_axis(void **state)
                                          "a dot, model = coverage, prestretch = 1.3"};
     static const char *const names[][2] = {{"voltage_V", "voltage"}, {"strain", "notype"},        {"displacement_m", "notype"},
                                            {"force_N", "notype"},    {"field_V_per_m", "notype"}, {"capacitance_F", "notype"},
-                                           {"charge_C", "charge"},   {"area_strain", "notype"},   {"state", "notype"}};
+                                           {"charge_C", "charge"},   {"area_strain", "notype"},   {"energy_J", "notype"},   {"state", "notype"}};
     const dea_scene scene = scene_make(2, 2);
     scene_write(&scene, "a.raw");
     plots_read("a.raw");
@@ -310,13 +310,13 @@ static void sweep_has_one_plot_for_each_run_of_its_longest_axis(void **state)
     for (size_t i = 0; i < 4; i++) {
         assert_string_equal(plots[i].title, titles[i]);
         assert_string_equal(plots[i].name, "DC transfer characteristic");
-        check_vectors(&plots[i], names, 9);
+        check_vectors(&plots[i], names, 10);
         assert_int_equal(plots[i].points, 3);
         for (size_t k = 0; k < 3; k++) {
             const double x = (double)(3 * i + k);
             const double wanted[] = {1500.0 * (double)k, 0.001 * x, 1e-5 * x, 0.25 + x, 1e6 / (1.0 + x),
-                                     1e-10 + x,          -x,        0.5 * x,  0.0};
-            assert_memory_equal(plots[i].numbers + 9 * k, wanted, sizeof wanted);
+                                     1e-10 + x,          -x,        0.5 * x,  0.1 * x, 0.0};
+            assert_memory_equal(plots[i].numbers + 10 * k, wanted, sizeof wanted);
         }
     }
 }
@@ -403,7 +403,7 @@ static void rows_without_numbers_are_left_out(void **state)
     assert_true(number_of(&plots[0], 19, 0) == 9.5);
     assert_string_equal(plots[1].title, "a dot, step_voltage_V = 3000");
     assert_int_equal(plots[1].points, 50);
-    assert_true(number_of(&plots[1], 29, 9) == 0.0 && number_of(&plots[1], 30, 9) == (double)DEA_STATE_BREAKDOWN);
+    assert_true(number_of(&plots[1], 29, 10) == 0.0 && number_of(&plots[1], 30, 10) == (double)DEA_STATE_BREAKDOWN);
 }
 
 /* The film holds no voltage in the middle of each run. */

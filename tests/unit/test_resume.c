@@ -7,7 +7,7 @@
 #include "deaspice/deaspice.h"
 #include "output/journal.h"
 
-enum { POINTS = 24000, BLOCK = 375, BLOCKS = 64, PACKED = 57, KILLS = 20 };
+enum { POINTS = 24000, BLOCK = 375, BLOCKS = 64, PACKED = 65, KILLS = 20 };
 
 static const char scene_text[] =
     "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"

@@ -196,9 +196,10 @@ dea_status dea_direct_profile(void *session, const dea_scene *scene, const dea_m
     dea_film_prepare(scene, &at.film);
     dea_point_place(scene, &at);
     if (!dea_point_valid(&at)) {
-        return dea_fail(error, DEA_ERROR_USAGE, "a number is out of its range");
+        char fault[DEA_FAULT_LENGTH];
+        return dea_fail(error, DEA_ERROR_USAGE, "%s", dea_film_fault(&at.film, fault));
     }
-    model->solve(&at, 0.01 * scene->accuracy, &row);
+    dea_model_solve(model, &at, 0.01 * scene->accuracy, &row);
     dea_layout_fail(scene, layout, point);
     const film f = {&at, model, row.strain};
     const bool there = !isnan(row.strain) && fill_stations(&f, stations, layout->rows) && find_weakest(&f, dea_layout_weakest(layout, point));

@@ -60,6 +60,9 @@ const char *dea_direct_refuses_transient(const dea_scene *scene, const dea_model
     if (!model->linear) {
         return "its springs are not linear, so that a transient has no closed form";
     }
+    if (fabs(scene->load.force) > 0.0 || scene->antagonist.there) {
+        return "a steady force beside that of the voltage has no closed form here";
+    }
     if (dea_series_resistance(scene) > 0.0 && !scene->reduction.series) {
         return "the charging of the film through a series resistance is not linear";
     }
@@ -140,12 +143,13 @@ static void write_row(run *r, const dea_piece *piece, const dea_course *course, 
     }
 }
 
-/* Rows of one segment. The amplitudes step from sample to sample; now and then they come from the begin of the segment, so that
- * no rounding adds up. */
+/* Rows of one segment. The amplitudes step from sample to sample; now and then, and always where samples are not even, they come
+ * from the begin of the segment, so that no rounding adds up. */
 static void write_rows(run *r, const dea_piece *piece, const dea_course *start, bool last)
 {
     dea_course course = *start;
-    size_t steps = STEPS;
+    const size_t most = r->scene->transient.logarithmic ? 0 : STEPS;
+    size_t steps = most;
     double before = 0.0;
     while (r->row < r->rows && !r->walk.lost) {
         const double time = dea_layout_place(r->scene, r->row);
@@ -153,7 +157,7 @@ static void write_rows(run *r, const dea_piece *piece, const dea_course *start, 
         if (time > piece->segment->to && !last) {
             return;
         }
-        if (steps >= STEPS || r->row + 1 == r->rows) {
+        if (steps >= most || r->row + 1 == r->rows) {
             dea_advance fresh;
             course = *start;
             dea_advance_make(&r->walk.now->modes, t, &fresh);

@@ -37,7 +37,7 @@ static bool set_sizes(dea_rings_motion *m)
     return true;
 }
 
-bool dea_rings_motion_open(const dea_membrane *membrane, const dea_signal *signal, dea_rings_motion *m)
+void dea_rings_motion_lay(const dea_membrane *membrane, const dea_signal *signal, dea_rings_motion *m)
 {
     *m = (dea_rings_motion){.membrane = membrane, .signal = signal, .segment = signal->segments};
     m->nodes = membrane->rings.node_count;
@@ -47,6 +47,11 @@ bool dea_rings_motion_open(const dea_membrane *membrane, const dea_signal *signa
     m->z = m->heavy ? 2 * m->nodes : m->nodes;
     m->q = m->z + dea_membrane_relaxed(membrane);
     m->count = m->q + (m->charged ? 1 : 0);
+}
+
+bool dea_rings_motion_open(const dea_membrane *membrane, const dea_signal *signal, dea_rings_motion *m)
+{
+    dea_rings_motion_lay(membrane, signal, m);
     return set_sizes(m);
 }
 
@@ -67,7 +72,9 @@ bool dea_rings_look(const dea_rings_motion *m, double time, const double *y, con
     }
     dea_membrane_viscous(m->membrane, &state->look, v, y + m->z, state->x);
     dea_membrane_force(m->membrane, &state->look, state->voltage, state->x, state->force);
-    return isfinite(state->force[m->membrane->rings.edge]);
+    const size_t edge = m->membrane->rings.edge;
+    state->force[edge] -= v ? m->membrane->film.damping * v[edge] : 0.0;
+    return isfinite(state->force[edge]);
 }
 
 void dea_rings_relaxing(const dea_rings_motion *m, const dea_rings_state *state, const double *y, double *rates)
@@ -132,6 +139,7 @@ static bool massless_rates(const dea_rings_motion *m, double time, dea_rings_sta
     if (m->damped) {
         memcpy(rates, state->force, m->nodes * sizeof *rates);
         dea_membrane_damping(m->membrane, &state->look, m->membrane->film.retardation, matrix);
+        matrix[m->membrane->rings.edge * (m->nodes + 1)] += m->membrane->film.damping;
     } else {
         held_stiffness(m, state, matrix);
         load_rates(m, time, state, rates, rates);
@@ -185,6 +193,7 @@ void dea_rings_schur_fill(const dea_rings_motion *m, const dea_rings_state *stat
     for (size_t n = 0; n < m->nodes && m->heavy; n++) {
         matrix[n * m->nodes + n] += pace * pace * membrane->masses[n];
     }
+    matrix[membrane->rings.edge * (m->nodes + 1)] += pace * d->damping;
     if (!m->charged) {
         return;
     }
@@ -228,6 +237,8 @@ void dea_rings_schur_reduce(const dea_rings_motion *m, const dea_rings_schur *sc
     for (size_t n = 0; n < m->nodes; n++) {
         reduced[n] = m->heavy ? m->membrane->masses[n] * (b[m->nodes + n] + schur->pace * b[n]) : b[n];
     }
+    const size_t edge = m->membrane->rings.edge;
+    reduced[edge] += m->heavy ? m->membrane->film.damping * b[edge] : 0.0;
     if (m->membrane->film.branch_count > 0 || (m->heavy && m->damped)) {
         double f[DEA_RINGS_MOST][2];
         reduce_rings(m, schur, b, f);
@@ -274,10 +285,10 @@ void dea_rings_schur_expand(const dea_rings_motion *m, const dea_rings_schur *sc
 bool dea_rings_start(const dea_rings_motion *m, bool from_bias, double *y)
 {
     const dea_dynamics *d = &m->membrane->film;
-    const double voltage = m->segment->start / (1.0 + d->series * d->conductance);
+    const double voltage = from_bias ? m->segment->start / (1.0 + d->series * d->conductance) : 0.0;
     dea_membrane_look look;
     memset(y, 0, m->count * sizeof *y);
-    if (!from_bias) {
+    if (!from_bias && d->point.force == 0.0) {
         return true;
     }
     if (!dea_membrane_still(m->membrane, voltage, y) || !dea_membrane_look_at(m->membrane, y, &look)) {

@@ -33,7 +33,9 @@ typedef struct dea_rings_state {
     double source;  /* [V] */
 } dea_rings_state;
 
-/* Lays out the unknowns; false where the film is not stable at rest. */
+/* Lays out the unknowns. */
+void dea_rings_motion_lay(const dea_membrane *membrane, const dea_signal *signal, dea_rings_motion *motion);
+/* And tells their sizes from the film at rest; false where that is not stable. */
 bool dea_rings_motion_open(const dea_membrane *membrane, const dea_signal *signal, dea_rings_motion *motion);
 static inline bool dea_rings_algebraic(const dea_rings_motion *motion)
 {

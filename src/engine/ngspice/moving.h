@@ -22,4 +22,8 @@ dea_status dea_ngspice_ac(dea_ngspice *library, const dea_scene *scene, const de
 dea_status dea_ngspice_ac_rings(dea_ngspice *library, const dea_scene *scene, const dea_model *model, dea_response *rows,
                                 dea_band *band, dea_error *error);
 
+/* Forces on an edge that is held, of a model that is a network. */
+dea_status dea_ngspice_force(void *session, const dea_scene *scene, const dea_model *model, const dea_layout *layout, void *point,
+                             dea_error *error);
+
 #endif

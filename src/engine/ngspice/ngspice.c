@@ -12,6 +12,7 @@
 #include "engine/ngspice/stretch.h"
 #include "netlist/netlist.h"
 #include "network/balance.h"
+#include "network/membrane.h"
 #include "study/study.h"
 
 enum {
@@ -40,6 +41,16 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
 {
     if (!model->network && !model->membrane) {
         return "it has no network form that ngspice could solve";
+    }
+    const bool still = !dea_study_of(scene)->along || dea_study_of(scene)->still;
+    if (model->membrane && still && (fabs(scene->load.force) > 0.0 || scene->antagonist.there)) {
+        return "its membrane at rest carries a spring alone, no force and no second film";
+    }
+    if (model->membrane && scene->study == DEA_STUDY_FORCE) {
+        return "it does not hold the edge of the membrane";
+    }
+    if (model->membrane && dea_study_of(scene)->timed && dea_load_stalls(scene)) {
+        return dea_load_stalled;
     }
     if (dea_study_of(scene)->timed && scene->accuracy < 1e-6) {
         return "its trapezoidal rule is good to 1e-6 in a transient, the scene wants more";
@@ -114,7 +125,7 @@ static dea_status solve_alone(void *user, size_t i, dea_error *error)
     if (!dea_balance_valid(&job->balance, symbol)) {
         return DEA_OK;
     }
-    if (dea_balance_forces(&job->balance, symbol, 0.0).load == 0.0 && accept(job, i, 0.0)) {
+    if (!job->balance.steady && dea_balance_forces(&job->balance, symbol, 0.0).load == 0.0 && accept(job, i, 0.0)) {
         return DEA_OK;
     }
     if (dea_balance_folds(&job->balance, symbol, &share, &fold)) {
@@ -154,8 +165,8 @@ static bool can_start(void *user, size_t i)
     line_job *job = user;
     double share, fold;
     const double symbol = symbol_at(job, i);
-    return dea_balance_valid(&job->balance, symbol) && dea_balance_forces(&job->balance, symbol, 0.0).load != 0.0 &&
-           !dea_balance_folds(&job->balance, symbol, &share, &fold);
+    const bool moves = job->balance.steady || dea_balance_forces(&job->balance, symbol, 0.0).load != 0.0;
+    return dea_balance_valid(&job->balance, symbol) && moves && !dea_balance_folds(&job->balance, symbol, &share, &fold);
 }
 
 static dea_status sweep_stretch(void *user, size_t from, size_t count, size_t *good, dea_error *error)
@@ -230,6 +241,7 @@ const dea_engine dea_engine_ngspice = {
     .omits = ~0u,
     .costs = {[DEA_STUDY_SWEEP] = {0, 4e-6, 1e-5, 1e-4},
               [DEA_STUDY_TRANSIENT] = {[DEA_FORM_LINEAR] = 0.1, [DEA_FORM_HYPERELASTIC] = 0.2, [DEA_FORM_MEMBRANE] = 4.0},
+              [DEA_STUDY_FORCE] = {[DEA_FORM_LINEAR] = 1e-2, [DEA_FORM_HYPERELASTIC] = 1e-2},
               [DEA_STUDY_AC] = {[DEA_FORM_LINEAR] = 1e-2, [DEA_FORM_HYPERELASTIC] = 1e-2, [DEA_FORM_MEMBRANE] = 0.1}},
     .library = dea_ngspice_name,
     .refuses = refuses,
@@ -237,5 +249,6 @@ const dea_engine dea_engine_ngspice = {
     .sweep = sweep,
     .transient = transient,
     .ac = ac,
+    .solves = {[DEA_STUDY_FORCE] = dea_ngspice_force},
     .end = end,
 };

@@ -31,7 +31,7 @@ static film film_at(dea_dynamics *d, double u, double voltage)
     const double viscous = dea_edge_viscous(d, &e);
     return (film){.dynamics = d,
                   .mass = d->mass,
-                  .resistance = d->retardation * viscous,
+                  .resistance = dea_edge_resistance(d, &e),
                   .stiffness = dea_dynamics_stiffness(d, u, voltage, true),
                   .viscous = viscous,
                   .transduction = d->series > 0.0 ? 2.0 * e.push * voltage : 0.0,

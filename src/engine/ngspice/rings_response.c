@@ -11,6 +11,7 @@
 #include "engine/ngspice/deck.h"
 #include "netlist/rings_small.h"
 #include "support/text.h"
+#include "network/rings_mesh.h"
 
 /* The library rounds the number of steps between two frequencies down: a last one that rounding leaves short would be lost. */
 static const double grid = 1e-13;
@@ -182,7 +183,7 @@ static double gap(const answer *a, const answer *b, size_t count)
 /* Meshes ever finer until two of them agree: the error of the finer one is a small part of their difference. */
 static dea_status refine(response *r, const dea_model *model, answer *pair[2], size_t count, dea_state *state, dea_error *error)
 {
-    const bool wide = dea_membrane_usual_mesh(r->scene).logarithmic;
+    const bool wide = dea_rings_usual_mesh(r->scene).logarithmic;
     const size_t first = 4 + (size_t)fmax(0.0, ceil(-0.5 * log10(r->scene->accuracy)));
     for (size_t degree = first; degree <= DEA_RINGS_DEGREE; degree += 2) {
         answer *last = pair[0];

@@ -79,7 +79,7 @@ double dea_route_voltage(const dea_route *route, double source, double u, double
 /* m u'' = phi U^2 less what the film holds, its damper too. */
 static double acceleration(const dea_dynamics *d, const dea_edge *e, const node *n)
 {
-    const double held = dea_edge_held(d, e, n->state.z) + d->retardation * dea_edge_viscous(d, e) * n->moment.v;
+    const double held = dea_edge_held(d, e, n->state.z) + dea_edge_resistance(d, e) * n->moment.v;
     return (e->push * n->moment.voltage * n->moment.voltage - held) / d->mass;
 }
 
@@ -532,7 +532,7 @@ static void find_fast(runner *r)
 {
     dea_dynamics *d = r->route->dynamics;
     const dea_edge e = dea_dynamics_edge(d, r->last.moment.u);
-    const double resistance = d->retardation * dea_edge_viscous(d, &e), limit = r->step / alternating;
+    const double resistance = dea_edge_resistance(d, &e), limit = r->step / alternating;
     const double held = dea_dynamics_stiffness(d, r->last.moment.u, r->last.moment.voltage, false);
     const double heavy = d->mass > 0.0 ? (r->rings || r->slow ? (double)INFINITY : d->mass / resistance) : resistance / held;
     r->fast =
@@ -721,16 +721,13 @@ static bool start(runner *r)
     dea_dynamics *d = route->dynamics;
     const double source = route->signal->segments[0].start;
     dea_mobility_state state = {0};
-    double voltage = 0.0;
-    if (route->scene->transient.from_bias) {
-        voltage = d->series > 0.0 ? source / (1.0 + d->series * d->conductance) : source;
-        if (!dea_dynamics_equilibrium(d, voltage, &state.u)) {
-            return false;
-        }
-        const dea_edge e = dea_dynamics_edge(d, state.u);
-        state.charge = e.capacitance * voltage;
-        dea_edge_relax(d, &e, state.z);
+    double voltage;
+    if (!dea_dynamics_begin(d, d->biased, source, &state.u, &voltage)) {
+        return false;
     }
+    const dea_edge e = dea_dynamics_edge(d, state.u);
+    state.charge = e.capacitance * voltage;
+    dea_edge_relax(d, &e, state.z);
     r->last = node_at(r, 0.0, &state, NULL);
     r->track->start = state;
     r->track->first = r->last.moment;

@@ -132,12 +132,19 @@ dea_status dea_units_enter(const dea_units *units, const dea_scene *scene, dea_s
     enter_law(units, inside->electrode.law, inside->electrode.constants);
     inside->load.mass *= units->stress * units->thickness * units->time * units->time;
     inside->load.stiffness *= units->stress * units->thickness;
+    inside->load.damping *= units->stress * units->thickness * units->time;
+    inside->load.force *= units->stress * units->thickness * units->length;
+    inside->antagonist.frame_radius *= units->length;
+    inside->antagonist.film_thickness *= units->thickness;
+    inside->antagonist.voltage *= units->voltage;
+    enter_material(units, &inside->antagonist.material);
     enter_material(units, &inside->material);
     inside->drive.series_resistance *= resistance(units);
     inside->drive.leakage_resistance *= resistance(units);
     enter_wave(units, &inside->drive.waveform);
     inside->transient.until *= units->time;
     inside->transient.every *= units->time;
+    inside->transient.first *= units->time;
     inside->transient.grid /= units->time;
     for (size_t i = 0; i < inside->transient.average_count; i++) {
         inside->transient.averages[i].from *= units->time;
@@ -168,6 +175,7 @@ void dea_units_return_sample(const dea_units *units, dea_sample *sample)
     sample->charge /= charge(units);
     sample->focal_length /= units->length;
     sample->film_voltage /= units->voltage;
+    sample->capacitance /= charge(units) / units->voltage;
 }
 
 void dea_units_return_response(const dea_units *units, dea_response *row)

@@ -1,0 +1,125 @@
+/* Sources, samples and figures of motion against closed forms. */
+#include "scenes.h"
+
+#include <stdlib.h>
+
+/* The paper's film without mass, the last of its accuracy and engine; the caller frees it. */
+static dea_status parse(const char *drive, const char *model, const char *transient, dea_scene *scene, dea_error *error)
+{
+    char text[1500];
+    snprintf(text, sizeof text,
+             "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+             "material: {yeoh: {C1: 178426 Pa, C2: -6023 Pa, C3: 4234 Pa}, permittivity: 2.8, retardation: 1 ms}\n"
+             "drive: {%s}\nmodel: %s\nstudy: {transient: {%s}}\n",
+             drive, model, transient);
+    return dea_scene_parse(text, strlen(text), "t", ".", NULL, 0, NULL, scene, error);
+}
+
+static dea_status take(void *user, size_t first, const void *points, size_t count, dea_error *error)
+{
+    const dea_layout *layout = ((void **)user)[0];
+    (void)error;
+    assert_true(first == 0 && count == 1);
+    memcpy(((void **)user)[1], points, layout->point_size);
+    return DEA_OK;
+}
+
+/* The one point of a scene; the caller frees it. */
+static void *solve(const dea_scene *scene, const char *engine)
+{
+    dea_layout layout = dea_layout_of(scene);
+    void *user[2] = {&layout, calloc(1, layout.point_size)};
+    const dea_run_options options = {.jobs = 1, .points = take, .user = user};
+    dea_error error = {0};
+    assert_non_null(user[1]);
+    if (dea_study_run(scene, dea_engine_find(engine), &options, &error) != DEA_OK) {
+        fail_msg("%s: %s", engine, error.message);
+    }
+    return user[1];
+}
+
+static const char *const engines[] = {"direct", "ida", "ngspice"};
+
+/* Eq. 22 of the paper: a film without mass whose damper retards it by tau follows 1 - exp(-t/tau). */
+static void logarithmic_samples_see_a_film_relax_over_decades(void **state)
+{
+    (void)state;
+    const double eq22 = 0.03741735, tau = 1e-3;
+    dea_scene scene;
+    dea_error error;
+    assert_int_equal(parse("waveform: {step: {on: 0 s, voltage: 4500 V, rise: 0 s}}", "lumped",
+                           "until: 30 ms, samples: log, from: 1 us, points_per_decade: 7", &scene, &error),
+                     DEA_OK);
+    const size_t rows = dea_layout_of(&scene).rows;
+    assert_int_equal(rows, 1 + 32 + 1); /* at 0, 7 log10(30000) = 31.3 of the grid behind its first, the end */
+    for (size_t e = 0; e < 3; e++) {
+        dea_sample *samples = solve(&scene, engines[e]);
+        assert_true(samples[0].time == 0.0 && samples[0].strain == 0.0);
+        assert_true(samples[rows - 1].time == 0.03);
+        for (size_t i = 1; i < rows; i++) {
+            const double t = fmin(1e-6 * pow(10.0, ((double)i - 1.0) / 7.0), 0.03);
+            assert_true(fabs(samples[i].time / t - 1.0) < 1e-14);
+            if (!(fabs(samples[i].strain + eq22 * expm1(-t / tau)) < 2e-6 * eq22)) {
+                fail_msg("%s at %g s: %.10g", engines[e], t, samples[i].strain);
+            }
+        }
+        free(samples);
+    }
+    dea_scene_free(&scene);
+}
+
+/* Dot in true geometry (physics: section 5): C = eps pi r_a^2 lambda_pre^2 lambda_a^4/H. */
+static void capacitance_over_time_is_that_of_the_stretched_disc(void **state)
+{
+    (void)state;
+    const double rest = 2.8 * 8.8541878128e-12 * acos(-1.0) * 0.015 * 0.015 * 1.44 / 1e-4;
+    dea_scene scene;
+    dea_error error;
+    assert_int_equal(parse("leakage_resistance: 10 GOhm, waveform: {step: {on: 1 ms, voltage: 4500 V}}", "coverage",
+                           "until: 10 ms, every: 0.5 ms", &scene, &error),
+                     DEA_OK);
+    for (size_t e = 1; e < 3; e++) {
+        dea_sample *samples = solve(&scene, engines[e]);
+        for (size_t i = 0; i < dea_layout_of(&scene).rows; i++) {
+            assert_true(fabs(samples[i].capacitance / (rest * pow(1.0 + samples[i].strain, 4.0)) - 1.0) < 1e-12);
+            assert_true(fabs(samples[i].charge - samples[i].capacitance * samples[i].voltage) <= 1e-14 * rest * 4500.0);
+        }
+        assert_true(samples[20].strain > 0.03);
+        free(samples);
+    }
+    dea_scene_free(&scene);
+}
+
+/* C U^2/2 from the charges of physics, section 8: one film, and five in a stack. */
+static void field_energy_is_half_of_charge_times_voltage(void **state)
+{
+    (void)state;
+    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, 4500.0);
+    assert_true(fabs(solve_direct(&scene, "field").energy / (0.5 * 4500.0 * 1.354360e-6) - 1.0) < 5e-7);
+    scene.drive.voltage = -4500.0;
+    scene.actuator.layers = 5.0;
+    assert_true(fabs(solve_direct(&scene, "field").energy / (0.5 * 4500.0 * 6.771800e-6) - 1.0) < 5e-7);
+}
+
+/* I1 - 3 = 2 lambda^2 + lambda^-4 - 3 of the film at rest reaches Jm between two points of the sweep. */
+static void a_film_stretched_past_its_chains_names_them(void **state)
+{
+    (void)state;
+    char fault[DEA_FAULT_LENGTH];
+    const double constants[DEA_LAW_CONSTANTS] = {45e3, 10.0};
+    const dea_film film = dea_law_film(dea_law_find("gent"), constants, 3.0);
+    assert_false(film.valid);
+    assert_string_equal(dea_film_fault(&film, fault),
+                        "Jm = 10 is too small for the pre-stretch 3, where I1 - 3 is 15.0123: the chains are straight at 10");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(logarithmic_samples_see_a_film_relax_over_decades),
+        cmocka_unit_test(capacitance_over_time_is_that_of_the_stretched_disc),
+        cmocka_unit_test(a_film_stretched_past_its_chains_names_them),
+        cmocka_unit_test(field_energy_is_half_of_charge_times_voltage),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -362,9 +362,18 @@ bool dea_key_find(const char *path, dea_ref *ref)
     return false;
 }
 
-/* True where @p name is the end of @p path, whole components, and holds the index of a path that has one. */
+static bool is_of_second(const char *path)
+{
+    return strncmp(path, "antagonist.", 11) == 0;
+}
+
+/* True where @p name is the end of @p path, whole components, and holds the index of a path that has one. No short name means the
+ * second film, whose keys have the names of the first. */
 static bool ends_with(const char *path, const char *name)
 {
+    if (is_of_second(path)) {
+        return false;
+    }
     const size_t whole = strlen(path);
     const size_t part = strlen(name);
     const bool indexed = !strchr(path, '#') || strchr(name, '#');
@@ -480,7 +489,7 @@ static size_t depth_of(const char *path)
     return depth;
 }
 
-/* The key whose last component is @p name, the least deep of several, one of an electrode only where no other is; false where there
+/* The key whose last component is @p name, the least deep of several, one of an electrode or a second film only where no other is; false where there
  * is none, or that is not one alone. */
 static bool namesake(const char *name, dea_key *found)
 {
@@ -488,7 +497,7 @@ static bool namesake(const char *name, dea_key *found)
     size_t least = SIZE_MAX;
     size_t count = 0;
     for (size_t i = 0; dea_key_at(i, &key); i++) {
-        const size_t depth = depth_of(key.path) + (strncmp(key.path, "electrode.", 10) == 0 ? DEA_TREE_DEPTH : 0);
+        const size_t depth = depth_of(key.path) + (strncmp(key.path, "electrode.", 10) == 0 || is_of_second(key.path) ? DEA_TREE_DEPTH : 0);
         if (is_anywhere(&key, NULL) && depth <= least && strcmp(last_component(key.path), name) == 0) {
             count = depth < least ? 1 : count + 1;
             least = depth;

@@ -345,7 +345,8 @@ dea_status dea_models_finish(dea_reader *reader)
     const bool loaded = dea_tree_child(reader->root, "load") || scene->antagonist.there;
     for (size_t i = 0; i < scene->model_count && loaded; i++) {
         if (!scene->models[i]->edge) {
-            return model_fail(reader, reader->model_names[i], "has no edge that a load or a second film acts on",
+            return model_fail(reader, reader->model_names[i],
+                              scene->antagonist.there ? "has no edge that a second film acts on" : "has no edge that a load acts on",
                               (ability){.lens = scene->actuator.kind == DEA_LENS, .study = study, .edge = true});
         }
     }

@@ -745,6 +745,45 @@ static void a_spring_on_the_edge_is_the_load_of_a_scene(void **state)
     child_end(&run);
 }
 
+/* So is a current its force, and a lens beside a dot its second film. */
+static void a_force_and_a_film_on_the_edge_are_those_of_a_scene(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *dot, *lens, *model;
+    } parts[] = {{"dea_dot", "dea_lens", "lumped"},
+                 {"dea_dot_lame", "dea_lens_lame", "lame"},
+                 {"dea_dot_hyper", "dea_lens_hyper", "coverage"},
+                 {"dea_dot_ring", "dea_lens_ring", "ring"}};
+    enum { PARTS = sizeof parts / sizeof *parts };
+    child_run run;
+    FILE *file = begin_circuit();
+    fputs("va a 0 4000\nvb b 0 2500\n.save", file);
+    for (int i = 0; i < PARTS; i++) {
+        fprintf(file, " v(x%d.u) v(xy%d.u)", i, i);
+    }
+    fputc('\n', file);
+    for (int i = 0; i < PARTS; i++) {
+        fprintf(file, "x%d a 0 e%d %s\nix%d 0 e%d -0.2\n", i, i, parts[i].dot, i, i);
+        fprintf(file, "xy%d a 0 f%d %s\nxz%d b 0 f%d %s\niy%d 0 f%d 0.05\n", i, i, parts[i].dot, i, i, parts[i].lens, i, i);
+    }
+    fputs(".op\n", file);
+    run_circuit(file, &run);
+    for (int i = 0; i < PARTS; i++) {
+        char name[24];
+        dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, 4000.0);
+        scene.load.force = -0.2;
+        snprintf(name, sizeof name, "v(x%d.u)", i);
+        assert_relative(1e-6 * child_value(&run, name, 0), solve_direct(&scene, parts[i].model).displacement, 1e-6);
+        const double none = (double)NAN;
+        scene.load.force = 0.05;
+        scene.antagonist = (dea_antagonist){true, DEA_LENS, none, none, none, none, none, 2500.0, false, dea_material_default()};
+        snprintf(name, sizeof name, "v(xy%d.u)", i);
+        assert_relative(1e-6 * child_value(&run, name, 0), solve_direct(&scene, parts[i].model).displacement, 1e-6);
+    }
+    child_end(&run);
+}
+
 static void a_lever_of_minus_one_sets_two_dots_against_each_other(void **state)
 {
     (void)state;
@@ -1168,6 +1207,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_part_whose_permittivity_follows_the_strain_stands_where_the_model_does),
         cmocka_unit_test(a_film_past_pull_in_is_flagged),
         cmocka_unit_test(a_spring_on_the_edge_is_the_load_of_a_scene),
+        cmocka_unit_test(a_force_and_a_film_on_the_edge_are_those_of_a_scene),
         cmocka_unit_test(a_lever_of_minus_one_sets_two_dots_against_each_other),
         cmocka_unit_test(a_scene_becomes_a_part_with_its_numbers_and_a_harmless_title),
         cmocka_unit_test(parts_of_different_names_share_a_circuit),

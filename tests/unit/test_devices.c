@@ -535,6 +535,34 @@ static void engines_agree_on_permittivities_that_follow(void **state)
     }
 }
 
+/* Beside a force and a second film, and where the edge is held. */
+static void engines_agree_on_pulled_permittivities_that_follow(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lumped", "lame", "coverage", "ring", "field"};
+    static const char *const pulled[] = {
+        FILM("dot", "") FOLLOWED STILL "load: {force: 0.05 N}\nantagonist: {actuator: {kind: lens, film_thickness: 50 um}, drive: {voltage: 2 kV}}\n",
+        FILM("lens", "") FOLLOWED STILL "load: {force: -0.05 N}\nantagonist: {actuator: {kind: dot}, drive: {voltage: 3 kV}}\n",
+        FILM("lens", "") FOLLOWED "drive: {voltage: 4 kV}\nstudy: {force: {displacement: {from: -0.4 mm, to: 0.4 mm, points: 3}}}\n"};
+    for (size_t m = 0; m < 5; m++) {
+        for (size_t p = 0; p < 3; p++) {
+            run(pulled[p], models[m], "direct", &one);
+            for (size_t e = 1; e < ENGINES; e++) {
+                if (!can(pulled[p], models[m], engines[e])) {
+                    continue;
+                }
+                run(pulled[p], models[m], engines[e], &other);
+                const dea_row *wanted = (const dea_row *)one.bytes, *rows = (const dea_row *)other.bytes;
+                for (size_t i = 0; i < one.rows; i++) {
+                    assert_relative(rows[i].displacement, wanted[i].displacement, 1e-7);
+                    assert_relative(rows[i].force, wanted[i].force, 1e-7);
+                    assert_relative(rows[i].charge, wanted[i].charge, 1e-7);
+                }
+            }
+        }
+    }
+}
+
 #define YIELDING "material: {base: elastosil-2030, density: 1080 kg/m^3, retardation: 0.1 ms, prony: [{g: 0.1, tau: 2 ms}], permittivity: " \
     PERMITTIVITY("strain") "}\n"
 
@@ -648,6 +676,7 @@ int main(void)
         cmocka_unit_test(a_film_of_rings_rests_where_its_electrical_energy_lets_it),
         cmocka_unit_test(electrostriction_is_the_slope_of_the_capacitance),
         cmocka_unit_test(engines_agree_on_permittivities_that_follow),
+        cmocka_unit_test(engines_agree_on_pulled_permittivities_that_follow),
         cmocka_unit_test(a_film_whose_permittivity_follows_keeps_its_energy),
         cmocka_unit_test(engines_agree_on_moving_permittivities),
         cmocka_unit_test(engines_agree_on_shaken_permittivities),

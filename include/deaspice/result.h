@@ -37,6 +37,7 @@ typedef struct dea_row {
     double area_strain;  /**< change of the electroded area over that at rest: disc of a dot, annulus of a lens [1] */
     double focal_length; /**< of a lens with optics [m]; NAN: none, or no cap of liquid has the focal length at rest */
     double energy;       /**< of the electric field in the film, C U^2/2: what a recovering driver gets back [J] */
+    double second_field; /**< largest true field in a second film on the edge [V/m], 0: there is none */
     dea_state state;
 } dea_row;
 
@@ -54,7 +55,7 @@ typedef struct dea_column {
     size_t offset;         /**< of the double in dea_row */
 } dea_column;
 
-enum { DEA_ROW_COLUMNS = 9 };
+enum { DEA_ROW_COLUMNS = 10 };
 DEA_API extern const dea_column dea_row_columns[DEA_ROW_COLUMNS];
 
 /** One sample of a transient; from a pull_in or failed on, all numbers but time and voltage are NAN. */

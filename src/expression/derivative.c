@@ -1,5 +1,6 @@
 #include "expression/derivative.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -113,6 +114,18 @@ dea_expr dea_expr_put(dea_pool *pool, dea_expr ref, dea_operation kind, int inde
     dea_expr *made = blank(pool, sizeof *made);
     const leaf out = {kind, index, by};
     const dea_expr result = made ? put(pool, ref, &out, made) : 0;
+    free(made);
+    return result;
+}
+
+dea_expr dea_expr_replace(dea_pool *pool, dea_expr ref, dea_expr term, dea_expr by)
+{
+    dea_expr *made = blank(pool, sizeof *made);
+    const leaf none = {DEA_SYMBOL, INT_MAX, 0};
+    if (made) {
+        made[term] = by;
+    }
+    const dea_expr result = made ? put(pool, ref, &none, made) : 0;
     free(made);
     return result;
 }

@@ -122,6 +122,7 @@ static void fill(const parties *p, const edge_forces *f, dea_row *row)
         return;
     }
     dea_row_fill(&other, p->second, f->second);
+    row->second_field = other.field;
     if (other.state == DEA_STATE_BREAKDOWN || (other.state == DEA_STATE_SLACK && row->state == DEA_STATE_OK)) {
         row->state = other.state;
     }

@@ -204,6 +204,7 @@ static inline void dea_row_fill(dea_row *row, const dea_point *point, dea_found 
     row->capacitance = found.capacitance;
     row->charge = found.capacitance * point->voltage;
     row->energy = 0.5 * row->charge * point->voltage;
+    row->second_field = 0.0;
     row->area_strain = dea_area_strain(point->kind, point->coverage, found.strain);
     row->focal_length = isnan(point->focal_length)
                             ? (double)NAN

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "deaspice/needs.h"
-#include "engine/line.h"
+#include "scene/line.h"
 #include "needs/probes.h"
 #include "needs/trial.h"
 #include "study/study.h"

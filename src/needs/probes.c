@@ -1,6 +1,6 @@
 #include "needs/probes.h"
 
-#include "engine/line.h"
+#include "scene/line.h"
 
 static size_t probes_of_axis(const dea_axis *axis, size_t most)
 {

@@ -171,31 +171,22 @@ static void write_store(const dea_cards *c, char letter, const char *name, const
     fprintf(c->out, "%s\n", letter == 'L' ? c->form.dialect->inductor : "");
 }
 
-static void begin_source(const dea_cards *c, dea_quantity quantity, const char *name, const char *plus, const char *minus)
-{
-    dea_dialect_source_begin(c->form.dialect, c->out, quantity, name, plus, minus);
-}
-
-static void end_source(const dea_cards *c)
-{
-    dea_dialect_source_end(c->form.dialect, c->out);
-}
-
-static void write_parameter(const dea_cards *c, const char *name)
-{
-    dea_dialect_parameter(c->form.dialect, c->out, name);
-}
-
 /* Begins a behavioural source of a force: onto the edge, or against its motion. */
 static void begin_force(dea_cards *c, const char *name, bool onto)
 {
     const bool loop = c->form.analogy->loop;
+    const dea_quantity quantity = loop ? DEA_VOLTAGE : DEA_CURRENT;
     if (loop && onto) {
-        begin_source(c, DEA_VOLTAGE, name, "m0", "0");
+        dea_dialect_source_begin(c->form.dialect, c->out, quantity, name, "m0", "0");
         return;
     }
     place(c);
-    begin_source(c, loop ? DEA_VOLTAGE : DEA_CURRENT, name, onto ? "0" : c->ends[0], onto ? c->ends[0] : c->ends[1]);
+    dea_dialect_source_begin(c->form.dialect, c->out, quantity, name, onto ? "0" : c->ends[0], onto ? c->ends[0] : c->ends[1]);
+}
+
+static void end_force(const dea_cards *c)
+{
+    dea_dialect_source_end(c->form.dialect, c->out);
 }
 
 /* ---- linear mechanics */
@@ -271,6 +262,12 @@ static void write_linear_numbers(const dea_cards *c, double stiffness, double vi
     }
 }
 
+void dea_cards_write_inertia(const dea_cures *cures, const char *tag, const char *node, const char *mass, FILE *out)
+{
+    fprintf(out, "EMASS%s ma%s 0 %s 0 %.15g\nCMASS%s ma%s mb%s {%s}\nVMASS%s mb%s 0 0\nFMASS%s %s 0 VMASS%s {f_mass}\n", tag, tag, node,
+            cures->inertia, tag, tag, tag, mass, tag, tag, tag, node, tag);
+}
+
 static void write_mass(dea_cards *c)
 {
     const dea_cures *cures = c->form.cures;
@@ -279,7 +276,7 @@ static void write_mass(dea_cards *c)
     }
     fputs("* mass that moves with the edge [kg]\n", c->out);
     if (cures) {
-        fprintf(c->out, "EMASS m1 0 edge 0 %.15g\nCMASS m1 m2 {inertia}\nVMASS m2 0 0\nFMASS edge 0 VMASS {f_mass}\n", cures->inertia);
+        dea_cards_write_inertia(cures, "", "edge", "inertia", c->out);
         return;
     }
     place(c);
@@ -346,12 +343,9 @@ static void write_stress_force(const dea_cards *c, size_t a)
     dea_part_text_write(&c->text, c->mobility->stresses[a].lever);
     fprintf(c->out, count > 0 ? "*(v(%s)" : "*v(%s)", stress.name);
     for (size_t i = 0; i < count; i++) {
-        char name[32];
-        const size_t n = a * count + i + 1;
-        snprintf(name, sizeof name, "share%zu", i + 1);
-        fputc('+', c->out);
-        write_parameter(c, name);
-        fprintf(c->out, "*(v(%s)-v(z%zu))", stress.name, n);
+        char branch[96];
+        snprintf(branch, sizeof branch, "+[share%zu]*(v(%s)-v(z%zu))", i + 1, stress.name, a * count + i + 1);
+        dea_part_text_format(&c->text, branch);
     }
     fputs(count > 0 ? ")" : "", c->out);
 }
@@ -361,27 +355,22 @@ static void write_spring_force(dea_cards *c)
 {
     fputs("* force of the film [N], its stresses and those of its branches on their levers [m^2]\n", c->out);
     begin_force(c, "SPRING", false);
-    if (c->form.cures) {
-        write_parameter(c, "a_um");
-        fputs("*(", c->out);
-    }
+    dea_part_text_format(&c->text, c->form.cures ? "[a_um]*(" : "");
     for (size_t a = 0; a < c->dynamics->stress_count; a++) {
         fputs(a > 0 ? "+" : "", c->out);
         write_stress_force(c, a);
     }
     if (c->mobility->tense) {
-        fputc('+', c->out);
-        dea_part_text_write(&c->text, c->mobility->tension);
+        dea_part_text_format(&c->text, "+[]", c->mobility->tension);
     }
     fputs(c->form.cures ? ")" : "", c->out);
-    end_source(c);
+    end_force(c);
 }
 
-void dea_cards_write_integral(const dea_cures *cures, const char *node, const char *from, const char *to, FILE *out)
+void dea_cards_write_integral(const dea_cures *cures, const char *tag, const char *node, const char *from, const char *to, FILE *out)
 {
-    fprintf(out, "* displacement [um], the integral of the velocity, which leaks\n"
-                 "GDISP 0 %s %s %s %.15g\nCDISP %s 0 1\nGDRIFT %s 0 %s 0 %.15g\n",
-            node, from, to, cures->per_metre, node, node, node, cures->drift);
+    fprintf(out, "GDISP%s 0 %s %s %s %.15g\nCDISP%s %s 0 1\nGDRIFT%s %s 0 %s 0 %.15g\n",
+            tag, node, from, to, cures->per_metre, tag, node, tag, node, node, cures->drift);
 }
 
 /* In a part the edge is held where a parameter is out of its range, and a hyperelastic film is asked for no displacement past stops
@@ -393,16 +382,11 @@ static void write_displacement(const dea_cards *c)
               c->out);
         return;
     }
-    dea_cards_write_integral(c->form.cures, "u", "edge", "0", c->out);
+    fputs("* displacement [um], the integral of the velocity, which leaks\n", c->out);
+    dea_cards_write_integral(c->form.cures, "", "u", "edge", "0", c->out);
     fputs("GSAFE edge 0 u 0 {hold}\n", c->out);
     if (!is_linear(c)) {
-        begin_source(c, DEA_VOLTAGE, "CLIP", "w", "0");
-        fputs("min(max(v(u),", c->out);
-        write_parameter(c, "u_low");
-        fputs("),", c->out);
-        write_parameter(c, "u_high");
-        fputc(')', c->out);
-        end_source(c);
+        dea_part_text_source(&c->text, DEA_VOLTAGE, "CLIP", "w", "0", "min(max(v(u),[u_low]),[u_high])");
         fputs("GSTOP edge 0 u w {k_stop}\n", c->out);
     }
 }
@@ -425,24 +409,20 @@ static void write_hyperelastic_springs(dea_cards *c)
         const dea_stress_node node = dea_mobility_stress_node(c->dynamics, a);
         snprintf(name, sizeof name, "STRESS%s", node.name + strlen("stress"));
         fprintf(c->out, "* stress S of the relaxed film [%s], its change from rest\n", c->form.cures ? "MPa" : "Pa");
-        begin_source(c, DEA_VOLTAGE, name, node.name, "0");
-        dea_part_text_write(&c->text, m->stresses[a].stress);
-        end_source(c);
+        dea_part_text_source(&c->text, DEA_VOLTAGE, name, node.name, "0", "[]", m->stresses[a].stress);
     }
     write_relaxations(c);
     write_spring_force(c);
     if (c->dynamics->retardation > 0.0) {
         fputs("* kelvin-voigt damper, tau sum B dS/du times the velocity [N]\n", c->out);
         begin_force(c, "DAMPER", false);
-        write_parameter(c, c->form.cures ? "r_damp" : "retardation");
-        fputc('*', c->out);
-        dea_part_text_write(&c->text, m->resistance);
+        dea_part_text_format(&c->text, c->form.cures ? "[r_damp]*[]*" : "[retardation]*[]*", m->resistance);
         if (c->form.cures) {
-            fprintf(c->out, "*min(max(v(edge),-%.15g),%.15g)", c->form.cures->fastest, c->form.cures->fastest);
+            fprintf(c->out, "min(max(v(edge),-%.15g),%.15g)", c->form.cures->fastest, c->form.cures->fastest);
         } else {
-            fputs("*v(edge)", c->out);
+            fputs("v(edge)", c->out);
         }
-        end_source(c);
+        end_force(c);
     }
 }
 
@@ -468,9 +448,7 @@ static void write_hyperelastic_numbers(const dea_cards *c, const dea_mobility_st
 
 static void write_resistors(const dea_cards *c)
 {
-    if (c->form.cures) {
-        fputs("* conductance of the leakage [S], 0 without a resistance\nGLEAK p n p n {leak}\n", c->out);
-    } else if (c->dynamics->conductance > 0.0) {
+    if (c->dynamics->conductance > 0.0) {
         fputs("* leakage resistance of the film [Ohm]\nRLEAK film 0 {r_leak}\n", c->out);
     }
     if (c->dynamics->series > 0.0) {
@@ -488,28 +466,24 @@ static void write_resistor_numbers(const dea_cards *c, double unit)
     }
 }
 
+void dea_cards_write_capacitor(const dea_cures *cures, FILE *out)
+{
+    fprintf(out, "CFILM film plate {c_rest}\nGSENSE plate 0 plate 0 %.15g\nGFILM p n plate 0 {i_film}\n"
+                 "* conductance of the leakage [S], 0 without a resistance\nGLEAK p n p n {leak}\n",
+            cures->sense);
+}
+
 /* The film of a part: its current is that of a capacitor, without a gain, so that what a simulator adds to nodes and pivots (gmin,
  * rshunt, cshunt) stays what it is. v(plate) makes it a voltage; fed back into v(film), it leaves the capacitor its whole voltage. A
  * conductance has no noise, as a resistor would. The force is a node to be read. */
 static void write_part_film(dea_cards *c)
 {
     fputs("* film: v(film) = charge/c_rest on a capacitor of c_rest, whose current is d(C U)/dt; v(plate) is this current [mA]\n", c->out);
-    begin_source(c, DEA_VOLTAGE, "CHARGE", "film", "0");
-    fputs("v(plate)+", c->out);
-    write_parameter(c, "ok");
-    fputs("*v(p,n)*", c->out);
-    dea_part_text_write(&c->text, c->mobility->network.capacitance);
-    fputc('/', c->out);
-    write_parameter(c, "c_rest");
-    end_source(c);
-    fprintf(c->out, "CFILM film plate {c_rest}\nGSENSE plate 0 plate 0 %.15g\nGFILM p n plate 0 {i_film}\n", c->form.cures->sense);
+    dea_part_text_source(&c->text, DEA_VOLTAGE, "CHARGE", "film", "0", "v(plate)+[ok]*v(p,n)*[]/[c_rest]",
+                         c->mobility->network.capacitance);
+    dea_cards_write_capacitor(c->form.cures, c->out);
     fputs("* electrostatic force [N] onto the edge, (1/2) U^2 dC/du, Eq. 21\n", c->out);
-    begin_source(c, DEA_VOLTAGE, "FORCE", "force", "0");
-    write_parameter(c, "ok");
-    fputc('*', c->out);
-    dea_part_text_write(&c->text, c->mobility->push);
-    fputs("*v(p,n)*v(p,n)", c->out);
-    end_source(c);
+    dea_part_text_source(&c->text, DEA_VOLTAGE, "FORCE", "force", "0", "[ok]*[]*v(p,n)*v(p,n)", c->mobility->push);
     fputs("GFORCE 0 edge force 0 {many}\n", c->out);
 }
 
@@ -520,19 +494,12 @@ static void write_film(dea_cards *c)
         fputs("* film: its current into its capacitance at rest [F], whose charge over C(u) is its voltage, i = d(C U)/dt\n"
               "VFILM film plate 0\nFCHARGE 0 charge VFILM 1\nCCHARGE charge 0 {c_unit} ic={u_rest}\n",
               c->out);
-        begin_source(c, DEA_VOLTAGE, "FILM", "plate", "0");
-        fputs("v(charge)*", c->out);
-        write_parameter(c, "c_rest");
-        fputs("/(", c->out);
-        dea_part_text_write(&c->text, c->mobility->network.capacitance);
-        fputc(')', c->out);
-        end_source(c);
+        dea_part_text_source(&c->text, DEA_VOLTAGE, "FILM", "plate", "0", "v(charge)*[c_rest]/([])", c->mobility->network.capacitance);
     }
     fputs("* electrostatic force f_dea = U^2/2 dC/du [N], Eq. 21, onto the edge\n", c->out);
     begin_force(c, "FORCE", true);
-    dea_part_text_write(&c->text, c->mobility->push);
-    fputs("*v(film)*v(film)", c->out);
-    end_source(c);
+    dea_part_text_format(&c->text, "[]*v(film)*v(film)", c->mobility->push);
+    end_force(c);
 }
 
 static void write_port_numbers(const dea_cards *c, const dea_cards_numbers *n)
@@ -739,4 +706,17 @@ void dea_cards_write_small(dea_dynamics *d, const dea_mobility_bias *bias, const
     write_load(&c);
     close_loop(&c);
     fputs(DEA_CARDS_END, out);
+}
+
+void dea_cards_write_band(const dea_mobility_band *band, FILE *out)
+{
+    if (band->points_per_decade > 0) {
+        fprintf(out, ".ac dec %zu ", band->points_per_decade);
+    } else {
+        fprintf(out, ".ac lin %zu ", band->count > 1 ? band->count : 1);
+    }
+    dea_part_number(out, band->from);
+    fputc(' ', out);
+    dea_part_number(out, band->to);
+    fputs("\n.end\n", out);
 }

@@ -125,7 +125,12 @@ double dea_cards_film_voltage(dea_cards *cards, const dea_cards_numbers *numbers
 /* Node @p node as the integral of the velocity between two nodes, with the cures of a part. The velocity enters with a large factor,
  * so that pivoting finds it from the integrator and not from a difference of forces: only so do springs in parallel share right at
  * the operating point. */
-void dea_cards_write_integral(const dea_cures *cures, const char *node, const char *from, const char *to, FILE *out);
+void dea_cards_write_integral(const dea_cures *cures, const char *tag, const char *node, const char *from, const char *to, FILE *out);
+/* The mass of a capacitor's card at a node of velocity; @p tag is behind the names of its elements. */
+void dea_cards_write_inertia(const dea_cures *cures, const char *tag, const char *node, const char *mass, FILE *out);
+
+/* The film of a part at its pins behind v(film), the charge over that at rest, and its leakage. */
+void dea_cards_write_capacitor(const dea_cures *cures, FILE *out);
 
 /* A small-signal network about an equilibrium. */
 typedef struct dea_mobility_bias {
@@ -135,6 +140,15 @@ typedef struct dea_mobility_bias {
 
 /* Its numbers and its network; the source of the port is not among them. v(disp) is the displacement. */
 void dea_cards_write_small(dea_dynamics *dynamics, const dea_mobility_bias *bias, const dea_cards_form *form, FILE *out);
+
+/* Frequencies: points_per_decade of a decade from `from` on; or, where they are 0, `count` evenly, or one alone. */
+typedef struct dea_mobility_band {
+    double from, to; /* [Hz] */
+    size_t points_per_decade, count;
+} dea_mobility_band;
+
+/* Its analysis, and the end of the netlist. */
+void dea_cards_write_band(const dea_mobility_band *band, FILE *out);
 
 /* First and last line of every network. */
 #define DEA_CARDS_BEGIN "* the network\n"

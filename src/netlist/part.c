@@ -10,7 +10,7 @@
 #include "model/models.h"
 #include "netlist/mobility.h"
 #include "netlist/rings_part.h"
-#include "support/text.h"
+#include "support/memory_text.h"
 
 /* The symbols of a part's network: parameters that the checks of the subcircuit have put into their ranges. */
 enum {
@@ -221,32 +221,6 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
     return status == DEA_OK && pool->exhausted ? tell_memory(error) : status;
 }
 
-/* A source between two nodes. Its text holds `[name]` for a parameter and `[]` for the next expression. */
-static void source(const part *p, dea_quantity quantity, const char *name, const char *plus, const char *minus,
-                   const char *format, ...)
-{
-    va_list refs;
-    va_start(refs, format);
-    dea_dialect_source_begin(p->dialect, p->out, quantity, name, plus, minus);
-    for (const char *c = format; *c; c++) {
-        if (*c != '[') {
-            fputc(*c, p->out);
-            continue;
-        }
-        const char *end = strchr(c, ']');
-        if (end == c + 1) {
-            dea_part_text_write(&p->cards.text, va_arg(refs, dea_expr));
-        } else {
-            char parameter[DEA_PART_NAME];
-            snprintf(parameter, sizeof parameter, "%.*s", (int)(end - c - 1), c + 1);
-            dea_dialect_parameter(p->dialect, p->out, parameter);
-        }
-        c = end;
-    }
-    va_end(refs);
-    dea_dialect_source_end(p->dialect, p->out);
-}
-
 static void line(const part *p, const char *format, ...) DEA_PRINTF(2, 3);
 
 static void line(const part *p, const char *format, ...)
@@ -380,7 +354,26 @@ static int write_checks(const part *p, const form *of)
     return count;
 }
 
-/* What is written beside the network; its own text is declared behind it. */
+/* What is written beside the network of one node; its own text is declared behind it. */
+static void declare_node(part *p)
+{
+    dea_part_text *text = &p->cards.text;
+    dea_part_text_root(text, "field");
+    dea_part_text_use(text, p->field);
+    dea_part_text_root(text, "mass");
+    dea_part_text_use(text, p->mass);
+    if (p->linear) {
+        dea_part_text_root(text, "rest");
+        dea_part_text_use(text, p->push_slope);
+    }
+    for (int i = 0; i < p->film.network.tension_count; i++) {
+        dea_part_text_root(text, "taut");
+        dea_part_text_use(text, p->taut[i]);
+        dea_part_text_use(text, p->loosen[i]);
+    }
+    dea_cards_declare(&p->cards);
+}
+
 static void declare(part *p)
 {
     dea_part_text *text = &p->cards.text;
@@ -388,25 +381,26 @@ static void declare(part *p)
     const struct {
         const char *root;
         dea_expr ref;
-    } all[] = {{"capacity", p->c_rest}, {"stiffness", p->k_rest}, {"field", p->field}, {"mass", p->mass},
-               {"size", p->divide},     {"size", p->width},       {"rest", p->push_slope}};
-    const size_t count = sizeof all / sizeof *all - !p->linear;
-    dea_part_text_call(text, network);
-    for (size_t i = 0; i < count; i++) {
+    } all[] = {{"capacity", p->c_rest}, {"stiffness", p->k_rest}, {"size", p->divide}, {"size", p->width}};
+    if (p->rings) {
+        dea_part_text_root(text, "membrane");
+        dea_rings_part_declare(p->rings, text);
+    } else {
+        dea_part_text_call(text, network);
+    }
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         dea_part_text_root(text, all[i].root);
         dea_part_text_use(text, all[i].ref);
     }
+    dea_part_text_root(text, "range");
     for (int i = 0; i < network->range_count; i++) {
         if (is_made(p, network->range[i])) {
             dea_part_text_use(text, network->range[i]);
         }
     }
-    for (int i = 0; i < network->tension_count; i++) {
-        dea_part_text_root(text, "taut");
-        dea_part_text_use(text, p->taut[i]);
-        dea_part_text_use(text, p->loosen[i]);
+    if (!p->rings) {
+        declare_node(p);
     }
-    dea_cards_declare(&p->cards);
 }
 
 /* Names for what a designer knows by name. */
@@ -430,27 +424,29 @@ static void give_names(part *p)
     dea_part_text_name(text, p->film.push, "push", "force on the edge per square of the voltage, (1/2) dC/du [N/V^2], Eq. 21");
 }
 
-/* Of branch i: a branch without a share follows at once, since its state would only be one more pole. */
-static void write_relaxation_time(const part *p, size_t i)
-{
-    line(p, ".param c_relax%zu={relax%zu*min(part%zu*1e30,1)+1e-30}", i, i, i);
-}
-
 /* Numbers of the network that are not its own. A film without mass and damper keeps 1 ns of damping: its edge would have no velocity
- * at an edge of the voltage otherwise. */
+ * at an edge of the voltage otherwise. A branch without a share follows at once: its state would only be one more pole. */
 static void write_numbers(const part *p)
 {
     const dea_cures *cures = &dea_part_cures;
     const char *reach = p->linear ? "1e6" : "0.99e6"; /* of the way [um/m] */
-    char k[DEA_PART_NAME];
-    (void)dea_part_text_parameter(&p->cards.text, p->k_rest, k);
     line(p, ".param per_um={1e-6/r_a}\n.param u_low={-%s*r_a}\n.param u_high={%s*r_ring}", reach, reach);
     line(p, "* what holds the edge where a parameter is out of its range [N/um]\n.param hold={1-ok}");
-    line(p, ".param still={max(1-m_film*1e30,0)*max(1-retard*1e30,0)}\n.param damp={retard+1e-9*still}");
-    line(p, ".param inertia={m_film+%.15g*%s}\n.param f_mass={%.15g*many}", cures->lightest, k, 1.0 / cures->inertia);
+    line(p, ".param still={max(1-rho*1e30,0)*max(1-areal*1e30,0)*max(1-retard*1e30,0)}\n.param damp={retard+1e-9*still}");
+    line(p, ".param f_mass={%.15g*many}", 1.0 / cures->inertia);
     for (size_t i = 1; i <= p->branches; i++) {
-        write_relaxation_time(p, i);
+        line(p, ".param c_relax%zu={relax%zu*min(part%zu*1e30,1)+1e-30}", i, i, i);
     }
+    line(p, ".param i_film={%.15g*many}\n.param leak={many*r_leak/(r_leak*r_leak+1e-30)}", cures->sense);
+}
+
+/* Those of a film of one node. */
+static void write_node_numbers(const part *p)
+{
+    const dea_cures *cures = &dea_part_cures;
+    char k[DEA_PART_NAME];
+    (void)dea_part_text_parameter(&p->cards.text, p->k_rest, k);
+    line(p, ".param inertia={m_film+%.15g*%s}", cures->lightest, k);
     if (p->linear) {
         line(p, "* springs of film and branches [N/um], damper [N s/m]");
         line(p, ".param k_um={many*%s/%.15g}\n.param r_damp={many*damp*%s}", k, cures->per_metre, k);
@@ -461,105 +457,89 @@ static void write_numbers(const part *p)
         line(p, "* areas in um^2, stop behind the reach of the film [N/um]");
         line(p, ".param a_um={1e6*many}\n.param r_damp={damp*a_um}\n.param k_stop={%.15g*many*%s}", cures->stop, k);
     }
-    line(p, ".param i_film={%.15g*many}\n.param leak={many*r_leak/(r_leak*r_leak+1e-30)}", cures->sense);
+}
+
+/* Node of what is positive while all of the film is taut, t0, t1, ... each the least so far. */
+static void write_tautness(const part *p, char node[24])
+{
+    const dea_part_text *text = &p->cards.text;
+    for (int i = 0; i < p->film.network.tension_count; i++) {
+        char name[24], least[64] = "[]+[]*v(p,n)*v(p,n)";
+        if (i > 0) {
+            snprintf(least, sizeof least, "min(v(%s),[]+[]*v(p,n)*v(p,n))", node);
+        }
+        snprintf(name, sizeof name, "taut%d", i);
+        snprintf(node, 24, "t%d", i);
+        dea_part_text_source(text, DEA_VOLTAGE, name, node, "0", least, p->taut[i], p->loosen[i]);
+    }
 }
 
 /* v(bad) and v(slack) rise from 0 to 1 within a millionth of what they watch. */
 static void write_outputs(const part *p)
 {
-    line(p, "* to be read: strain [1], true field [V/um]");
+    const dea_part_text *text = &p->cards.text;
+    char taut[24] = "tension", slack[64];
+    line(p, "* to be read: strain [1], true field [V/um], of rings at r_a");
     line(p, "ESTRAIN strain 0 u 0 {per_um}");
-    source(p, DEA_VOLTAGE, "field", "field", "0", "[ok]*1e-6*[]*v(p,n)", p->field);
+    dea_part_text_source(text, DEA_VOLTAGE, "field", "field", "0", p->rings ? "[ok]*v(stretched)*v(p,n)" : "[ok]*1e-6*[]*v(p,n)", p->field);
     line(p, "* capacitance [pF] and charge [nC] of all films side by side");
     line(p, ".param c_scale={1e12*many}\n.param q_scale={1e9*many*c_rest}\nESTORED q 0 film plate {q_scale}");
-    source(p, DEA_VOLTAGE, "capacity", "c", "0", "[c_scale]*[]", p->film.network.capacitance);
-    line(p, "* bad = 1: a parameter out of its range, or no stable equilibrium of the relaxed film here (pull-in)");
-    source(p, DEA_VOLTAGE, "outside", "outside", "0", "max(v(u)-[u_high],[u_low]-v(u))");
+    dea_part_text_source(text, DEA_VOLTAGE, "capacity", "c", "0", p->rings ? "[c_scale]*[c_rest]*(1+v(swell))" : "[c_scale]*[]",
+           p->film.network.capacitance);
+    line(p, "* bad = 1: a parameter out of its range, the edge past centre or frame, or of linear springs no stable equilibrium of the");
+    line(p, "* relaxed film here (pull-in)");
+    dea_part_text_source(text, DEA_VOLTAGE, "outside", "outside", "0", "max(v(u)-[u_high],[u_low]-v(u))");
     if (p->linear) {
-        source(p, DEA_VOLTAGE, "net", "net", "0", "([]-[]*v(p,n)*v(p,n))/[k_rest]", p->k_rest, p->push_slope);
-        source(p, DEA_VOLTAGE, "bad", "bad", "0", "min(max(max(1-[ok],-1e6*v(net)),max(1e3*v(outside),0)),1)");
+        dea_part_text_source(text, DEA_VOLTAGE, "net", "net", "0", "([]-[]*v(p,n)*v(p,n))/[k_rest]", p->k_rest, p->push_slope);
+        dea_part_text_source(text, DEA_VOLTAGE, "bad", "bad", "0", "min(max(max(1-[ok],-1e6*v(net)),max(1e3*v(outside),0)),1)");
     } else {
-        source(p, DEA_VOLTAGE, "bad", "bad", "0", "min(max(1-[ok],max(1e3*v(outside),0)),1)");
+        dea_part_text_source(text, DEA_VOLTAGE, "bad", "bad", "0", "min(max(1-[ok],max(1e3*v(outside),0)),1)");
     }
     line(p, "* slack = 1: a region lost its tension, the film wrinkles");
-    for (int i = 0; i < p->film.network.tension_count; i++) {
-        char name[24], node[24], text[64] = "[]+[]*v(p,n)*v(p,n)";
-        snprintf(name, sizeof name, "taut%d", i);
-        snprintf(node, sizeof node, "t%d", i);
-        if (i > 0) {
-            snprintf(text, sizeof text, "min(v(t%d),[]+[]*v(p,n)*v(p,n))", i - 1);
-        }
-        source(p, DEA_VOLTAGE, name, node, "0", text, p->taut[i], p->loosen[i]);
+    if (!p->rings) {
+        write_tautness(p, taut);
     }
-    char text[64];
-    snprintf(text, sizeof text, "1-min(max(1e6*v(t%d),0),1)", p->film.network.tension_count - 1);
-    source(p, DEA_VOLTAGE, "slack", "slack", "0", text);
+    snprintf(slack, sizeof slack, "1-min(max(1e6*v(%s),0),1)", taut);
+    dea_part_text_source(text, DEA_VOLTAGE, "slack", "slack", "0", slack);
 }
 
 /* Cap of constant volume: eta = h/h_0 from h (3 a^2 + h^2) = const, f = (a^2 + h^2)/(2 h (n - 1)). */
 static void write_optics(const part *p)
 {
+    const dea_part_text *text = &p->cards.text;
     line(p, "* eta = height of the liquid's cap over its height at rest; focal = focal length [mm], 0 without optics");
-    source(p, DEA_VOLTAGE, "eta", "eta", "0", "(3+[flat])/(3*(1+v(strain))*(1+v(strain))+[flat]*v(eta)*v(eta))");
+    dea_part_text_source(text, DEA_VOLTAGE, "eta", "eta", "0", "(3+[flat])/(3*(1+v(strain))*(1+v(strain))+[flat]*v(eta)*v(eta))");
     line(p, ".param f_height={lens_on*1e3*height/(2*flat*(refract-1))}");
-    source(p, DEA_VOLTAGE, "focal", "focal", "0",
+    dea_part_text_source(text, DEA_VOLTAGE, "focal", "focal", "0",
            "[f_height]*((1+v(strain))*(1+v(strain))+[flat]*v(eta)*v(eta))/max(v(eta),1e-3)");
 }
 
-/* What is declared of the membrane: the numbers at rest, the ranges, the rings. */
-static void declare_rings(part *p)
-{
-    const dea_expr all[] = {p->c_rest, p->k_rest, p->divide, p->width};
-    dea_rings_part_declare(p->rings, &p->cards.text);
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-        dea_part_text_use(&p->cards.text, all[i]);
-    }
-    for (int i = 0; i < p->film.network.range_count; i++) {
-        if (is_made(p, p->film.network.range[i])) {
-            dea_part_text_use(&p->cards.text, p->film.network.range[i]);
-        }
-    }
-}
-
-/* Film and outputs of the membrane; v(swell) = C/c_rest - 1. */
+/* The membrane and its film; v(swell) = C/c_rest - 1. */
 static void write_rings(part *p)
 {
-    line(p, ".param still={max(1-rho*1e30,0)*max(1-areal*1e30,0)*max(1-retard*1e30,0)}\n.param damp={retard+1e-9*still}");
-    for (size_t i = 1; i <= p->branches; i++) {
-        write_relaxation_time(p, i);
-    }
+    const dea_part_text *text = &p->cards.text;
     dea_rings_part_write(p->rings, &p->cards.text);
     line(p, "* film: v(film) = charge/c_rest on a capacitor of c_rest; v(plate) is its current [mA]");
-    source(p, DEA_VOLTAGE, "charge", "film", "0", "v(plate)+[ok]*v(p,n)*(1+v(swell))");
-    line(p, ".param i_film={1e-3*many}\ncfilm film plate {c_rest}\ngsense plate 0 plate 0 1e-3\ngfilm p n plate 0 {i_film}");
-    line(p, ".param leak={many*r_leak/(r_leak*r_leak+1e-30)}\ngleak p n p n {leak}");
-    line(p, "* to be read: strain [1], force [N], true field at r_a [V/um], capacitance [pF], charge [nC]");
-    char name[DEA_PART_NAME];
-    line(p, ".param per_um={1e-6/%s}\nestrain strain 0 u 0 {per_um}", dea_part_text_parameter(&p->cards.text, p->divide, name));
-    source(p, DEA_VOLTAGE, "force", "force", "0", "[ok]*v(pull)*v(p,n)*v(p,n)");
-    source(p, DEA_VOLTAGE, "field", "field", "0", "[ok]*v(stretched)*v(p,n)");
-    line(p, ".param c_scale={1e12*many*c_rest}\n.param q_scale={1e9*many*c_rest}\nestored q 0 film plate {q_scale}");
-    source(p, DEA_VOLTAGE, "capacity", "c", "0", "[c_scale]*(1+v(swell))");
-    line(p, "* bad = 1: a parameter out of its range, or the edge past centre or frame; slack = 1: the film wrinkles");
-    line(p, ".param u_low={-0.99e6*r_a}\n.param u_high={0.99e6*r_ring}");
-    source(p, DEA_VOLTAGE, "bad", "bad", "0", "min(max(1-[ok],max(1e3*(v(u)-[u_high]),1e3*([u_low]-v(u)))),1)");
-    source(p, DEA_VOLTAGE, "slack", "slack", "0", "1-min(max(1e6*v(tension),0),1)");
+    dea_part_text_source(text, DEA_VOLTAGE, "charge", "film", "0", "v(plate)+[ok]*v(p,n)*(1+v(swell))");
+    dea_cards_write_capacitor(&dea_part_cures, p->out);
+    dea_part_text_source(text, DEA_VOLTAGE, "force", "force", "0", "[ok]*v(pull)*v(p,n)*v(p,n)");
 }
 
 static void write_body(part *p, const form *of)
 {
-    (p->rings ? declare_rings : declare)(p);
+    declare(p);
     give_names(p);
     const int checks = write_checks(p, of);
     dea_part_text_parameters(&p->cards.text);
     check_ranges(p, checks);
+    write_numbers(p);
     if (p->rings) {
         write_rings(p);
     } else {
-        write_numbers(p);
+        write_node_numbers(p);
         dea_cards_write_network(&p->cards);
-        write_outputs(p);
     }
+    write_outputs(p);
     if (p->kind == DEA_LENS) {
         write_optics(p);
     }
@@ -694,10 +674,10 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "a circuit part has no skin of its electrodes");
     }
     const size_t branches = defaults->material.prony_count;
-    char *text = NULL;
-    size_t length = 0;
+    dea_memory_text text;
+    dea_status status = dea_memory_text_begin(&text, error);
     part p = {.dialect = dialect,
-              .out = open_memstream(&text, &length),
+              .out = text.out,
               .kind = defaults->actuator.kind,
               .law = defaults->material.law,
               .constants = constants_in_use(&defaults->material),
@@ -706,18 +686,14 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
               .branches = branches > PART_BRANCHES ? branches : PART_BRANCHES};
     p.elements = (dea_dynamics){.model = model, .linear = p.linear, .softens = true, .branch_count = p.branches, .mass = 1.0, .retardation = 1.0};
     p.film = (dea_mobility){.dynamics = &p.elements, .stiffness = p.linear ? 1.0 : (double)NAN};
-    if (!p.out) {
-        return tell_memory(error);
-    }
-    dea_status status = write_part(&p, defaults, model, name, error);
-    const bool whole = dea_text_close(p.out);
-    if (status == DEA_OK && !whole) {
-        status = tell_memory(error);
-    }
     if (status == DEA_OK) {
-        dea_dialect_wrap(out, text);
+        status = write_part(&p, defaults, model, name, error);
     }
-    free(text);
+    status = dea_memory_text_end(&text, status, error);
+    if (status == DEA_OK) {
+        dea_dialect_wrap(out, text.text);
+    }
+    free(text.text);
     dea_cards_close(&p.cards);
     dea_mobility_close(&p.film);
     free(p.rings);
@@ -734,7 +710,7 @@ void dea_part_write_mechanics(const char *prefix, FILE *out)
             "+ params: stiffness=100 m=1\n"
             ".param k_um={1e-6*stiffness*m}\n",
             prefix, prefix);
-    dea_cards_write_integral(&dea_part_cures, "u", "a", "b", out);
+    dea_cards_write_integral(&dea_part_cures, "", "u", "a", "b", out);
     fprintf(out, "GSPRING a b u 0 {k_um}\n.ends %s_spring\n", prefix);
     fprintf(
         out,

@@ -232,7 +232,7 @@ void dea_rings_cards_write(const dea_rings_cards *cards, dea_part_text *text)
         snprintf(a, sizeof a, "v(a%zu)", q + 1);
         snprintf(b, sizeof b, "v(b%zu)", q + 1);
         dea_rings_place here = {.nodes = (const char *const[]){a, b}};
-        dea_rings_enter(&w, &here, q + 1);
+        dea_rings_enter(&w, &here, q + 1, "");
         (text->moves[ring->radial] ? write_swept_strains : write_strains)(&w, ring, q + 1);
         write_stresses(&w, ring, q + 1);
         write_forces(&w, ring, q + 1);

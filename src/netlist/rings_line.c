@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/line.h"
+#include "scene/line.h"
 #include "expression/formula.h"
 #include "expression/tape.h"
-#include "netlist/export.h"
+#include "netlist/netlist.h"
 #include "netlist/rings_text.h"
 #include "network/still.h"
 
@@ -70,7 +70,9 @@ static dea_status write_start(writer *w, dea_error *error)
     if (status == DEA_OK) {
         dea_tape_values(&tape, symbols, none);
         fputs(".nodeset", w->out);
-        write_guess(w, "point", (double)w->line->from);
+        if (dea_axis_holds(axis, w->line->from, w->line->to)) {
+            write_guess(w, "point", (double)w->line->from);
+        }
         write_guess(w, "axis", symbols[AXIS]);
         for (size_t i = 0; i < count; i++) {
             char node[DEA_PART_NAME];
@@ -104,7 +106,7 @@ static dea_status write_all(writer *w, dea_error *error)
     dea_rings_quantities_write(&w->quantities, w->out);
     dea_part_text_parameters(&w->text);
     if (line->axis) {
-        dea_export_axis(w->dialect, line->axis, line->from, line->to, w->out);
+        dea_axis_write(&w->text, line->axis, line->from, line->to);
     }
     dea_part_text_swept(&w->text);
     dea_rings_cards_write(&w->cards, &w->text);

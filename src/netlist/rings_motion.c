@@ -1,5 +1,6 @@
 #include "netlist/rings_motion.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "expression/formula.h"
@@ -16,12 +17,18 @@ static void make(const dea_scene *scene, dea_rings_motion_cards *c)
     const dea_membrane *m = c->membrane;
     dea_pool *pool = &c->pool;
     dea_rings_quantities *q = &c->quantities;
+    dea_scene film = *scene; /* its voltage is that of a node */
+    film.drive.voltage = (double)NAN;
     (void)NUM(0.0);
-    dea_rings_quantities_of(scene, NULL, pool, &c->symbols, q);
+    dea_rings_quantities_of(&film, NULL, pool, &c->symbols, q);
     dea_rings_numbers numbers = {NUM(m->heavy && scene->material.density > 0.0 ? scene->material.density : 0.0),
                                  NUM(m->heavy ? dea_electrode_mass(scene) : 0.0), NUM(m->film.retardation), 1.0, m->film.held};
-    dea_rings_quantity(q, pool, "density", "kg/m^3", &numbers.density);
-    dea_rings_quantity(q, pool, "electrode_mass", "kg/m^2", &numbers.areal);
+    if (m->heavy) {
+        dea_rings_quantity(q, pool, "density", "kg/m^3", &numbers.density);
+    }
+    if (dea_expr_constant(pool, numbers.areal) > 0.0) {
+        dea_rings_quantity(q, pool, "electrode_mass", "kg/m^2", &numbers.areal);
+    }
     if (m->film.retardation > 0.0) {
         dea_rings_quantity(q, pool, "retardation", "s", &numbers.damp);
     }
@@ -96,8 +103,8 @@ static void indexed(const dea_rings_motion_cards *c, const char *name, size_t nu
 void dea_rings_motion_cards_write_numbers(dea_rings_motion_cards *c, const dea_rings_port *port)
 {
     const dea_dynamics *film = &c->membrane->film;
-    if (!c->text.values) {
-        dea_rings_quantities_write(&c->quantities, c->text.out);
+    for (size_t i = 1; i < c->quantities.count && !c->text.values; i++) {
+        dea_part_value(c->text.out, c->quantities.names[i], c->quantities.values[i]);
     }
     dea_part_text_parameters(&c->text);
     for (size_t i = 0; i < film->branch_count; i++) {

@@ -1,8 +1,8 @@
 /* The moving membrane as cards, mobility analogy: what parts, exports and the engine `ngspice` share.
  *
- *   ring q: e_1 = v(a<q>), e_2 = v(b<q>), their rates v(c<q>), v(d<q>), changes of the Cauchy stresses v(s<q>), v(t<q>), with what
- *   branches add v(x<q>), v(y<q>), and lambda_pre (P_a + x_a/lambda_a) less the voltage's part v(f<q>), v(g<q>); z relaxes to the
- *   stress: v(z<i>s<q>), v(z<i>t<q>). Node n: velocity v(v<n>), displacement v(u<n>), at r_a v(edge) and v(u).
+ *   ring q: e_1 = v(a<q>), e_2 = v(b<q>), of the thickness e_3 = v(w<q>), their rates v(c<q>), v(d<q>), v(r<q>), changes of the
+ *   Cauchy stresses v(s<q>), v(t<q>), with what branches and damper add v(x<q>), v(y<q>), and lambda_pre (P_a + x_a/lambda_a)
+ *   less the voltage's part v(f<q>), v(g<q>); z relaxes to the stress: v(z<i>s<q>), v(z<i>t<q>). v(pressure) = eps E^2 at rest. Node n: velocity v(v<n>), displacement v(u<n>), at r_a v(edge) and v(u).
  *   v(swell) = C/C_rest - 1, of an electroded ring v(h<q>) = (1 + e_1)^2 (1 + e_2)^2 - 1.
  *
  * The text refers to parameters of those who use it: `per_r`, strain over displacement and radius; `newton`, 2 pi H F^2/r in the
@@ -21,7 +21,9 @@ typedef struct dea_rings_moving {
     bool whole;  /* the branches of the stress that holds no node, across at the frame, are written too */
     dea_expr cauchy[DEA_RINGS_STRAINS][2];     /* changes of sigma_a */
     dea_expr rates[DEA_RINGS_STRAINS][2];      /* their slopes over time */
-    dea_expr nominal[DEA_RINGS_STRAINS][2][2]; /* bare and electroded; of x_a, see above, and the rates */
+    dea_expr nominal[DEA_RINGS_STRAINS][2][2]; /* bare and electroded; of x_a, see above */
+    dea_expr push;                             /* of the pressure over U^2, eps lambda_pre^4/H^2 */
+    dea_expr damp;                             /* Kelvin-Voigt retardation time */
     dea_expr swell;                            /* (1 + e_1)^2 (1 + e_2)^2 - 1 */
     dea_expr rest;                             /* sigma at rest */
     dea_expr masses[DEA_RINGS_NODES];

@@ -1,6 +1,7 @@
 #include "netlist/rings_part.h"
 
 #include "expression/formula.h"
+#include "netlist/mobility.h"
 
 /* For coverages 0.15 ... 0.85 and pre-stretches 1.1 ... 1.3 its static strain at 4.5 kV is good to 1e-8, its first two modes to 1e-5
  * and 1e-3 (measured on the paper's film, against 14 and 18 degrees). */
@@ -49,14 +50,15 @@ void dea_rings_part_declare(const dea_rings_part *part, dea_part_text *text)
     }
 }
 
-/* Displacement [um] as the integral of the velocity, its leak, mass and hold as those of the other parts. */
+/* Displacement, mass and hold with the cures of the other parts. */
 static void write_node(const dea_rings_writer *w, const dea_rings_moving *m, size_t node)
 {
-    const dea_rings_label v = dea_rings_node(w, 'v', node), u = dea_rings_node(w, 'u', node);
-    fprintf(w->out, "GDISP%zu 0 %s %s 0 1e6\nCDISP%zu %s 0 1\nGDRIFT%zu %s 0 %s 0 1e-9\nGSAFE%zu %s 0 %s 0 {hold}\n", node, u.text, v.text,
-            node, u.text, node, u.text, u.text, node, v.text, u.text);
-    fprintf(w->out, "EMASS%zu ma%zu 0 %s 0 1e-6\nCMASS%zu ma%zu mb%zu {%s+1e-24*k_rest}\nVMASS%zu mb%zu 0 0\nFMASS%zu %s 0 VMASS%zu {f_mass}\n",
-            node, node, v.text, node, node, node, dea_rings_parameter(w, m->masses[node - 1]).text, node, node, node, v.text, node);
+    const dea_rings_label v = dea_rings_node(w, 'v', node), u = dea_rings_node(w, 'u', node), tag = dea_rings_label_of("", node);
+    char mass[3 * DEA_PART_NAME];
+    snprintf(mass, sizeof mass, "%s+%.15g*k_rest", dea_rings_parameter(w, m->masses[node - 1]).text, dea_part_cures.lightest);
+    dea_cards_write_integral(&dea_part_cures, tag.text, u.text, v.text, "0", w->out);
+    dea_cards_write_inertia(&dea_part_cures, tag.text, v.text, mass, w->out);
+    fprintf(w->out, "GSAFE%zu %s 0 %s 0 {hold}\n", node, v.text, u.text);
 }
 
 /* Field and force per volt at the electroded ring of the edge. */
@@ -86,8 +88,7 @@ void dea_rings_part_write(const dea_rings_part *part, dea_part_text *text)
     fprintf(w.out, "* the membrane as %zu moving nodes, degrees of disc and annulus %zu and %zu; strain good to 1e-8 at rest, first modes\n",
             m->cards.node_count, m->cards.mesh.disc, m->cards.mesh.annulus);
     fputs("* to 1e-5 and 1e-3, for coverages 0.15 to 0.85 and pre-stretches 1.1 to 1.3\n", w.out);
-    fputs(".param per_r={1e-6/radius}\n.param newton={6.283185307179586e6*many*layer*thick*radius/(stretch*stretch)}\n.param hold={1-ok}\n"
-          ".param f_mass={1e6*many}\n",
+    fputs(".param per_r={1e-6/radius}\n.param newton={6.283185307179586e6*many*layer*thick*radius/(stretch*stretch)}\n",
           w.out);
     for (size_t n = 1; n <= m->cards.node_count; n++) {
         write_node(&w, m, n);

@@ -41,9 +41,9 @@ static dea_rings_label capital(const char *name)
     return l;
 }
 
-void dea_rings_enter(const dea_rings_writer *w, dea_rings_place *place, size_t number)
+void dea_rings_enter(const dea_rings_writer *w, dea_rings_place *place, size_t number, const char *mark)
 {
-    snprintf(place->suffix, sizeof place->suffix, "_%zu", number);
+    snprintf(place->suffix, sizeof place->suffix, "_%zu%s", number, mark);
     w->text->nodes = place->nodes;
     w->text->suffix = place->suffix;
 }

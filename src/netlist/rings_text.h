@@ -23,12 +23,13 @@ dea_rings_label dea_rings_node(const dea_rings_writer *w, char kind, size_t node
 /* A declared term as text of a card. */
 dea_rings_label dea_rings_parameter(const dea_rings_writer *w, dea_expr ref);
 
-/* What stands for the nodes of the pool at a ring, and the ending of the nodes of its shared terms; up to dea_rings_leave(). */
+/* What stands for the nodes of the pool at a ring, and the ending of the nodes of its shared terms, with a mark of what is written; up to
+ * dea_rings_leave(). */
 typedef struct dea_rings_place {
     const char *const *nodes;
     char suffix[DEA_PART_NAME];
 } dea_rings_place;
-void dea_rings_enter(const dea_rings_writer *w, dea_rings_place *place, size_t number);
+void dea_rings_enter(const dea_rings_writer *w, dea_rings_place *place, size_t number, const char *mark);
 void dea_rings_leave(const dea_rings_writer *w);
 
 /* v(node) = an expression between these, or one term with the nodes of its shared terms before it. */

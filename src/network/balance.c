@@ -310,6 +310,7 @@ static dea_row row_of(const dea_balance *balance, double u)
     }
     row.charge = row.capacitance * dea_tape_value(limits, VOLTAGE);
     row.energy = 0.5 * row.charge * dea_tape_value(limits, VOLTAGE);
+    row.second_field = fabs(dea_tape_value(limits, SECOND_FIELD));
     row.area_strain = dea_area_strain(balance->kind, dea_tape_value(limits, COVERAGE), row.strain);
     row.focal_length = isnan(focal) ? focal
                                     : dea_lens_focal_length(focal, dea_tape_value(limits, REFRACTIVE_INDEX),
@@ -319,8 +320,7 @@ static dea_row row_of(const dea_balance *balance, double u)
             row.state = DEA_STATE_SLACK;
         }
     }
-    const double second = fabs(dea_tape_value(limits, SECOND_FIELD));
-    if (row.field > dea_tape_value(limits, BREAKDOWN) || second > dea_tape_value(limits, SECOND_BREAKDOWN)) {
+    if (row.field > dea_tape_value(limits, BREAKDOWN) || row.second_field > dea_tape_value(limits, SECOND_BREAKDOWN)) {
         row.state = DEA_STATE_BREAKDOWN;
     }
     return row;

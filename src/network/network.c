@@ -448,46 +448,63 @@ void dea_constant_name(const dea_law *law, size_t index, char name[DEA_QUANTITY_
 }
 
 /* Makes a number a symbol; 0 stays, so that it vanishes. */
-static void lift(dea_quantities *quantities, dea_pool *pool, const char *name, dea_expr *field)
+static void lift(dea_quantities *quantities, dea_pool *pool, const char *whose, const char *name, dea_expr *field)
 {
     const double value = dea_expr_constant(pool, *field);
     if (isfinite(value) && value != 0.0 && quantities->count < DEA_QUANTITIES) {
         const int symbol = ++quantities->count;
-        snprintf(quantities->names[symbol], DEA_QUANTITY_NAME, "%s", name);
+        snprintf(quantities->names[symbol], DEA_QUANTITY_NAME, "%s%.*s", whose, DEA_QUANTITY_NAME - 8, name);
         quantities->values[symbol] = value;
         *field = dea_expr_symbol(pool, symbol);
     }
 }
 
-static void lift_all(dea_quantities *quantities, dea_symbols *s, bool modulus)
+/* Moduli of a law: of a film, "", of its skin or of the second film. */
+static void lift_law(dea_quantities *quantities, dea_pool *pool, const dea_law *law, const char *whose, dea_expr *constants)
 {
     char name[DEA_QUANTITY_NAME];
-    lift(quantities, s->pool, "frame_radius", &s->frame_radius);
-    lift(quantities, s->pool, "film_thickness", &s->film_thickness);
-    lift(quantities, s->pool, "permittivity", &s->permittivity);
     for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
-        if (s->law->constants[i % s->law->constant_count].modulus) {
-            dea_constant_name(s->law, i, name);
-            lift(quantities, s->pool, name, &s->constants[i]);
+        if (law->constants[i % law->constant_count].modulus) {
+            dea_constant_name(law, i, name);
+            lift(quantities, pool, whose, name, &constants[i]);
         }
     }
+}
+
+static void lift_all(dea_quantities *quantities, dea_symbols *s, const char *whose, bool modulus)
+{
+    lift(quantities, s->pool, whose, "frame_radius", &s->frame_radius);
+    lift(quantities, s->pool, whose, "film_thickness", &s->film_thickness);
+    lift(quantities, s->pool, whose, "permittivity", &s->permittivity);
+    if (dea_expr_constant(s->pool, s->voltage) != 1.0) { /* 1 V where a text multiplies by that of the film */
+        lift(quantities, s->pool, whose, "voltage", &s->voltage);
+    }
+    lift(quantities, s->pool, whose, "load_stiffness", &s->load);
+    lift(quantities, s->pool, whose, "load_force", &s->force);
+    lift_law(quantities, s->pool, s->law, whose, s->constants);
+    if (s->skin) {
+        lift_law(quantities, s->pool, s->skin, "skin_", s->skin_constants);
+    }
     if (modulus) {
-        lift(quantities, s->pool, "modulus", &s->modulus);
+        lift(quantities, s->pool, whose, "modulus", &s->modulus);
     } else {
         s->modulus = dea_symbols_modulus(s);
     }
 }
 
 /* Symbols of the second film, whose frame is that of the first. */
-static dea_symbols second_symbols(const dea_scene *scene, const dea_axis *axis, const dea_symbols *first)
+static dea_symbols second_symbols(const dea_scene *scene, const dea_axis *axis, const dea_symbols *first, dea_quantities *quantities)
 {
     dea_scene other;
     dea_axis moved;
     dea_second_scene(scene, &other);
-    const bool moves = axis && dea_second_axis(scene, axis, &moved);
-    dea_symbols second = dea_symbols_of(&other, moves ? &moved : NULL, first->pool);
+    const dea_axis *own = axis && dea_second_axis(scene, axis, &moved) ? &moved : NULL;
+    dea_symbols second = dea_symbols_of(&other, own, first->pool);
     second.frame_radius = first->frame_radius;
     second.coverage = first->coverage;
+    if (quantities) {
+        lift_all(quantities, &second, "second_", given(first->pool, scalar(first->pool, &other, own, &other.material.modulus)));
+    }
     second.loaded = true;
     return second;
 }
@@ -507,11 +524,11 @@ static dea_status build(const dea_scene *scene, const dea_model *model, const de
     if (quantities && !network->pool.exhausted) {
         *quantities = (dea_quantities){0};
         const dea_expr modulus = scalar(&network->pool, scene, axis, &scene->material.modulus);
-        lift_all(quantities, &symbols, given(&network->pool, modulus));
+        lift_all(quantities, &symbols, "", given(&network->pool, modulus));
     }
     dea_symbols second;
     if (scene->antagonist.there && !network->pool.exhausted) {
-        second = second_symbols(scene, axis, &symbols);
+        second = second_symbols(scene, axis, &symbols, quantities);
         symbols.second = &second;
         symbols.loaded = true;
     }

@@ -96,7 +96,7 @@ dea_status dea_network_build(const dea_scene *scene, const dea_model *model, con
                              dea_error *error);
 /* Numbers of a scene that have a dimension and stay symbols 1, 2, ... of its network: its expressions are then the same whatever
  * the units. Symbol 0 is that of the axis. */
-enum { DEA_QUANTITIES = 4 + DEA_LAW_CONSTANTS, DEA_QUANTITY_NAME = 24 };
+enum { DEA_QUANTITIES = 2 * (7 + 2 * DEA_LAW_CONSTANTS), DEA_QUANTITY_NAME = 24 }; /* of two films */
 typedef struct dea_quantities {
     int count;
     char names[DEA_QUANTITIES + 1][DEA_QUANTITY_NAME]; /* by symbol; of symbol 0 "" */

@@ -11,6 +11,7 @@
 #include "study/study.h"
 #include "support/digest.h"
 #include "support/number.h"
+#include "support/memory_text.h"
 #include "support/text.h"
 
 #ifndef DEA_VERSION
@@ -179,23 +180,19 @@ static void put_engines(FILE *out, const dea_scene *scene, const dea_engine *eng
 
 dea_status dea_identity_write(const dea_scene *scene, const dea_engine *engine, char **text, dea_error *error)
 {
-    size_t length;
-    *text = NULL;
-    FILE *out = open_memstream(text, &length);
-    if (!out) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+    dea_memory_text memory;
+    dea_status status = dea_memory_text_begin(&memory, error);
+    FILE *out = memory.out;
+    if (status == DEA_OK) {
+        fprintf(out, "program version=%s\n", DEA_VERSION);
+        put_engines(out, scene, engine);
+        put_study(out, scene);
+        put_scalars(out, scene);
+        put_lists(out, scene);
     }
-    fprintf(out, "program version=%s\n", DEA_VERSION);
-    put_engines(out, scene, engine);
-    put_study(out, scene);
-    put_scalars(out, scene);
-    put_lists(out, scene);
-    if (!dea_text_close(out)) {
-        free(*text);
-        *text = NULL;
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
-    }
-    return DEA_OK;
+    status = dea_memory_text_end(&memory, status, error);
+    *text = memory.text;
+    return status;
 }
 
 /* Value of a line, fit for a message: the text is a stranger's. */

@@ -1,6 +1,6 @@
 /* Forces over the displacement, a colour for each run; and profiles over the radius: displacement, stretches, true stresses and field; a colour for each run, along the radius solid, along the
  * hoop dashed. */
-#include "engine/line.h"
+#include "scene/line.h"
 #include "output/strips.h"
 #include "study/study.h"
 

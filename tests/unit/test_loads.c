@@ -314,6 +314,7 @@ static void two_films_abreast_move_as_one_that_is_twice_as_thick(void **state)
     run(FILM("dot") "}\ndrive: {voltage: 3 kV}\nstudy: {sweep: {}}\n", "coverage", "direct", &other);
     assert_relative(rows_of(&one)->displacement, rows_of(&other)->displacement, 1e-12);
     assert_relative(rows_of(&one)->charge, rows_of(&other)->charge, 1e-12);
+    assert_relative(rows_of(&one)->second_field, rows_of(&other)->field, 1e-12);
 }
 
 /* A second film past its own pull-in leaves no rest, whatever the voltage of the first; one past its breakdown tells so. */

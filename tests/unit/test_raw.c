@@ -200,7 +200,7 @@ static void point_make(const dea_scene *scene, const dea_layout *layout, size_t 
         } else if (scene->study == DEA_STUDY_AC) {
             *(dea_response *)row = (dea_response){at, 1e-9 * at, -15.0 * (double)i, 1e9 / at, -90.0, DEA_STATE_OK};
         } else {
-            *(dea_row *)row = (dea_row){0.001 * x, 1e-5 * x, 0.25 + x, 1e6 / (1.0 + x), 1e-10 + x, -x, 0.5 * x, NAN, 0.1 * x, DEA_STATE_OK};
+            *(dea_row *)row = (dea_row){0.001 * x, 1e-5 * x, 0.25 + x, 1e6 / (1.0 + x), 1e-10 + x, -x, 0.5 * x, NAN, 0.1 * x, 0.0, DEA_STATE_OK};
         }
     }
 }

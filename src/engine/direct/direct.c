@@ -5,7 +5,7 @@
 
 #include "engine/direct/direct.h"
 #include "engine/engines.h"
-#include "engine/line.h"
+#include "scene/line.h"
 #include "study/study.h"
 
 typedef struct visit_state {

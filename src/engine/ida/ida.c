@@ -4,7 +4,7 @@
 
 #include "engine/engines.h"
 #include "engine/ida/sundials.h"
-#include "engine/line.h"
+#include "scene/line.h"
 #include "model/loaded.h"
 #include "network/membrane.h"
 #include "network/balance.h"

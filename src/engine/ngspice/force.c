@@ -12,6 +12,7 @@
 typedef struct curve {
     dea_ngspice *library;
     const dea_scene *scene;
+    const dea_model *model;
     dea_network network;
     dea_balance balance;
     dea_row *rows;
@@ -35,33 +36,36 @@ static void fill(curve *c, const double *forces)
 static dea_status sweep(curve *c, dea_error *error)
 {
     char *netlist;
-    dea_ngspice_result result = {0};
+    const char *const current = "bhold#branch";
+    dea_ngspice_table table = {0};
     const dea_forces f = dea_balance_forces(&c->balance, 0.0, 0.0);
     const dea_force_study *held = &c->scene->force;
-    const dea_netlist_study study = {.count = held->points,
+    const dea_netlist_study study = {.scene = c->scene,
+                                     .model = c->model,
+                                     .count = held->points,
                                      .held = held,
                                      .tolerance = fmin(1e-8, 0.1 * c->scene->accuracy),
                                      .length_scale = c->scene->actuator.frame_radius,
                                      .force_scale = fabs(f.elastic_slope) * c->scene->actuator.frame_radius};
-    dea_status status = dea_netlist_write(&c->network, &study, &netlist, error);
+    dea_status status = dea_netlist_write(&study, &netlist, error);
     if (status == DEA_OK) {
-        status = dea_ngspice_run(c->library, netlist, "bhold#branch", &result, error);
+        status = dea_ngspice_run_all(c->library, netlist, &current, 1, &table, error);
         free(netlist);
     }
-    if (status == DEA_OK && result.count != held->points) {
-        status = dea_fail(error, DEA_ERROR_ENGINE, "ngspice gave %zu of %zu displacements", result.count, held->points);
+    if (status == DEA_OK && table.count != held->points) {
+        status = dea_fail(error, DEA_ERROR_ENGINE, "ngspice gave %zu of %zu displacements", table.count, held->points);
     }
     if (status == DEA_OK) {
-        fill(c, result.values);
+        fill(c, table.columns[0]);
     }
-    free(result.values);
+    dea_ngspice_table_free(&table);
     return status;
 }
 
 dea_status dea_ngspice_force(void *session, const dea_scene *scene, const dea_model *model, const dea_layout *layout, void *point,
                              dea_error *error)
 {
-    curve c = {.library = session, .scene = scene, .rows = point};
+    curve c = {.library = session, .scene = scene, .model = model, .rows = point};
     (void)layout;
     dea_status status = dea_network_build(scene, model, NULL, &c.network, error);
     if (status == DEA_OK) {

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "engine/engines.h"
-#include "engine/line.h"
+#include "scene/line.h"
 #include "engine/ngspice/library.h"
 #include "engine/ngspice/moving.h"
 #include "engine/ngspice/still.h"
@@ -98,18 +98,19 @@ static bool accept(line_job *job, size_t i, double u)
 }
 
 /* Solves the network of one point with its load growing from rest in so many steps; *accepted says whether its answer passes. */
-static dea_status climb(line_job *job, size_t i, dea_network *network, size_t steps, bool *accepted, dea_error *error)
+static dea_status climb(line_job *job, size_t i, const dea_scene *here, size_t steps, bool *accepted, dea_error *error)
 {
     char *netlist = NULL;
-    dea_ngspice_result result = {0};
-    dea_netlist_study study = {.ramp = steps};
+    const char *const edge = "edge";
+    dea_ngspice_table table = {0};
+    dea_netlist_study study = {.scene = here, .model = job->state->model, .ramp = steps};
     set_scales(job, i, &study);
-    dea_status status = dea_netlist_write(network, &study, &netlist, error);
+    dea_status status = dea_netlist_write(&study, &netlist, error);
     if (status == DEA_OK) {
-        status = dea_ngspice_run(job->state->library, netlist, "edge", &result, error);
+        status = dea_ngspice_run_all(job->state->library, netlist, &edge, 1, &table, error);
     }
-    *accepted = status == DEA_OK && result.count == steps + 1 && accept(job, i, result.values[steps]);
-    free(result.values);
+    *accepted = status == DEA_OK && table.count == steps + 1 && accept(job, i, table.columns[0][steps]);
+    dea_ngspice_table_free(&table);
     free(netlist);
     return status;
 }
@@ -136,25 +137,28 @@ static dea_status solve_alone(void *user, size_t i, dea_error *error)
     if (job->line->axis) {
         dea_axis_set(job->line->axis, &here, symbol);
     }
-    dea_network network;
     bool accepted = false;
-    dea_status status = dea_network_build(&here, job->state->model, NULL, &network, error);
+    dea_status status = DEA_OK;
     for (size_t steps = RAMP_STEPS; status == DEA_OK && !accepted && steps <= RAMP_STEPS_MOST; steps *= RAMP_REFINED) {
-        status = climb(job, i, &network, steps, &accepted, error);
+        status = climb(job, i, &here, steps, &accepted, error);
     }
-    dea_network_free(&network);
     return status;
 }
 
 /* One circuit for count points from number @p from of the line on. */
-static dea_status sweep_circuit(line_job *job, size_t from, size_t count, dea_ngspice_result *result, dea_error *error)
+static dea_status sweep_circuit(line_job *job, size_t from, size_t count, dea_ngspice_table *table, dea_error *error)
 {
+    const char *const edge = "edge";
     char *netlist;
-    dea_netlist_study study = {.axis = job->line->axis, .from = job->line->from + from, .count = count};
+    dea_netlist_study study = {.scene = job->scene,
+                               .model = job->state->model,
+                               .axis = job->line->axis,
+                               .from = job->line->from + from,
+                               .count = count};
     set_scales(job, from, &study);
-    dea_status status = dea_netlist_write(&job->network, &study, &netlist, error);
+    dea_status status = dea_netlist_write(&study, &netlist, error);
     if (status == DEA_OK) {
-        status = dea_ngspice_run(job->state->library, netlist, "edge", result, error);
+        status = dea_ngspice_run_all(job->state->library, netlist, &edge, 1, table, error);
         free(netlist);
     }
     return status;
@@ -172,13 +176,13 @@ static bool can_start(void *user, size_t i)
 static dea_status sweep_stretch(void *user, size_t from, size_t count, size_t *good, dea_error *error)
 {
     line_job *job = user;
-    dea_ngspice_result result = {0};
+    dea_ngspice_table table = {0};
     *good = 0;
-    const dea_status status = sweep_circuit(job, from, count, &result, error);
-    while (*good < result.count && accept(job, from + *good, result.values[*good])) {
+    const dea_status status = sweep_circuit(job, from, count, &table, error);
+    while (*good < table.count && accept(job, from + *good, table.columns[0][*good])) {
         ++*good;
     }
-    free(result.values);
+    dea_ngspice_table_free(&table);
     return status;
 }
 

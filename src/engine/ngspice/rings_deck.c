@@ -3,18 +3,7 @@
 #include <stdlib.h>
 
 #include "model/models.h"
-#include "support/text.h"
-
-/* The text of a stream that was closed, or none. */
-static dea_status finish(FILE *out, dea_status status, char **text, dea_error *error)
-{
-    if (!dea_text_close(out) || status != DEA_OK) {
-        free(*text);
-        *text = NULL;
-        return status == DEA_OK ? dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written") : status;
-    }
-    return DEA_OK;
-}
+#include "support/memory_text.h"
 
 dea_status dea_rings_deck_network(const dea_scene *scene, const dea_membrane *membrane, double unit, char **text, dea_error *error)
 {
@@ -22,19 +11,19 @@ dea_status dea_rings_deck_network(const dea_scene *scene, const dea_membrane *me
     const dea_cards_form form = {.dialect = dea_dialect_at(0), .analogy = dea_analogy_at(0), .numbers = true};
     const dea_rings_port port = {unit * film->series, unit / film->conductance, dea_point_capacitance(&film->point) / unit};
     dea_rings_motion_cards cards;
-    size_t length = 0;
-    *text = NULL;
-    FILE *out = open_memstream(text, &length);
-    if (!out) {
-        return finish(out, DEA_OK, text, error);
-    }
-    const dea_status status = dea_rings_motion_cards_open(scene, membrane, &form, out, &cards, error);
+    dea_memory_text memory;
+    dea_status status = dea_memory_text_begin(&memory, error);
     if (status == DEA_OK) {
-        dea_rings_motion_cards_write_numbers(&cards, &port);
-        dea_rings_motion_cards_write_network(&cards);
+        status = dea_rings_motion_cards_open(scene, membrane, &form, memory.out, &cards, error);
+        if (status == DEA_OK) {
+            dea_rings_motion_cards_write_numbers(&cards, &port);
+            dea_rings_motion_cards_write_network(&cards);
+        }
+        dea_rings_motion_cards_close(&cards);
     }
-    dea_rings_motion_cards_close(&cards);
-    return finish(out, status, text, error);
+    status = dea_memory_text_end(&memory, status, error);
+    *text = memory.text;
+    return status;
 }
 
 /* Names on one card: longer ones get lost. */
@@ -74,15 +63,17 @@ static void write_analysis(FILE *out, const dea_mobility_piece *p)
 dea_status dea_rings_deck_write(const char *network, const dea_membrane *membrane, const dea_mobility_piece *piece,
                                 const double *states, char **text, dea_error *error)
 {
-    size_t length = 0;
-    *text = NULL;
-    FILE *out = open_memstream(text, &length);
-    if (out) {
+    dea_memory_text memory;
+    dea_status status = dea_memory_text_begin(&memory, error);
+    FILE *out = memory.out;
+    if (status == DEA_OK) {
         fprintf(out, "* moving membrane, numbers in units in which they are of size 1\n%s", network);
         dea_deck_source(out, piece, membrane->film.series > 0.0 ? "source" : "film");
         write_states(out, ".ic", membrane, states);
         write_states(out, ".save", membrane, NULL);
         write_analysis(out, piece);
     }
-    return finish(out, DEA_OK, text, error);
+    status = dea_memory_text_end(&memory, status, error);
+    *text = memory.text;
+    return status;
 }

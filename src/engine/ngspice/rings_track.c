@@ -9,22 +9,10 @@
 #include "support/gauss.h"
 
 /* Steps in a radian of the first mode at fineness 1: the trapezoidal rule turns the modes above it too. */
-static const double radian_steps = 8.0;
+static const double radian_steps = 3.0;
 
 /* Most time steps of one netlist, for what its plot takes of memory [numbers]. */
 static const double most_numbers = 2e7;
-
-/* The library shortens a step to an eighth where Newton's method does not settle, and goes on with that for ever where rounding
- * alone keeps it from doing so: a netlist that takes so many times its steps and so many points more behind each corner is run
- * again with absolute tolerances so many times as large. */
-static const double collapse = 2.0;
-static const double corner_points = 100.0;
-static const double first_points = 500.0;
-static const double loosen = 100.0;
-static const double loosest = 1e4;
-
-/* Parts of an edge that is shorter than a time step, at fineness 1. */
-static const double edge_parts = 2.0;
 
 /* Time of a state over a step, below which steps do not resolve it: its slope is then that of the parabola through its neighbours. */
 static const double unresolved = 0.5;
@@ -34,24 +22,16 @@ static const double soft = 1e-3;
 
 /* ---- opening */
 
+/* Steps behind a corner are those of the swing: its waves are the faster for being short. */
 static dea_pace pace_of(const dea_rings_track *t)
 {
-    const dea_dynamics *film = &t->flight.membrane.film;
-    const dea_membrane_rest *rest = &t->flight.motion.rest;
-    const double slowest = rest->slowest, tau = film->retardation;
-    dea_pace pace = {.omega = radian_steps * t->swing, .decay = dea_rings_decay(&t->flight.motion), .fastest = INFINITY};
-    if (t->swing > 0.0) {
-        pace.fastest = 4.0 / pace.omega; /* steps behind a corner are those of the swing */
-    } else if (slowest > 0.0) {
-        pace.fastest = fmin(1.0 / slowest, 1.0 / (tau * slowest * slowest)); /* a damper outweighs the mass */
-    } else if (tau > 0.0) {
-        pace.fastest = tau / (1.0 + film->total_share);
+    dea_pace pace = dea_pace_of_rings(&t->flight.membrane, &t->flight.motion.rest, dea_rings_decay(&t->flight.motion));
+    if (pace.omega > 0.0) {
+        const bool others = pace.fastest < 0.3 / pace.omega;
+        pace.omega *= radian_steps;
+        pace.fastest = others ? pace.fastest : 1.5 / pace.omega;
     }
-    for (size_t i = 0; i < film->branch_count; i++) {
-        pace.fastest = fmin(pace.fastest, film->branches[i].tau);
-    }
-    const double conductance = film->series > 0.0 ? 1.0 / film->series + film->conductance : 0.0;
-    return film->series > 0.0 ? (dea_pace){pace.omega, pace.decay, fmin(pace.fastest, rest->capacitance / conductance)} : pace;
+    return pace;
 }
 
 static double port_unit(const dea_rings_track *t)
@@ -69,11 +49,11 @@ static dea_status prepare(dea_rings_track *t, const dea_model *model, dea_rings_
         return status;
     }
     const dea_rings_motion *m = &t->flight.motion;
-    t->swing = m->heavy && dea_rings_decay(m) < m->rest.slowest ? m->rest.slowest : 0.0;
     t->quasi = *m;
-    t->quasi.heavy = t->quasi.damped = t->quasi.charged = false;
+    t->quasi.heavy = t->quasi.damped = false;
     t->quasi.z = m->nodes;
-    t->quasi.q = t->quasi.count = m->nodes + dea_membrane_relaxed(m->membrane);
+    t->quasi.q = m->nodes + dea_membrane_relaxed(m->membrane);
+    t->quasi.count = m->count - (m->z - m->nodes);
     t->unit = port_unit(t);
     t->states = m->count;
     t->columns = m->count + 1;
@@ -156,11 +136,11 @@ static bool quasi_rates(runner *r, point *p)
     dea_rings_track *t = r->track;
     const dea_rings_motion *m = &t->flight.motion;
     double *y = t->room + 6 * t->states, *rates = t->room + 7 * t->states;
-    const size_t branches = t->quasi.count - t->quasi.z;
+    const size_t others = t->quasi.count - t->quasi.z; /* stresses of branches, charge */
     t->quasi.segment = m->segment;
     memcpy(y, p->y, m->nodes * sizeof *y);
-    memcpy(y + t->quasi.z, p->y + m->z, branches * sizeof *y);
-    memcpy(rates + t->quasi.z, p->rates + m->z, branches * sizeof *y);
+    memcpy(y + t->quasi.z, p->y + m->z, others * sizeof *y);
+    memcpy(rates + t->quasi.z, p->rates + m->z, others * sizeof *y);
     if (!dea_rings_massless(&t->quasi, since(r, p->time), y, rates)) {
         return false;
     }
@@ -212,11 +192,7 @@ static bool look_between(runner *r, double time)
     for (size_t k = 0; k < t->states; k++) {
         blend(r, k, h, x, &p->y[k], &p->rates[k]);
     }
-    const dea_rings_motion *m = &t->flight.motion;
-    if (m->heavy && !r->slow) {
-        return true;
-    }
-    return is_resolved(r) || quasi_rates(r, p);
+    return is_resolved(r) ? r->track->flight.motion.heavy || dea_rings_massless(&t->flight.motion, since(r, time), p->y, p->rates) : quasi_rates(r, p);
 }
 
 /* Samples up to the second point. */
@@ -416,49 +392,25 @@ static dea_state absorb(runner *r, const dea_ngspice_table *table, double from, 
 
 /* ---- pieces */
 
-/* Points after which the steps of a netlist have collapsed. */
-static size_t most_points(const runner *r, const dea_mobility_piece *piece)
+/* The states of the runner, the charge as the voltage that it makes at rest. */
+static dea_status write_piece(const void *user, const dea_mobility_piece *piece, char **text, dea_error *error)
 {
-    const dea_signal *signal = piece->signal;
-    double corners = 0.0;
-    for (size_t i = piece->segment; i < signal->count && signal->segments[i].from < piece->to; i++) {
-        corners += r->parts;
-    }
-    return (size_t)(first_points + corner_points * corners + collapse * (piece->to - piece->from) / piece->step);
-}
-
-static dea_status run_once(const runner *r, const dea_mobility_piece *piece, dea_ngspice_table *table, bool *collapsed, dea_error *error)
-{
+    const runner *r = user;
     const dea_rings_track *t = r->track;
-    const dea_membrane *membrane = &t->flight.membrane;
-    const size_t most = most_points(r, piece);
-    dea_rings_label labels[DEA_NGSPICE_COLUMNS];
-    const char *names[DEA_NGSPICE_COLUMNS] = {"time"};
     double *states = t->room + 6 * t->states;
-    char *text;
     memcpy(states, r->state, t->states * sizeof *states);
     if (t->flight.motion.charged) {
-        states[charge_of(r)] /= dea_point_capacitance(&membrane->film.point);
+        states[charge_of(r)] /= dea_point_capacitance(&t->flight.membrane.film.point);
     }
-    for (size_t i = 0; i < t->states; i++) {
-        labels[i] = dea_rings_state_node(membrane, i);
-        names[i + 1] = labels[i].text;
-    }
-    dea_status status = dea_rings_deck_write(t->network, membrane, piece, states, &text, error);
-    if (status == DEA_OK) {
-        dea_ngspice_limit(t->library, most);
-        status = dea_ngspice_run_all(t->library, text, names, t->columns, table, error);
-        free(text);
-    }
-    *collapsed = status == DEA_OK && table->count >= most;
-    return status;
+    return dea_rings_deck_write(t->network, &t->flight.membrane, piece, states, text, error);
 }
 
 static dea_status run_netlist(runner *r, double from, double to, size_t segment, dea_state *end, double *reached, dea_error *error)
 {
     const dea_rings_track *t = r->track;
-    dea_ngspice_table table = {0};
-    bool collapsed = false;
+    dea_rings_label labels[DEA_NGSPICE_COLUMNS];
+    const char *names[DEA_NGSPICE_COLUMNS] = {"time"};
+    dea_ngspice_table table;
     dea_mobility_piece piece = {.signal = t->signal,
                                 .segment = segment,
                                 .from = from,
@@ -467,12 +419,12 @@ static dea_status run_netlist(runner *r, double from, double to, size_t segment,
                                 .parts = r->parts,
                                 .tolerance = fmin(1e-7, 1e-3 * t->scene->accuracy),
                                 .loose = r->loose};
-    dea_status status = run_once(r, &piece, &table, &collapsed, error);
-    while (collapsed && r->loose < loosest) {
-        dea_ngspice_table_free(&table);
-        piece.loose = r->loose *= loosen;
-        status = run_once(r, &piece, &table, &collapsed, error);
+    for (size_t i = 0; i < t->states; i++) {
+        labels[i] = dea_rings_state_node(&t->flight.membrane, i);
+        names[i + 1] = labels[i].text;
     }
+    const dea_status status = dea_deck_run(t->library, &piece, write_piece, r, names, t->columns, &table, error);
+    r->loose = piece.loose;
     if (status == DEA_OK) {
         *end = absorb(r, &table, from, to, reached);
     }
@@ -489,6 +441,7 @@ static void set_step(runner *r, const dea_piece *piece, double step)
     r->slow = m->heavy && !piece->rings && m->rest.slowest * step > unresolved;
     r->drags = !m->heavy && m->damped && m->membrane->film.retardation < unresolved * step * (1.0 + m->membrane->film.total_share);
     r->charging = m->charged && charging < unresolved * step;
+    r->track->quasi.charged = m->charged && !r->charging; /* else it has the voltage of the source */
 }
 
 /* The voltage jumps: a film without mass, damper and series resistance goes with it. */
@@ -520,11 +473,15 @@ static dea_status run_piece(runner *r, const dea_piece *piece, double fineness, 
     return status;
 }
 
-/* At rest, or at the equilibrium under the first voltage; the first sample. */
-static bool start(runner *r)
+/* At rest, or at the equilibrium under the first voltage, where @p first is stored; the first sample. */
+static bool start(runner *r, dea_membrane_energy *first)
 {
     dea_rings_flight *f = &r->track->flight;
-    if (!dea_rings_start(&f->motion, r->track->scene->transient.from_bias, r->state) || !jump(r, 0)) {
+    if (!dea_rings_start(&f->motion, r->track->scene->transient.from_bias, r->state)) {
+        return false;
+    }
+    *first = dea_rings_energy(f, 0.0, r->state);
+    if (!jump(r, 0)) {
         return false;
     }
     memcpy(r->a.y, r->state, r->track->states * sizeof *r->a.y);
@@ -540,7 +497,7 @@ dea_status dea_rings_track_run(dea_rings_track *t, double fineness, dea_rings_tr
     }
     const size_t n = t->states;
     dea_audit energies = {0};
-    runner r = {.track = t, .loose = 1.0, .parts = ceil(edge_parts / fineness), .state = points,
+    runner r = {.track = t, .loose = 1.0, .parts = dea_deck_parts(fineness), .state = points,
                 .a = {0.0, points + n, points + 2 * n}, .b = {0.0, points + 3 * n, points + 4 * n},
                 .between = {0.0, points + 5 * n, points + 6 * n}};
     *trace = (dea_rings_trace){.samples = trace->samples};
@@ -550,8 +507,8 @@ dea_status dea_rings_track_run(dea_rings_track *t, double fineness, dea_rings_tr
     f->steps = 0;
     f->why.message[0] = '\0';
     f->motion.segment = t->signal->segments;
-    trace->end = start(&r) ? DEA_STATE_OK : DEA_STATE_PULL_IN;
-    const dea_membrane_energy first = dea_rings_energy(f, 0.0, r.state);
+    dea_membrane_energy first = {0};
+    trace->end = start(&r, &first) ? DEA_STATE_OK : DEA_STATE_PULL_IN;
     dea_status status = DEA_OK;
     for (size_t i = 0; i < t->pieces.count && status == DEA_OK && trace->end == DEA_STATE_OK; i++) {
         status = run_piece(&r, &t->pieces.pieces[i], fineness, &trace->end, error);

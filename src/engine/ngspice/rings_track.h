@@ -19,7 +19,6 @@ typedef struct dea_rings_track {
     char *network;           /* owned: numbers and network */
     size_t states, columns;  /* of a netlist; of its plot, with the time */
     double unit;             /* in which currents of the port are counted [A] */
-    double swing;            /* angular frequency of the first mode, 0: it does not swing [rad/s] */
     double *room;            /* owned: states at points */
 } dea_rings_track;
 

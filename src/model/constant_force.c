@@ -51,6 +51,7 @@ static void build(const dea_symbols *symbols, dea_network *network)
     const dea_expr rest = MUL(dea_symbols_capacitance(symbols), dea_symbols_electric(symbols, stretch, stretch).own);
     network->capacitance = MUL(rest, SQUARE(SQUARE(stretch))); /* C_0 lambda_a^4 */
     network->field = dea_hyperelastic_field(symbols, network->strain);
+    dea_network_insulate(symbols, network, stretch, stretch);
     network->length = MUL(symbols->coverage, symbols->frame_radius);
 }
 

@@ -259,6 +259,7 @@ static void build(const dea_symbols *symbols, dea_network *network)
                     SCALE(network->sign, dea_hyperelastic_force(symbols, disc, active)));
     network->ends = true;
     network->field = dea_hyperelastic_field(symbols, active);
+    dea_network_insulate(symbols, network, ADD(one, active), ADD(one, active));
     dea_network_taut(network, SUB(MUL(symbols->prestretch, ADD(one, passive)), one));
     if (symbols->loaded) {
         const dea_expr electric = dea_symbols_electric(symbols, ADD(one, active), ADD(one, active)).first;

@@ -328,6 +328,7 @@ static void build(const dea_symbols *symbols, dea_network *network)
     network->capacitance = MUL(dea_symbols_capacitance(symbols), MUL(electric.own, SQUARE(e.area)));
     network->ends = true;
     network->field = MUL(MUL(dea_symbols_nominal_field(symbols), SQUARE(symbols->prestretch)), e.area);
+    dea_network_insulate(symbols, network, e.area, one);
     limit_tension(symbols, network, &e);
 }
 

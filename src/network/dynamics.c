@@ -515,7 +515,8 @@ void dea_dynamics_lighten(dea_dynamics *d, double accuracy)
 bool dea_dynamics_inside(dea_dynamics *dynamics, double u)
 {
     const bool framed = u > -dynamics->radius && u < dynamics->point.frame_radius - dynamics->radius;
-    return framed && (!dynamics->port || dea_dynamics_edge(dynamics, u).capacitance > 0.0);
+    const bool charged = dynamics->port || dynamics->point.film.electrostriction != 0.0;
+    return framed && (!charged || dea_dynamics_edge(dynamics, u).capacitance > 0.0);
 }
 
 void dea_dynamics_start(dea_dynamics *dynamics, dea_moment *moment)

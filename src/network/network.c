@@ -92,6 +92,13 @@ void dea_network_demand(dea_network *network, dea_expr range)
     append(network, &network->range, &network->range_count, range);
 }
 
+void dea_network_insulate(const dea_symbols *symbols, dea_network *network, dea_expr l1, dea_expr l2)
+{
+    if (dea_expr_constant(symbols->pool, symbols->electrostriction) != 0.0) {
+        dea_network_demand(network, dea_symbols_electric(symbols, l1, l2).own);
+    }
+}
+
 void dea_network_limit_area(const dea_symbols *symbols, dea_network *network)
 {
     dea_pool *pool = symbols->pool;
@@ -104,6 +111,7 @@ void dea_network_limit_area(const dea_symbols *symbols, dea_network *network)
     }
     const dea_expr rest = MUL(dea_symbols_nominal_field(symbols), SQUARE(symbols->prestretch));
     network->field = MUL(rest, area);
+    dea_network_insulate(symbols, network, area, one);
 }
 
 /* A scalar of the scene: symbol 0 where it is the axis, else its number. */

@@ -124,6 +124,8 @@ void dea_network_gather(dea_network *network);
 void dea_network_taut(dea_network *network, dea_expr tension);
 /* Something that is positive where the point makes sense. */
 void dea_network_demand(dea_network *network, dea_expr range);
+/* Demands a permittivity > 0 of the film under lambda_pre l1, lambda_pre l2 where it follows them. */
+void dea_network_insulate(const dea_symbols *symbols, dea_network *network, dea_expr l1, dea_expr l2);
 /* Sets the true field from the area that disc (dot) or annulus (lens) has at u: U lambda_pre^2/H times the area ratio. */
 void dea_network_limit_area(const dea_symbols *symbols, dea_network *network);
 

@@ -652,6 +652,26 @@ static void a_film_that_voltage_shrinks_is_refused(void **state)
     }
 }
 
+/* A force draws the film to where its permittivity, 3.2 - 1.5 lambda, would be below 0. */
+static void a_film_drawn_past_its_permittivity_has_no_numbers(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lumped", "lame", "coverage", "ring", "field"};
+    const char *drawn = "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.3, film_thickness: 100 um, prestretch: 1.2}\n"
+                        "material: {neo_hookean: {mu: 60 kPa}, permittivity: {constant: 3.2, per_stretch: -1.5, follows: strain}}\n"
+                        "drive: {voltage: 1 kV}\nstudy: {sweep: {load.force: [0.3 N, 2 N]}}\nload: {force: 2 N}\n";
+    for (size_t m = 0; m < 5; m++) {
+        for (size_t e = 0; e < ENGINES; e++) {
+            if (can(drawn, models[m], engines[e])) {
+                run(drawn, models[m], engines[e], &one);
+                const dea_row *rows = (const dea_row *)one.bytes;
+                assert_true(rows[0].state == DEA_STATE_OK && rows[0].capacitance > 0.0);
+                assert_true(rows[1].state == DEA_STATE_FAILED && isnan(rows[1].strain));
+            }
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -681,6 +701,7 @@ int main(void)
         cmocka_unit_test(engines_agree_on_moving_permittivities),
         cmocka_unit_test(engines_agree_on_shaken_permittivities),
         cmocka_unit_test(a_film_that_voltage_shrinks_is_refused),
+        cmocka_unit_test(a_film_drawn_past_its_permittivity_has_no_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -98,6 +98,9 @@ static void put_lists(FILE *out, const dea_scene *scene)
         put_numbers(out, "antagonist.material.constants", other->material.constants, other->own_material ? DEA_LAW_CONSTANTS : 0);
         put_number(out, "antagonist.material.permittivity", other->material.permittivity);
         put_number(out, "antagonist.material.permittivity.per_stretch", other->material.permittivity_per_stretch);
+        fprintf(out, "antagonist.material.permittivity.follows=%d\n", other->material.permittivity_follows ? 1 : 0);
+        put_number(out, "antagonist.material.modulus_slope.per_kelvin", other->material.modulus_slope);
+        put_number(out, "antagonist.material.modulus_slope.reference", other->material.modulus_reference);
         put_number(out, "antagonist.material.density", other->material.density);
         put_number(out, "antagonist.material.modulus", other->material.modulus);
         put_number(out, "antagonist.material.breakdown", other->material.breakdown);

@@ -173,13 +173,40 @@ static void a_part_has_the_numbers_of_its_temperature(void **state)
     dea_scene_free(&scene);
 }
 
+#define SECOND(more) "antagonist: {actuator: {kind: lens}, drive: {voltage: 2 kV}, material: {neo_hookean: {mu: 60 kPa}, permittivity: 3" more "}}\n"
+
+/* Both films are at the temperature, each by its own slope: the second of 120 % at 40 degC is one of stiffer constants. */
+static void a_second_film_is_at_the_same_temperature(void **state)
+{
+    (void)state;
+    static const char *const stiffer = "antagonist: {actuator: {kind: lens}, drive: {voltage: 2 kV}, material: {neo_hookean: {mu: 72 kPa}, permittivity: 3}}\n";
+    static const char *const models[] = {"ring", "field"};
+    char wanted[1024];
+    snprintf(wanted, sizeof wanted, "%s%s", FILM(SLOPE) STILL "temperature: 40 degC\n", stiffer);
+    for (size_t m = 0; m < 2; m++) {
+        for (size_t e = 0; e < ENGINES; e++) {
+            const char *warm = FILM(SLOPE) STILL "temperature: 40 degC\n" SECOND(", modulus_slope: {per_kelvin: 1 %/K, reference: 20 degC}");
+            const char *swept = FILM(SLOPE) "drive: {voltage: 4 kV}\nstudy: {sweep: {temperature: [20 degC, 40 degC]}}\n" SECOND(", modulus_slope: {per_kelvin: 1 %/K, reference: 20 degC}");
+            if (run(wanted, models[m], engines[e], &one) && run(warm, models[m], engines[e], &other)) {
+                const double strain = ((const dea_row *)one.bytes)->strain;
+                assert_relative(((const dea_row *)other.bytes)->strain, strain, 1e-8);
+                run(swept, models[m], engines[e], &other);
+                assert_relative(((const dea_row *)other.bytes)[1].strain, strain, 1e-8);
+            }
+        }
+    }
+}
+
 /* Journals, shards and results are of one temperature and one table. */
 static void another_temperature_is_another_run(void **state)
 {
     (void)state;
     static const char *const scenes[] = {FILM(BRANCHES TABLE) STILL "temperature: 40 degC\n", FILM(BRANCHES TABLE) STILL "temperature: 39 degC\n",
                                          FILM(BRANCHES WLF) STILL "temperature: 40 degC\n",
-                                         FILM(BRANCHES ", shift: [[0 degC, 20], [20 degC, 1], [40 degC, 0.2]]") STILL "temperature: 40 degC\n"};
+                                         FILM(BRANCHES ", shift: [[0 degC, 20], [20 degC, 1], [40 degC, 0.2]]") STILL "temperature: 40 degC\n",
+                                         FILM(SLOPE) STILL "temperature: 40 degC\n" SECOND(", modulus_slope: {per_kelvin: 0.3 %/K, reference: 20 degC}"),
+                                         FILM(SLOPE) STILL "temperature: 40 degC\n" SECOND(", modulus_slope: {per_kelvin: 0.4 %/K, reference: 20 degC}"),
+                                         FILM(SLOPE) STILL "temperature: 40 degC\n" SECOND("")};
     enum { SCENES = sizeof scenes / sizeof *scenes };
     char *texts[SCENES];
     for (size_t i = 0; i < SCENES; i++) {
@@ -243,6 +270,7 @@ int main(void)
         cmocka_unit_test(a_warm_film_answers_as_at_a_lower_frequency),
         cmocka_unit_test(a_warm_film_is_one_of_stiffer_constants),
         cmocka_unit_test(a_part_has_the_numbers_of_its_temperature),
+        cmocka_unit_test(a_second_film_is_at_the_same_temperature),
         cmocka_unit_test(another_temperature_is_another_run),
         cmocka_unit_test(temperatures_that_make_no_film_are_refused),
     };

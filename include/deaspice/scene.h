@@ -188,6 +188,7 @@ typedef struct dea_transient {
     bool from_bias; /**< starts in the relaxed equilibrium under the first voltage (true), or at rest (default) */
     dea_window averages[DEA_WINDOWS];
     size_t average_count;
+    size_t points; /**< radii at which every sample tells the film, 2 ... DEA_RADII_MAX; 0 (default): it is not told */
 } dea_transient;
 
 /** A frequency response about the equilibrium under the bias. */

@@ -40,10 +40,12 @@ typedef struct planner {
     double speeds[DEA_SURROGATE_POINTS]; /* of the velocity, likewise [m/s] */
 } planner;
 
-/* A load that alone resists the edge of a membrane leaves its other nodes without an equation of motion: they keep their mass. */
+/* A load that alone resists the edge of a membrane leaves its other nodes without an equation of motion: they keep their mass; so they do
+ * where the rim of a sheet resistance charges at once, which the one resistance of the stand-in hides. */
 static bool pays(const planner *p, dea_part part)
 {
-    if (p->many_nodes && p->surrogate.scene->load.damping > 0.0) {
+    const dea_scene *scene = p->surrogate.scene;
+    if (p->many_nodes && (scene->load.damping > 0.0 || scene->electrode.sheet_resistance > 0.0)) {
         return false;
     }
     return (p->engine->omits & 1u << part) != 0 && (!p->many_nodes || part == DEA_PART_MASS);

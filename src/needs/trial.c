@@ -32,8 +32,10 @@ static const dea_engine *appoint(dea_trial *trial, const dea_reduction *reductio
 dea_status dea_trial_open(const dea_scene *scene, const dea_model *model, const dea_reduction *reduction, double accuracy,
                           dea_trial *trial, dea_error *error)
 {
-    *trial = (dea_trial){.scene = *scene, .model = model, .layout = dea_layout_of(scene)};
+    *trial = (dea_trial){.scene = *scene, .model = model};
     trial->scene.reduction = (dea_reduction){.ring = (double)INFINITY};
+    trial->scene.transient.points = 0;
+    trial->layout = dea_layout_of(&trial->scene);
     trial->engine = appoint(trial, reduction, accuracy);
     dea_status status = dea_signal_open(scene, &trial->signal, error);
     if (status == DEA_OK && trial->engine) {

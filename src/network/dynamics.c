@@ -460,7 +460,7 @@ double dea_dynamics_velocity_charged(dea_dynamics *dynamics, double u, double vo
 dea_sample dea_sample_refused(double time, double voltage, dea_state state)
 {
     const double none = (double)NAN;
-    return (dea_sample){time, voltage, none, none, none, none, none, none, none, none, none, state};
+    return (dea_sample){time, voltage, none, none, none, none, none, none, none, none, none, state, {none, none, none, none}};
 }
 
 /* Current of the source: through R_s, or d(C U)/dt and the leakage. */

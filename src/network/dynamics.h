@@ -129,6 +129,7 @@ typedef struct dea_moment {
     double u, v;         /* [m], [m/s] */
     bool charging;       /* the slope of the charge is known better than the small drop over R_s: */
     double charge_slope; /* [A] */
+    const double *charge_slopes; /* those of the charges along an electrode with a sheet resistance [A]; NULL: not known so well */
 } dea_moment;
 
 /* At the first moment of a film at its bias the branches have relaxed and the charge rests: of forces that cancel nothing is

@@ -45,6 +45,7 @@ dea_status dea_membrane_open(const dea_scene *scene, const dea_model *model, dea
     const dea_status status = dea_dynamics_settle(scene, model, &m->film, error);
     if (status == DEA_OK) {
         dea_rings_cut(&m->film.point, mesh, &m->rings);
+        dea_sheet_open(scene, m);
         set_masses(scene, m);
         find_own(m);
     }
@@ -55,6 +56,12 @@ static double square_of(const dea_membrane *m, double voltage)
 {
     const double field = voltage / m->film.point.film_thickness;
     return m->film.point.film.permittivity * field * field; /* k [Pa] */
+}
+
+/* k of a ring. */
+static double square_at(const dea_membrane *m, const dea_membrane_look *look, size_t r, double voltage)
+{
+    return square_of(m, dea_membrane_voltage(m, look, r, voltage));
 }
 
 /* lambda_pre (1 + e_a): stretches of a ring, and their changes from rest. */
@@ -116,6 +123,7 @@ static bool look_at_ring(const dea_membrane *m, size_t r, const double *u, dea_r
 
 bool dea_membrane_look_at(const dea_membrane *m, const double *u, dea_membrane_look *look)
 {
+    const double thickness = m->film.point.film_thickness, unit = m->film.point.film.permittivity / (thickness * thickness);
     double sum = 0.0;
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         const dea_ring *ring = &m->rings.rings[r];
@@ -123,16 +131,17 @@ bool dea_membrane_look_at(const dea_membrane *m, const double *u, dea_membrane_l
         if (!look_at_ring(m, r, u, at)) {
             return false;
         }
-        const double area = at->stretch[0] * at->stretch[1];
-        const double own = dea_film_electric(&m->film.point.film, area).own;
+        const double area = at->stretch[0] * at->stretch[1], own = dea_film_electric(&m->film.point.film, area).own;
+        const double content = ring->electroded ? ring->volume * own * area * area : 0.0;
         if (!(own > 0.0)) {
             return false; /* there is no such film */
         }
-        sum += ring->electroded ? ring->volume * own * area * area : 0.0;
+        at->capacitance = unit * content;
+        sum += content;
     }
-    const double thickness = m->film.point.film_thickness;
     look->edge = u[m->rings.edge];
-    look->capacitance = m->film.point.film.permittivity / (thickness * thickness) * sum;
+    look->capacitance = unit * sum;
+    look->spread = false;
     return true;
 }
 
@@ -155,16 +164,26 @@ void dea_membrane_pull(const dea_membrane *m, double (*f)[2], double *force)
     }
 }
 
+/* Adds phi_n of one ring. */
+static void push_ring(const dea_membrane *m, const dea_membrane_look *look, size_t r, double *push)
+{
+    const double *l = look->rings[r].stretch, k = square_of(m, 1.0) * dea_film_electric(&m->film.point.film, l[0] * l[1]).first;
+    const double f[2] = {-k * l[0] * l[1] * l[1], -k * l[0] * l[0] * l[1]};
+    pull_ring(m, r, f, push);
+}
+
+void dea_membrane_push_ring(const dea_membrane *m, const dea_membrane_look *look, size_t r, double *push)
+{
+    memset(push, 0, m->rings.node_count * sizeof *push);
+    push_ring(m, look, r, push);
+}
+
 void dea_membrane_push(const dea_membrane *m, const dea_membrane_look *look, double *push)
 {
-    const double unit = square_of(m, 1.0);
     memset(push, 0, m->rings.node_count * sizeof *push);
     for (size_t r = 0; r < m->rings.ring_count; r++) {
-        const double *l = look->rings[r].stretch;
-        const double k = unit * dea_film_electric(&m->film.point.film, l[0] * l[1]).first;
-        const double f[2] = {-k * l[0] * l[1] * l[1], -k * l[0] * l[0] * l[1]};
         if (m->rings.rings[r].electroded) {
-            pull_ring(m, r, f, push);
+            push_ring(m, look, r, push);
         }
     }
 }
@@ -208,13 +227,11 @@ void dea_membrane_viscous(const dea_membrane *m, const dea_membrane_look *look, 
 
 void dea_membrane_force(const dea_membrane *m, const dea_membrane_look *look, double voltage, double (*x)[2], double *force)
 {
-    const double k = square_of(m, voltage);
     memset(force, 0, m->rings.node_count * sizeof *force);
     for (size_t r = 0; r < m->rings.ring_count; r++) {
-        const dea_ring *ring = &m->rings.rings[r];
         const dea_ring_look *at = &look->rings[r];
-        const double area = at->stretch[0] * at->stretch[1], electric = dea_film_electric(&m->film.point.film, area).first;
-        const double pressure = ring->electroded ? k * electric * area : 0.0;
+        const double area = at->stretch[0] * at->stretch[1];
+        const double pressure = square_at(m, look, r, voltage) * dea_film_electric(&m->film.point.film, area).first * area;
         double s[2];
         for (int a = 0; a < 2; a++) {
             s[a] = at->nominal[a] - pressure * at->stretch[1 - a] + (x ? x[r][a] / at->stretch[a] : 0.0);
@@ -243,10 +260,9 @@ static void ring_tangent(const dea_film *film, const dea_ring_look *at, double k
 
 bool dea_membrane_elliptic(const dea_membrane *m, const dea_membrane_look *look, double voltage, double (*x)[2], double share)
 {
-    const double k = square_of(m, voltage);
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         double t[2][2];
-        ring_tangent(&m->film.point.film, &look->rings[r], m->rings.rings[r].electroded ? k : 0.0, x ? x[r] : NULL, share, t);
+        ring_tangent(&m->film.point.film, &look->rings[r], square_at(m, look, r, voltage), x ? x[r] : NULL, share, t);
         if (!(t[0][0] > 0.0)) {
             return false;
         }
@@ -276,11 +292,10 @@ static void assemble_ring(const dea_membrane *m, size_t r, double t[2][2], doubl
 void dea_membrane_stiffness(const dea_membrane *m, const dea_membrane_look *look, double voltage, double (*x)[2], double share,
                             double *stiffness)
 {
-    const double k = square_of(m, voltage);
     memset(stiffness, 0, m->rings.node_count * m->rings.node_count * sizeof *stiffness);
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         double t[2][2];
-        ring_tangent(&m->film.point.film, &look->rings[r], m->rings.rings[r].electroded ? k : 0.0, x ? x[r] : NULL, share, t);
+        ring_tangent(&m->film.point.film, &look->rings[r], square_at(m, look, r, voltage), x ? x[r] : NULL, share, t);
         assemble_ring(m, r, t, stiffness);
     }
     stiffness[m->rings.edge * (m->rings.node_count + 1)] += m->film.point.load;
@@ -474,7 +489,7 @@ static double edge_force(const dea_membrane *m, const dea_membrane_look *look, d
     const bool dot = m->film.point.kind == DEA_DOT;
     const size_t r = dot ? inner : inner + 1;
     const double *l = look->rings[r].stretch;
-    return (dot ? 1.0 : -1.0) * 2.0 * DEA_PI * m->rings.rings[r].radius * m->film.point.film_thickness * square_of(m, voltage) *
+    return (dot ? 1.0 : -1.0) * 2.0 * DEA_PI * m->rings.rings[r].radius * m->film.point.film_thickness * square_at(m, look, r, voltage) *
            dea_film_electric(&m->film.point.film, l[0] * l[1]).first * l[0] * l[1] * l[1];
 }
 
@@ -488,31 +503,43 @@ static double largest_up_to(const dea_membrane *m, bool disc, const double *valu
         low = counts ? fmin(low, values[r]) : low;
         high = counts ? fmax(high, values[r]) : high;
     }
-    return high + (high - low) < limit ? high : dea_rings_largest(&m->rings, disc, values);
+    return high + (high - low) < limit ? high : dea_rings_largest(&m->rings, disc, values, NULL);
 }
 
-/* A row; its field is exact where lambda_1 lambda_2 passes a limit. */
-static void fill_row(const dea_membrane *m, const dea_membrane_look *look, double voltage, const double *u, double limit,
+/* The film voltage, or the largest of the rings. */
+static double peak_voltage(const dea_membrane *m, const dea_membrane_look *look, double voltage)
+{
+    double largest = 0.0;
+    for (size_t r = 0; r < m->rings.ring_count && look->spread; r++) {
+        largest = fmax(largest, fabs(dea_membrane_voltage(m, look, r, voltage)));
+    }
+    return look->spread ? largest : voltage;
+}
+
+/* A row under the peak of the voltage; its field is exact where lambda_1 lambda_2, times the share of that voltage, passes a limit. */
+static void fill_row(const dea_membrane *m, const dea_membrane_look *look, double peak, const double *u, double limit,
                      dea_row *row)
 {
-    const double k = square_of(m, voltage), tension = m->film.point.film.tension;
+    const double tension = m->film.point.film.tension;
     double loss[2][DEA_RINGS_MOST], area[DEA_RINGS_MOST], most = -INFINITY; /* of stresses */
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         const dea_ring_look *at = &look->rings[r];
+        const double k = square_at(m, look, r, peak);
         area[r] = at->stretch[0] * at->stretch[1];
+        const double electric = dea_film_electric(&m->film.point.film, area[r]).first;
         for (int a = 0; a < 2; a++) {
-            const double pull = k * dea_film_electric(&m->film.point.film, area[r]).first * area[r] * at->stretch[1 - a];
-            loss[a][r] = (m->rings.rings[r].electroded ? pull : 0.0) - at->nominal[a];
+            loss[a][r] = k * electric * area[r] * at->stretch[1 - a] - at->nominal[a];
         }
+        area[r] *= look->spread && peak > 0.0 ? fabs(dea_membrane_voltage(m, look, r, peak)) / peak : 1.0;
     }
     for (int i = 0; i < 4; i++) {
         most = fmax(most, largest_up_to(m, i < 2, loss[i % 2], tension));
     }
     dea_point point = m->film.point;
-    point.voltage = voltage;
+    point.voltage = peak;
     dea_row_fill(row, &point,
                  (dea_found){.strain = u[m->rings.edge] / m->film.radius,
-                             .force = edge_force(m, look, voltage),
+                             .force = edge_force(m, look, peak),
                              .stretch = largest_up_to(m, m->film.point.kind == DEA_DOT, area, limit),
                              .capacitance = look->capacitance,
                              .taut = tension > most});
@@ -537,12 +564,15 @@ static double capacitance_rate(const dea_membrane *m, const dea_membrane_look *l
 double dea_membrane_current(const dea_membrane *m, const dea_membrane_look *look, const dea_moment *moment, const double *v)
 {
     const dea_dynamics *d = &m->film;
-    const double leak = moment->voltage * d->conductance;
+    const double leak = dea_sheet_leakage(m, look, moment->voltage);
     if (moment->charging) {
-        return moment->charge_slope + leak;
+        return moment->charge_slope + leak + dea_sheet_rim_current(m, look, moment->source, moment->slope, v);
     }
     if (d->series > 0.0) {
-        return (moment->source - moment->voltage) / d->series;
+        return (moment->source - dea_sheet_rim_voltage(m, look, moment->voltage)) / d->series;
+    }
+    if (look->spread) {
+        return dea_sheet_rim_current(m, look, moment->source, moment->slope, v) + dea_sheet_through(m, look);
     }
     return look->capacitance * moment->slope + capacitance_rate(m, look, v) * moment->voltage + leak;
 }
@@ -552,8 +582,9 @@ static bool fill_sample(const dea_membrane *m, const dea_membrane_look *look, co
 {
     dea_row row = dea_row_failed();
     const dea_point *point = &m->film.point;
-    const double field = fabs(moment->voltage) * point->layers / point->film_thickness; /* nominal, of a layer */
-    fill_row(m, look, moment->voltage, u, field > 0.0 ? point->film.breakdown / field : (double)INFINITY, &row);
+    const double peak = peak_voltage(m, look, moment->voltage);
+    const double field = fabs(peak) * point->layers / point->film_thickness; /* nominal, of a layer */
+    fill_row(m, look, peak, u, field > 0.0 ? point->film.breakdown / field : (double)INFINITY, &row);
     *sample = dea_sample_refused(moment->time, moment->source, DEA_STATE_PULL_IN);
     if (row.state == DEA_STATE_FAILED || !isfinite(v[m->rings.edge])) {
         return false;
@@ -567,7 +598,7 @@ static bool fill_sample(const dea_membrane *m, const dea_membrane_look *look, co
     sample->film_voltage = moment->voltage;
     if (m->film.port) {
         sample->current = dea_membrane_current(m, look, moment, v);
-        sample->charge = row.charge;
+        sample->charge = look->capacitance * moment->voltage;
         sample->capacitance = row.capacitance;
     }
     return true;
@@ -675,8 +706,11 @@ void dea_membrane_audit_add(dea_audit *audit, const dea_membrane *m, const dea_m
                             const double *v, const double *z, double weight)
 {
     const dea_dynamics *d = &m->film;
-    const double square = moment->voltage * moment->voltage, leak = square * d->conductance;
+    const double square = moment->voltage * moment->voltage;
     const bool series = d->series > 0.0;
+    const dea_sheet_powers sheets = look->spread ? dea_sheet_powers_of(m, look, moment, v) : (dea_sheet_powers){0};
+    const double leak = look->spread ? sheets.heat : square * d->conductance;
+    const double fed = look->spread ? sheets.fed : 0.5 * capacitance_rate(m, look, v) * square + leak;
     const double flow = series ? dea_membrane_current(m, look, moment, v) : 0.0;
     double rates[DEA_RINGS_MOST][2], x[DEA_RINGS_MOST][2];
     dea_membrane_rates(m, v, rates);
@@ -692,7 +726,7 @@ void dea_membrane_audit_add(dea_audit *audit, const dea_membrane *m, const dea_m
         ohmic += ring_power(m, x, rates);
     }
     ohmic += d->damping * v[m->rings.edge] * v[m->rings.edge];
-    audit->work += weight * (series ? moment->source * flow : 0.5 * capacitance_rate(m, look, v) * square + leak);
+    audit->work += weight * (series ? moment->source * flow : fed);
     audit->dissipated += weight * ohmic;
     audit->largest = fmax(fmax(audit->largest, kinetic_energy(m, v)), fmax(fabs(audit->work), fabs(audit->dissipated)));
 }
@@ -759,9 +793,11 @@ dea_membrane_energy dea_membrane_energy_of(const dea_membrane *m, double voltage
     const double none = (double)NAN;
     dea_membrane_look look;
     if (!dea_membrane_look_at(m, u, &look)) {
-        return (dea_membrane_energy){none, none, none, none};
+        return (dea_membrane_energy){none, none, none, none, none};
     }
-    return (dea_membrane_energy){.electric = 0.5 * look.capacitance * voltage * voltage,
+    const double electric = 0.5 * look.capacitance * voltage * voltage;
+    return (dea_membrane_energy){.electric = electric,
+                                 .fed = m->film.series > 0.0 ? 0.0 : electric,
                                  .elastic = way_integral(m, rest, u, NULL),
                                  .springs = m->film.branch_count > 0 ? spring_energy(m, &look, z) : 0.0,
                                  .kinetic = kinetic_energy(m, v)};
@@ -771,10 +807,11 @@ void dea_membrane_audit_close(const dea_audit *audit, const dea_membrane *m, con
                               const dea_membrane_energy *last, dea_summary *summary)
 {
     const double springs = last->springs - first->springs;
+    (void)m;
     summary->electric = last->electric - first->electric;
     summary->elastic = last->elastic - first->elastic + springs;
     summary->kinetic = last->kinetic - first->kinetic;
-    summary->work = audit->work + (m->film.series > 0.0 ? 0.0 : summary->electric);
+    summary->work = audit->work + last->fed - first->fed;
     summary->dissipated = audit->dissipated + audit->branch - springs;
     const double spent = summary->electric + summary->elastic + summary->kinetic + summary->dissipated;
     double largest = fmax(audit->largest, fabs(audit->branch));

@@ -9,12 +9,15 @@ static const double doubt = 1.5;         /* most that the error of the better of
 static const double certainty = 0.75;    /* the same where the film is smooth */
 static const double smooth_enough = 1.0; /* of smoothness over the spacing of the nodes */
 
+static const double resolved = 0.25; /* of the root of a front's width, over the spacing of nodes that follow it */
+
 /* Time over which all waves are smooth, over the time that one takes from centre to frame [1]. */
 static double smoothness(const dea_membrane *m, const dea_membrane_rest *rest)
 {
     const double crossing = 3.83 / rest->slowest; /* J1(3.83) = 0 at the frame */
     const double charging = m->film.series * rest->capacitance;
-    return m->heavy ? fmax(2.0 * DEA_PI * m->film.retardation, charging) / crossing : INFINITY;
+    const double waves = m->heavy ? fmax(2.0 * DEA_PI * m->film.retardation, charging) / crossing : INFINITY;
+    return fmin(resolved * sqrt(m->sheet.front), waves); /* nodes lie closer to the rim by their number squared */
 }
 
 /* Share of the nodes that an element takes that is so long, of two. */
@@ -54,6 +57,14 @@ dea_rings_mesh dea_rings_usual_mesh(const dea_scene *scene)
     const dea_actuator *actuator = &scene->actuator;
     const double coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
     return (dea_rings_mesh){8, 16, coverage < small_disc};
+}
+
+bool dea_rings_stays_rough(const dea_scene *scene, const dea_model *model)
+{
+    dea_membrane m;
+    dea_membrane_rest rest;
+    return dea_membrane_open(scene, model, dea_rings_usual_mesh(scene), &m, NULL) == DEA_OK && dea_membrane_at_rest(&m, &rest) &&
+           !(smoothness(&m, &rest) * DEA_RINGS_DEGREE > smooth_enough);
 }
 
 double dea_rings_first_nodes(double accuracy)

@@ -10,6 +10,8 @@
 dea_rings_mesh dea_rings_usual_mesh(const dea_scene *scene);
 /* The mesh of a scene for so many nodes an element, on average. */
 dea_rings_mesh dea_rings_mesh_of(const dea_scene *scene, double nodes);
+/* True where no mesh makes the film smooth: its error falls with a power of the nodes at best. */
+bool dea_rings_stays_rough(const dea_scene *scene, const dea_model *model);
 /* Nodes of an element for a first run. */
 double dea_rings_first_nodes(double accuracy);
 /* Nodes for the run after that with @p nodes; and what the error of the finer of both is taken for, over their difference: where

@@ -322,7 +322,7 @@ void dea_still_fill(const dea_still *still, const double *u, dea_row *row)
         area[q] = film->square * (1.0 + e[q].e1) * (1.0 + e[q].e2);
     }
     const dea_rings *rings = &still->rings;
-    const double slack = fmax(radial[0], fmax(dea_rings_largest(rings, false, radial), dea_rings_largest(rings, false, hoop)));
+    const double slack = fmax(radial[0], fmax(dea_rings_largest(rings, false, radial, NULL), dea_rings_largest(rings, false, hoop, NULL)));
     const strains *edge = &e[electrode_edge(&still->rings)];
     const double stretched = film->square * (1.0 + edge->e1) * (1.0 + edge->e2);
     const double pull = stretched * (1.0 + edge->e2) * dea_film_electric(film, stretched).first; /* lambda_1 lambda_2^2/lambda_pre */
@@ -330,7 +330,7 @@ void dea_still_fill(const dea_still *still, const double *u, dea_row *row)
     dea_row_fill(row, point,
                  (dea_found){.strain = strain,
                              .force = dea_point_sign(point) * force,
-                             .stretch = point->kind == DEA_DOT ? area[0] : dea_rings_largest(rings, false, area),
+                             .stretch = point->kind == DEA_DOT ? area[0] : dea_rings_largest(rings, false, area, NULL),
                              .capacitance = capacitance(still, u),
                              .taut = film->tension > slack}); /* the disc is uniform */
 }

@@ -24,7 +24,7 @@ typedef struct dea_drawer {
     dea_status (*draw)(dea_plot *plot, dea_error *error);
 } dea_drawer;
 
-extern const dea_drawer dea_drawer_points, dea_drawer_runs, dea_drawer_modes, dea_drawer_profiles, dea_drawer_forces;
+extern const dea_drawer dea_drawer_points, dea_drawer_runs, dea_drawer_modes, dea_drawer_profiles, dea_drawer_waves, dea_drawer_forces;
 
 struct dea_plot {
     const dea_scene *scene;

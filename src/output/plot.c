@@ -133,7 +133,8 @@ dea_status dea_plot_begin(const dea_scene *scene, const char *path, const dea_pl
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
     begun->scene = scene;
-    begun->drawer = dea_study_of(scene)->drawer;
+    const dea_study *study = dea_study_of(scene);
+    begun->drawer = study->spread_drawer && dea_layout_of(scene).spread_count > 0 ? study->spread_drawer : study->drawer;
     dea_status status = begun->drawer->open(begun, error);
     if (status == DEA_OK) {
         status = dea_gnuplot_begin(&begun->picture, path, options, error);

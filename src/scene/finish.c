@@ -96,17 +96,22 @@ static dea_status law_check(dea_reader *reader, const dea_holder *holder)
     return dea_place_fail(dea_reader_place(reader, first, holder->name), reader->error, path, "%s", fault);
 }
 
-/* One resistance stands for the sheets of a film whose electrode moves as one. */
+/* One resistance stands for the sheets of a film whose electrode moves as one; of a membrane the potential is told along them in time
+ * alone. There charges rest under a bias only where none leak away. */
 static dea_status sheet_check(dea_reader *reader)
 {
     const dea_scene *scene = reader->scene;
     const dea_study *study = dea_study_of(scene);
     const size_t sheet = offsetof(dea_scene, electrode.sheet_resistance);
     const bool currents = study->along && !study->still;
+    const bool leaks = scene->transient.from_bias && !isnan(scene->drive.leakage_resistance);
     for (size_t i = 0; i < scene->model_count && currents; i++) {
-        if (scene->models[i]->membrane) {
+        if (scene->models[i]->membrane && (!study->timed || leaks)) {
             return dea_place_fail(dea_reader_place(reader, sheet, "electrode"), reader->error, "electrode.sheet_resistance",
-                                  "is one resistance, which the model %s has no place for; accepted: models of one node, e.g. ring",
+                                  study->timed ? "beside a leakage, from a bias, is more than the model %s can do; accepted: start: rest, "
+                                                 "no leakage_resistance, or models of one node, e.g. ring"
+                                               : "is one resistance, which the model %s has no place for; accepted: models of one node, "
+                                                 "e.g. ring, or a transient",
                                   scene->models[i]->name);
         }
     }

@@ -65,6 +65,7 @@ typedef struct dea_study {
 
     size_t resonance; /* column that is a resonance in the first row, 0: none */
     const struct dea_drawer *drawer; /* of its pictures */
+    const struct dea_drawer *spread_drawer; /* of those of rows that tell something over the radius; NULL: the same */
 
     /* True where it can be asked of a model; NULL: of all. */
     bool (*takes)(const dea_model *model);

@@ -82,7 +82,7 @@ static size_t states_that_differ(double wanted, dea_state wanted_state, double f
     assert_int_equal(comparison.layout.point_size, sizeof run);
     for (int i = 0; i < 3; i++) {
         const double none = (double)NAN;
-        run.samples[i] = (dea_sample){i, 3000.0, 1e-4, 1e-4 / 0.015, 0.0, 0.1, none, none, none, none, none, DEA_STATE_SLACK};
+        run.samples[i] = (dea_sample){i, 3000.0, 1e-4, 1e-4 / 0.015, 0.0, 0.1, none, none, none, none, none, DEA_STATE_SLACK, {.field = 0.0}};
     }
     run.samples[1].displacement = wanted;
     run.samples[1].state = wanted_state;

@@ -277,7 +277,9 @@ static void fill_shapes(const film *f, const dea_scene *scene, const dea_layout 
         const double sign = shape[rings->edge] < 0.0 ? -1.0 : 1.0;
         for (size_t i = 0; i < layout->spread_points; i++) {
             const double radius = dea_layout_radius(scene, layout, i) / f->membrane.film.point.film.prestretch;
-            *dea_layout_entry(layout, point, k, i) = sign * dea_rings_displacement(rings, shape, radius, false, NULL) + 0.0; /* no -0 */
+            const dea_rings_spot spot = dea_rings_spot_at(rings, radius, false);
+            double slope;
+            *dea_layout_entry(layout, point, k, i) = sign * dea_rings_displacement(rings, &spot, shape, &slope) + 0.0; /* no -0 */
         }
     }
 }

@@ -167,6 +167,7 @@ const dea_engine dea_engine_ida = {
     .block = 64,
     .omits =
         1u << DEA_PART_MASS | 1u << DEA_PART_BRANCH | 1u << DEA_PART_DAMPER | 1u << DEA_PART_SERIES | 1u << DEA_PART_SOFTENING,
+    .profiles = true,
     .costs = {[DEA_STUDY_SWEEP] = {0, 5e-5, 2e-4, 2e-3},
               [DEA_STUDY_FORCE] = {[DEA_FORM_MEMBRANE] = 0.5},
               [DEA_STUDY_TRANSIENT] = {[DEA_FORM_LINEAR] = 1e-2, [DEA_FORM_HYPERELASTIC] = 2e-2, [DEA_FORM_MEMBRANE] = 0.1}},

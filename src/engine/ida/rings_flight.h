@@ -8,11 +8,13 @@
 
 #include "engine/ida/rings_motion.h"
 #include "engine/ida/sundials.h"
+#include "network/along.h"
 #include "network/peak.h"
 
 /* What a run leaves: its samples up to where it ended. */
 typedef struct dea_rings_trace {
     dea_sample *samples;           /* owned by the user: room for all rows */
+    double *entries;               /* owned by the user: of each row over the radius, NULL: not wanted */
     size_t count;                  /* in use */
     dea_state end;                 /* ok, or what all samples from count on are */
     double largest;                /* |u| at the edge on the way [m] */
@@ -27,6 +29,7 @@ typedef struct dea_rings_flight {
     dea_membrane membrane;
     dea_rings_motion motion;
     size_t rows;
+    dea_along along; /* radii that samples tell the film at */
     bool peaks;    /* the current between samples is known */
     double loosest; /* tolerance that samples alone would cut the steps of */
     dea_error why; /* what a run that failed was about, "" before */
@@ -41,6 +44,7 @@ typedef struct dea_rings_flight {
     double tolerance;
     dea_rings_trace *trace;
     dea_audit *audit; /* NULL: not wanted */
+    bool derived;     /* rates that come with a state are those of the solver */
     long steps;
 } dea_rings_flight;
 
@@ -67,7 +71,7 @@ bool dea_rings_jump(dea_rings_flight *flight, double *y);
 dea_membrane_energy dea_rings_energy(dea_rings_flight *flight, double time, const double *y);
 /* Time of the next sample [s], infinite behind the last. */
 double dea_rings_next_sample(const dea_rings_flight *flight);
-/* Keeps y, with its derivative, as the next sample, at a time of the segment; @p charging: y' tells the current. False where the
+/* Keeps y, with its derivative, as the next sample and along the radius, at a time of the segment; @p charging: y' tells the current. False where the
  * film cannot be there. */
 bool dea_rings_record(dea_rings_flight *flight, double time, const double *y, const double *rates, bool charging);
 /* Current of the source at y [A]. */

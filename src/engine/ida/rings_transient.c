@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "drive/soften.h"
 #include "engine/rings_gap.h"
 #include "network/rings_mesh.h"
 #include "support/lapack.h"
@@ -9,6 +10,9 @@
 enum { MOST_RUNS = 6 };
 
 static const double first_tolerance = 0.05; /* of the accuracy */
+/* Of cheap runs ahead: first tolerance and nodes, and the difference above which one that does not fall is no matter of the tolerance. */
+static const double rough_tolerance = 1e-4, rough_nodes = 7.0, rough_gap = 5e-3;
+static const double thin_front = 64.0; /* width of a front of charge over the spacing of the nodes next to the rim */
 static const double first_share = 0.2;      /* from one tolerance to the next */
 static const double gains_nothing = 0.5;    /* a difference that falls by less than that stays too large */
 static const double least_tolerance = 3e-12; /* what rounding of the stiffest nodes leaves */
@@ -21,10 +25,12 @@ typedef struct search {
     const dea_model *model;
     const dea_signal *signal;
     dea_scales scales;
-    dea_rings_trace traces[2]; /* owned samples: of the run before, and of the last */
+    dea_rings_trace traces[2]; /* owned samples and entries: of the run before, and of the last */
     dea_rings_flight *flight;  /* owned: of the last */
-    size_t rows;
+    dea_layout layout;
+    size_t rows, entries; /* of the layout; numbers that a row tells over the radius */
     double loosest;
+    double worst; /* error that the last run is left with, of the column that is worst against what it promises [1] */
 } search;
 
 /* One run on a mesh of its own, which takes the place of the last. */
@@ -46,19 +52,53 @@ static dea_status run_on(search *s, dea_rings_mesh mesh, double tolerance, dea_s
     return DEA_OK;
 }
 
+/* Three cheap runs of a film that no damper smooths tell whether its error falls with the mesh at all: *@p hopeless where the waves
+ * behind fast edges are too steep for any. */
+static dea_status look_ahead(search *s, dea_summary *summary, bool *hopeless, dea_error *error)
+{
+    double nodes = rough_nodes, tolerance = s->loosest = rough_tolerance, last = INFINITY;
+    *hopeless = false;
+    if (!(first_tolerance * s->scene->accuracy < 0.1 * rough_tolerance) || !dea_rings_stays_rough(s->scene, s->model)) {
+        return DEA_OK; /* the runs themselves are as cheap, or converge */
+    }
+    dea_status status = run_on(s, dea_rings_mesh_of(s->scene, nodes), tolerance, NULL, error);
+    for (int i = 0; i < 2 && status == DEA_OK; i++) {
+        nodes = dea_rings_more_nodes(&s->flight->membrane, &s->flight->motion.rest, nodes);
+        tolerance *= first_share;
+        status = run_on(s, dea_rings_mesh_of(s->scene, nodes), tolerance, NULL, error);
+        const dea_rings_gap apart = dea_rings_gap_of(s->scene, &s->scales, &s->traces[0], &s->traces[1]);
+        const bool comparable = s->traces[0].count == s->traces[1].count;
+        *hopeless = status == DEA_OK && comparable && apart.answer > rough_gap && !(apart.answer < gains_nothing * last);
+        s->worst = summary->error = apart.answer;
+        last = apart.answer;
+    }
+    *hopeless = *hopeless && s->traces[1].end == DEA_STATE_OK;
+    return status;
+}
+
 /* Leaves the better run of the last two in traces[1]; *good false where the accuracy was not reached. */
 static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates, bool *good, dea_error *error)
 {
     const double accuracy = s->scene->accuracy;
-    double tolerance = s->loosest = first_tolerance * accuracy, nodes = dea_rings_first_nodes(accuracy), last = INFINITY;
+    bool steep;
+    dea_status status = look_ahead(s, summary, &steep, error);
     *good = false;
-    dea_status status = run_on(s, dea_rings_mesh_of(s->scene, nodes), tolerance, NULL, error);
+    if (status != DEA_OK || steep) {
+        return status;
+    }
+    double tolerance = s->loosest = first_tolerance * accuracy, nodes = dea_rings_first_nodes(accuracy), last = INFINITY;
+    dea_rings_mesh mesh = dea_rings_mesh_of(s->scene, nodes);
+    status = run_on(s, mesh, tolerance, NULL, error);
     for (int i = 0; i < MOST_RUNS && status == DEA_OK && s->traces[1].end != DEA_STATE_FAILED; i++) {
-        const dea_rings_mesh before = dea_rings_mesh_of(s->scene, nodes);
+        const dea_rings_mesh before = mesh;
         nodes = dea_rings_more_nodes(&s->flight->membrane, &s->flight->motion.rest, nodes);
+        mesh = dea_rings_mesh_of(s->scene, nodes);
+        if ((mesh.disc == before.disc && mesh.disc > 1) || mesh.annulus == before.annulus) {
+            return status; /* what both have alike tells nothing about itself, but for a disc that is uniform */
+        }
         tolerance = fmax(first_share * tolerance, least_tolerance);
         *summary = dea_summary_failed();
-        status = run_on(s, dea_rings_mesh_of(s->scene, nodes), tolerance, summary, error);
+        status = run_on(s, mesh, tolerance, summary, error);
         if (status != DEA_OK) {
             return status;
         }
@@ -68,10 +108,11 @@ static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates
         const bool comparable = s->traces[0].count == s->traces[1].count;
         summary->error = fmax(apart.displacement * trust, fmax(10.0 * tolerance, 0.1 * accuracy));
         *rates = (dea_rate_errors){apart.rates.velocity * trust, apart.rates.current * trust};
-        *good = fmax(apart.answer * trust, 10.0 * tolerance) <= accuracy && comparable && !doubtful;
-        const bool hopeless = comparable && !(apart.answer < gains_nothing * last);
-        const bool finest = dea_rings_mesh_of(s->scene, nodes).disc == before.disc && dea_rings_mesh_of(s->scene, nodes).annulus == before.annulus;
-        if (*good || s->traces[1].end == DEA_STATE_FAILED || hopeless || finest) {
+        s->worst = fmax(apart.answer * trust, 10.0 * tolerance);
+        *good = s->worst <= accuracy && comparable && !doubtful;
+        const bool fronts = s->flight->membrane.sheet.front * nodes * nodes < thin_front; /* they converge late, and then fast */
+        const bool hopeless = comparable && !(apart.answer < gains_nothing * last) && !fronts;
+        if (*good || s->traces[1].end == DEA_STATE_FAILED || hopeless) {
             return status;
         }
         last = comparable ? apart.answer : INFINITY;
@@ -84,6 +125,10 @@ static void fill(const search *s, const dea_rings_trace *trace, bool good, dea_s
 {
     size_t near = 0;
     for (size_t i = 0; i < s->rows; i++) {
+        double *entries = s->entries > 0 ? dea_layout_entry(&s->layout, samples, i, 0) : NULL;
+        for (size_t k = 0; k < s->entries; k++) {
+            entries[k] = good && i < trace->count ? trace->entries[i * s->entries + k] : (double)NAN;
+        }
         if (good && i < trace->count) {
             samples[i] = trace->samples[i];
             continue;
@@ -122,8 +167,10 @@ static void explain(const search *s, const dea_summary *summary, dea_error *erro
     } else {
         dea_fail(error, DEA_ERROR_ENGINE,
                  "%zu nodes and %ld steps of SUNDIALS at a tolerance of %.1g leave an error of %.1g, the scene wants %g: waves of a "
-                 "film without much damping get steep; a rise of the voltage and a damper (material.retardation) smooth them",
-                 f->membrane.rings.node_count, f->steps, f->tolerance, summary->error, s->scene->accuracy);
+                 "film without much damping get steep; a rise of the voltage and a damper (material.retardation) smooth them%s",
+                 f->membrane.rings.node_count, f->steps, f->tolerance, fmax(s->worst, summary->error), s->scene->accuracy,
+                 f->membrane.sheet.places > 0 ? "; charge lies close to the rim of so resistive an electrode "
+                                                "(electrode.sheet_resistance), the closer the denser the samples" : "");
     }
 }
 
@@ -131,6 +178,12 @@ static dea_status fly(search *s, dea_sample *samples, dea_summary *summary, dea_
 {
     dea_rate_errors rates = {0.0, 0.0};
     bool good;
+    if (s->scene->electrode.sheet_resistance > 0.0 && !(s->scene->drive.series_resistance > 0.0) && dea_peak_jumps(s->scene, s->signal)) {
+        dea_fail(error, DEA_ERROR_ENGINE, "behind a jump of the voltage nothing bounds the current into the rim of the electrode "
+                                          "(electrode.sheet_resistance): give the waveform a rise, or the drive a series_resistance");
+        fill(s, &s->traces[1], false, samples);
+        return DEA_OK;
+    }
     const dea_status status = refine(s, summary, &rates, &good, error);
     if (status != DEA_OK) {
         return status;
@@ -147,13 +200,17 @@ static dea_status fly(search *s, dea_sample *samples, dea_summary *summary, dea_
 
 static dea_status search_open(search *s, dea_error *error)
 {
-    s->rows = dea_layout_of(s->scene).rows;
+    s->layout = dea_layout_of(s->scene);
+    s->rows = s->layout.rows;
+    s->entries = s->layout.spread_points * s->layout.spread_count;
     s->scales = dea_scales_open(s->scene, s->model);
     s->flight = calloc(1, sizeof *s->flight);
+    bool room = s->flight && s->scales.status != DEA_ERROR_MEMORY;
     for (int i = 0; i < 2; i++) {
         s->traces[i].samples = malloc(s->rows * sizeof *s->traces[i].samples);
+        s->traces[i].entries = s->entries > 0 ? malloc(s->rows * s->entries * sizeof *s->traces[i].entries) : NULL;
+        room = room && s->traces[i].samples && (s->traces[i].entries || s->entries == 0);
     }
-    const bool room = s->flight && s->traces[0].samples && s->traces[1].samples && s->scales.status != DEA_ERROR_MEMORY;
     return room ? DEA_OK : dea_fail(error, DEA_ERROR_MEMORY, "out of memory for %zu samples", s->rows);
 }
 
@@ -163,8 +220,19 @@ static void search_close(search *s)
         dea_rings_flight_close(s->flight);
     }
     free(s->flight);
-    free(s->traces[0].samples);
-    free(s->traces[1].samples);
+    for (int i = 0; i < 2; i++) {
+        free(s->traces[i].samples);
+        free(s->traces[i].entries);
+    }
+}
+
+/* Draws lines with small corners together, but where the current C U' of a film at its source has its peaks at them. */
+static dea_status soften(const dea_scene *scene, const dea_model *model, dea_signal *signal, dea_error *error)
+{
+    dea_dynamics film;
+    const dea_status status = dea_dynamics_settle(scene, model, &film, error);
+    const bool cornered = dea_peak_is_known(scene, &film, signal) && !(scene->drive.series_resistance > 0.0);
+    return status != DEA_OK || cornered ? status : dea_signal_soften(signal, scene->accuracy, 0.0, error);
 }
 
 dea_status dea_rings_transient_solve(const dea_sundials *sun, const dea_scene *scene, const dea_model *model, dea_sample *samples,
@@ -177,6 +245,9 @@ dea_status dea_rings_transient_solve(const dea_sundials *sun, const dea_scene *s
         return status;
     }
     status = dea_signal_open(scene, &signal, error);
+    if (status == DEA_OK) {
+        status = soften(scene, model, &signal, error);
+    }
     search s = {.sun = sun, .scene = scene, .model = model, .signal = &signal};
     if (status == DEA_OK) {
         status = search_open(&s, error);

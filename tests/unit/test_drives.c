@@ -2,6 +2,7 @@
 #include "scenes.h"
 
 #include <stdlib.h>
+#include <unistd.h>
 
 /* The paper's film without mass, the last of its accuracy and engine; the caller frees it. */
 static dea_status parse(const char *drive, const char *model, const char *transient, dea_scene *scene, dea_error *error)
@@ -212,6 +213,43 @@ static void engines_agree_on_limited_films(void **state)
     }
 }
 
+/* The script of a picture holds voltage and strain in pairs, in V and percent, on the way up and on the way down. */
+static void loops_lie_over_the_voltage(void **state)
+{
+    (void)state;
+    char path[] = "/tmp/loopsXXXXXX.gp", line[200];
+    const int made = mkstemps(path, 3);
+    assert_true(made >= 0);
+    close(made);
+    dea_scene scene;
+    dea_error error = {0};
+    dea_plot *plot;
+    assert_int_equal(parse("waveform: {points: [[0 s, 0 V], [10 ms, 900 V], [20 ms, 0 V]]}", "lumped", "until: 20 ms, every: 5 ms", &scene, &error), DEA_OK);
+    dea_sample *samples = solve(&scene, "direct");
+    const dea_plot_options options = {.loops = true};
+    assert_int_equal(dea_plot_begin(&scene, path, &options, &plot, &error), DEA_OK);
+    dea_plot_points(plot, 0, samples, 1);
+    assert_int_equal(dea_plot_finish(plot, true, &error), DEA_OK);
+    FILE *script = fopen(path, "r");
+    size_t found = 0;
+    while (script && fgets(line, sizeof line, script)) {
+        double voltage, strain;
+        if (sscanf(line, "%lf %lf", &voltage, &strain) == 2 && found < 5) {
+            assert_true(fabs(voltage - samples[found].voltage) < 1e-9 * 900.0);
+            assert_true(fabs(strain - 100.0 * samples[found].strain) < 1e-9);
+            found++;
+        }
+    }
+    assert_int_equal(found, 5);
+    assert_true(samples[3].strain > samples[1].strain && fabs(samples[3].voltage - samples[1].voltage) < 1e-9);
+    fclose(script);
+    remove(path);
+    free(samples);
+    scene.study = DEA_STUDY_SWEEP;
+    assert_int_equal(dea_plot_begin(&scene, path, &options, &plot, &error), DEA_ERROR_USAGE);
+    dea_scene_free(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -220,6 +258,7 @@ int main(void)
         cmocka_unit_test(a_film_stretched_past_its_chains_names_them),
         cmocka_unit_test(a_source_at_its_limit_charges_a_stiff_film_evenly),
         cmocka_unit_test(engines_agree_on_limited_films),
+        cmocka_unit_test(loops_lie_over_the_voltage),
         cmocka_unit_test(field_energy_is_half_of_charge_times_voltage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -53,8 +53,11 @@ typedef struct dea_bench_model {
     const dea_engine *check;          /**< another engine whose measured numbers are nearest to the reference, NULL: none */
     double check_accuracy, apart;     /**< its accuracy, and how far it is from the reference [1] */
     size_t states[DEA_STATE_COUNT];   /**< rows of the reference by state */
-    double error_median, error_worst; /**< of the strain, relative to model `field` [1], NAN: not a sweep, or the field itself */
-    size_t error_points, error_left_out; /**< points that are ok in both and strained, and those not ok */
+    /** Of the strain, relative to model `field`; over time of the displacement, over the peak of its run; over frequency of the
+     * displacement per volt: median, largest and root of the mean square over all rows [1]. NAN: modes or profiles, the field itself, or
+     * nobody solved it. */
+    double error_median, error_worst, error_rms;
+    size_t error_points, error_left_out; /**< rows that count, and those that are not ok (over time: that have no number) in one of both */
 } dea_bench_model;
 
 /** A work-precision study; zeroed: none. Free with dea_bench_free(). */
@@ -98,7 +101,7 @@ typedef struct dea_bench_output dea_bench_output;
 /** Opens what a study is to be written to, before the work: a target that cannot be written fails here.
  *
  * @param table   CSV with a row a setting, "-" is standard output; NULL: none
- * @param picture through gnuplot, by its ending as plot.h says: error over time, a curve for each engine and model, and beside it, in statics, the
+ * @param picture through gnuplot, by its ending as plot.h says: error over time, a curve for each engine and model, and beside it the
  *                models' errors over time a point; NULL: none
  * @param options of the picture, NULL: none
  * @param[out] output the caller ends it with dea_bench_output_finish()

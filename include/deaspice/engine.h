@@ -29,6 +29,7 @@ typedef struct dea_engine {
     double run_patience; /**< the same for one transient or frequency response [s] */
     size_t block;        /**< points that one call of sweep() takes best */
     unsigned omits;      /**< parts of a moving network that cost it time: 1 << dea_part */
+    bool profiles;       /**< its transients of a membrane tell the film along the radius */
     /** What a static point, a transient or a frequency response of a model of each form takes, in orders of magnitude [s]. */
     double costs[DEA_STUDIES][DEA_FORMS];
     /** Writes name and version of the foreign library whose numbers these are. NULL: there is none. */
@@ -41,7 +42,7 @@ typedef struct dea_engine {
      * Anything but DEA_OK leaves the session unusable; rows are then undefined. */
     dea_status (*sweep)(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count, dea_row *rows,
                         dea_error *error);
-    /** Runs one transient: fills the samples of the layout, and the summary (of its means those of windows that end before the
+    /** Runs one transient: fills the samples of the layout, what stands behind them over the radius, and the summary (of its means those of windows that end before the
      * last row with numbers count). All axes of @p scene are at their place. A run that
      * ends early (pull_in, failed) is no failure of this call: the rows tell, and where they are failed the message of @p error
      * says why. NULL: the engine has no time domain. */

@@ -11,6 +11,16 @@
 extern "C" {
 #endif
 
+/** A second film on the same frame, joined to the first at r_a by a rigid ring: u is the displacement of both edges. */
+typedef struct dea_second {
+    bool there;
+    dea_kind kind;
+    dea_film film;
+    double film_thickness; /**< of all its layers together [m] */
+    double layers;         /**< of its stack [1] */
+    double voltage;        /**< across it [V] */
+} dea_second;
+
 /** One static point: film, geometry and the voltage across the film. A stack of n films of thickness H is one film of thickness
  * n H and n^2 times the permittivity: its pressure eps (U/H)^2 stays that of one layer, stiffness, force, mass and capacitance
  * are n times those. */
@@ -25,6 +35,8 @@ typedef struct dea_point {
     double focal_length;   /**< of a lens at rest [m], NAN: no optics */
     double refractive_index; /**< of its liquid [1] */
     double load;             /**< stiffness of a spring between edge and frame [N/m], 0: none */
+    double force;            /**< that something else exerts on the edge, outward [N], 0: none */
+    dea_second second;       /**< the other film on the edge */
     double skin_share;       /**< t/H of the electrodes' skin [1], 0: there is none */
     dea_film skin;           /**< the skin at rest, not pre-stretched; set where there is one */
 } dea_point;
@@ -48,6 +60,7 @@ typedef struct dea_linear {
 
 struct dea_network;
 struct dea_symbols;
+struct dea_hold;
 
 /** Stretches along the radius and along the hoop, pre-stretch included [1]. */
 typedef struct dea_stretches {
@@ -65,6 +78,9 @@ typedef struct dea_model {
     void (*solve)(const dea_point *point, double accuracy, dea_row *row);
     /** The same for @p count points of one film, sooner: each row has the digits of solve(). NULL: one after the other. */
     void (*solve_many)(const dea_point *points, size_t count, double accuracy, dea_row *rows);
+    /** What the film does at an edge that is held at @p strain, without loads; false where there is no such film. Where `edge` is
+     * true. */
+    bool (*hold)(const dea_point *point, double strain, struct dea_hold *hold);
     /** Adds its elements and limits to a network in displacement form; NULL where the model is not a network. */
     void (*network)(const struct dea_symbols *symbols, struct dea_network *network);
     /** Coefficients of the linear network (engine `direct` in transients); NULL where the network is not linear. */
@@ -87,6 +103,15 @@ typedef enum dea_form {
     DEA_FORMS
 } dea_form;
 
+/** The static row of a valid point: solve(), or where a force or a second film acts on the edge the equilibrium that is connected to
+ * rest: first those grow, then the voltage of the film (src/model/loaded.c). */
+DEA_API void dea_model_solve(const dea_model *model, const dea_point *point, double accuracy, dea_row *row);
+
+/** What a valid point does at an edge that something holds at a displacement [m]: `force` of the row is what the actuator exerts on
+ * that, outward, loads and a second film included; strain and displacement are those that are held. The row is pull-in where no film
+ * is so, failed where the edge is not between centre and frame. */
+DEA_API void dea_model_hold(const dea_model *model, const dea_point *point, double displacement, dea_row *row);
+
 /** Form of a model. */
 DEA_API dea_form dea_model_form(const dea_model *model);
 
@@ -107,7 +132,7 @@ DEA_API double dea_series_resistance(const dea_scene *scene);
 DEA_API double dea_sheet_share(dea_kind kind, double coverage, double layers);
 /** Mass of the electrodes per area of pre-stretched film [kg/m^2], 0: none. */
 DEA_API double dea_electrode_mass(const dea_scene *scene);
-/** Mass of film, electrodes and load that moves with the disc edge [kg], 0 without density: Rayleigh with the shape of Lame's solution,
+/** Mass of film, electrodes, load and second film that moves with the disc edge [kg], 0 without density: Rayleigh with the shape of Lame's solution,
  * the electrodes' mass per area counted over the pre-stretched film (physics: section 5). */
 DEA_API double dea_point_mass(const dea_scene *scene, const dea_point *point);
 

@@ -74,15 +74,15 @@ typedef struct dea_model_choice {
     const dea_model *model; /**< NULL: none that the engine can do is good enough */
     const dea_model *truth; /**< what it is held against */
     double bound;           /**< of its model error [1], 0 for the truth itself */
+    bool unsolved;          /**< at a probe no engine of this process ran the truth, so that nothing was held against it there */
     const dea_model *next;  /**< where model is NULL: the best that the engine can do, NULL: there is none; bound is its */
 } dea_model_choice;
 
 /** The finest model for a kind of study, which `model: auto` holds the others against. */
 DEA_API const dea_model *dea_needs_truth(dea_study_kind study);
 /** Chooses the cheapest model whose error is below the scene's model error at every point of the study, from probes over its
- * axes. The truth is `field` in statics and `ring`, whose small-strain limit `lame` is, in time and frequency. Of models that
- * cost the same the nearest to the membrane comes first. The error is that of the strain relative to itself, of the
- * displacement relative to its peak in time, of the response relative to itself.
+ * axes. The truth is `field`. Of models that cost the same the nearest to the membrane comes first. The error is that of the strain
+ * relative to itself, of the displacement relative to its peak in time, of the response relative to itself.
  * In time a model that static errors do not rule out is run, as the truth is, at up to 17 probes of each axis; a model whose run
  * cannot be told from there, or has other states, is not chosen.
  * @param engine NULL: of all models, whoever can do them */

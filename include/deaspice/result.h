@@ -37,6 +37,7 @@ typedef struct dea_row {
     double area_strain;  /**< change of the electroded area over that at rest: disc of a dot, annulus of a lens [1] */
     double focal_length; /**< of a lens with optics [m]; NAN: none, or no cap of liquid has the focal length at rest */
     double energy;       /**< of the electric field in the film, C U^2/2: what a recovering driver gets back [J] */
+    double second_field; /**< largest true field in a second film on the edge [V/m], 0: there is none */
     dea_state state;
 } dea_row;
 
@@ -54,8 +55,16 @@ typedef struct dea_column {
     size_t offset;         /**< of the double in dea_row */
 } dea_column;
 
-enum { DEA_ROW_COLUMNS = 9 };
+enum { DEA_ROW_COLUMNS = 10 };
 DEA_API extern const dea_column dea_row_columns[DEA_ROW_COLUMNS];
+
+/** Where a film along its radius is nearest to its limits, by the radius at rest and 0 V. */
+typedef struct dea_weakest {
+    double field;          /**< largest true field [V/m] */
+    double field_radius;   /**< where [m]; of a static disc, which is uniform, 0; in time NAN where the field is uniform */
+    double tension;        /**< smallest true stress in the plane [Pa] */
+    double tension_radius; /**< where [m]; in time NAN where the tension is uniform */
+} dea_weakest;
 
 /** One sample of a transient; from a pull_in or failed on, all numbers but time and voltage are NAN. */
 typedef struct dea_sample {
@@ -71,6 +80,7 @@ typedef struct dea_sample {
     double film_voltage; /**< across the film, where the scene has a series resistance [V] */
     double capacitance;  /**< of the film as it is deformed, where the scene has an electrical port [F] */
     dea_state state;
+    dea_weakest weakest; /**< where the scene wants its film along the radius */
 } dea_sample;
 
 /** Means over a window of time. */
@@ -142,16 +152,8 @@ typedef struct dea_station {
     dea_state state;      /**< of the film here */
 } dea_station;
 
-/** Where a film along its radius is nearest to its limits. */
-typedef struct dea_weakest {
-    double field;          /**< largest true field [V/m] */
-    double field_radius;   /**< where, by the radius at rest and 0 V [m]; of a disc, which is uniform, 0 */
-    double tension;        /**< smallest true stress in the plane [Pa] */
-    double tension_radius; /**< where [m] */
-} dea_weakest;
-
 /** Number of columns of a layout, and of those of a shape or a profile. */
-enum { DEA_LAYOUT_COLUMNS = 12, DEA_SPREAD_COLUMNS = 8 };
+enum { DEA_LAYOUT_COLUMNS = 16, DEA_SPREAD_COLUMNS = 8 };
 
 /** How the result of one point of a study lies in memory: its rows, then its summary or its band. */
 typedef struct dea_layout {

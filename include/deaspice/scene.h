@@ -58,7 +58,24 @@ typedef struct dea_electrode {
 typedef struct dea_edge_load {
     double mass;      /**< [kg], > 0, NAN: none */
     double stiffness; /**< of a spring to the frame, against the radial displacement of the edge [N/m], > 0, NAN: none */
+    double damping;   /**< mechanical resistance between edge and frame [N s/m], > 0, NAN: none */
+    double force;     /**< static, onto the edge, outward positive, over the whole circumference [N], NAN: none */
 } dea_edge_load;
+
+/** A second film in the same frame, joined to the first at r_a by a rigid ring, so that both edges move by the same u; a dot beside a
+ * lens pushes against it. What is NAN is that of the first film. */
+typedef struct dea_antagonist {
+    bool there;
+    dea_kind kind;
+    double frame_radius;   /**< r [m], that of the first film */
+    double coverage;       /**< B [1], that of the first film */
+    double film_thickness; /**< H before pre-stretch [m], > 0 */
+    double layers;         /**< films of that thickness [1], whole, >= 1 */
+    double prestretch;     /**< [1], >= 1 */
+    double voltage;        /**< static, across it [V], default 0 */
+    bool own_material;     /**< it has one, else that of the first film */
+    dea_material material;
+} dea_antagonist;
 
 /** Kinds of waveform, in the order of the table src/drive/waves.c. A file and a list of points are both points. */
 typedef enum dea_wave_kind {
@@ -139,7 +156,8 @@ typedef struct dea_axis {
     X(DEA_STUDY_TRANSIENT, transient)                                                                                            \
     X(DEA_STUDY_AC, ac)                                                                                                          \
     X(DEA_STUDY_MODES, modes)                                                                                                    \
-    X(DEA_STUDY_PROFILE, profile)
+    X(DEA_STUDY_PROFILE, profile)                                                                                                \
+    X(DEA_STUDY_FORCE, force)
 
 /** What a study asks for. */
 typedef enum dea_study_kind {
@@ -171,6 +189,7 @@ typedef struct dea_transient {
     bool from_bias; /**< starts in the relaxed equilibrium under the first voltage (true), or at rest (default) */
     dea_window averages[DEA_WINDOWS];
     size_t average_count;
+    size_t points; /**< radii at which every sample tells the film, 2 ... DEA_RADII_MAX; 0 (default): it is not told */
 } dea_transient;
 
 /** A frequency response about the equilibrium under the bias. */
@@ -191,6 +210,12 @@ typedef struct dea_modes_study {
 typedef struct dea_profile {
     size_t points; /**< radii from the centre to the frame, 2 ... DEA_RADII_MAX, default 101 */
 } dea_profile;
+
+/** Displacements at which the edge is held, to - from apart in even steps. */
+typedef struct dea_force_study {
+    double from, to; /**< [m], both between -r_a and r - r_a */
+    size_t points;   /**< 2 ... DEA_RADII_MAX, default 61 */
+} dea_force_study;
 
 /** How a branch of the Prony series enters a moving network. */
 typedef enum dea_branch_form {
@@ -217,6 +242,7 @@ typedef struct dea_scene {
     dea_actuator actuator;
     dea_electrode electrode;
     dea_edge_load load;
+    dea_antagonist antagonist;
     dea_material material;
     dea_drive drive;
     const struct dea_model *models[DEA_SCENE_MODELS]; /**< models to run one after the other, model_count of them */
@@ -233,6 +259,7 @@ typedef struct dea_scene {
     dea_ac ac;               /**< of an AC study */
     dea_modes_study modes;   /**< of a study of modes */
     dea_profile profile;     /**< of a study of profiles */
+    dea_force_study force;   /**< of a study of forces */
     dea_axis *axes;          /**< axes of the sweep, or of `over`, in the order of the file; none is one point */
     size_t axis_count;
     struct dea_files *files; /**< those that were read for it, owned; NULL: none */

@@ -110,7 +110,8 @@ static dea_status work_open(dea_bench_work *work, dea_bench *bench, const dea_sc
                                              .check_accuracy = none,
                                              .apart = none,
                                              .error_median = none,
-                                             .error_worst = none};
+                                             .error_worst = none,
+                                             .error_rms = none};
         work->truths[i].scene = alone(scene, scene->models[i]);
     }
     work->truths[models].scene = alone(scene, dea_model_find("field"));
@@ -127,12 +128,12 @@ static void count_states(dea_bench_work *work, size_t number)
     }
 }
 
-/* References of all models; in statics the membrane's too, which tells the errors of the models. */
+/* References of all models, and the membrane's, which tells the errors of the models. */
 static dea_status refer_all(dea_bench_work *work, dea_error *error)
 {
     const size_t models = work->bench->model_count;
     const bool alone = dea_bench_membrane(work) == &work->truths[models];
-    const size_t count = models + (!dea_study_of(work->bench->scene)->along && alone);
+    const size_t count = models + (dea_bench_has_membrane(dea_study_of(work->bench->scene)) && alone);
     const double allowance = reference_share * work->options->budget / (double)count;
     dea_status status = DEA_OK;
     for (size_t i = 0; i < count && status == DEA_OK; i++) {

@@ -233,13 +233,6 @@ static int compare(const void *left, const void *right)
     return (a > b) - (a < b);
 }
 
-static dea_row row_of(const dea_bench_truth *truth, size_t i)
-{
-    dea_row row;
-    memcpy(&row, truth->comparison.reference + i * truth->comparison.layout.point_size, sizeof row);
-    return row;
-}
-
 dea_bench_truth *dea_bench_membrane(const dea_bench_work *work)
 {
     const size_t models = work->bench->model_count;
@@ -251,16 +244,54 @@ dea_bench_truth *dea_bench_membrane(const dea_bench_work *work)
     return &work->truths[models];
 }
 
+/* Row number i of a reference. */
+static const void *row_of(const dea_bench_truth *truth, size_t i)
+{
+    const dea_layout *layout = &truth->comparison.layout;
+    return truth->comparison.reference + i / layout->rows * layout->point_size + i % layout->rows * layout->row_size;
+}
+
+/* What a model is held against the membrane by: strain, displacement over time, displacement per volt. */
+static double answer_of(const dea_study *study, const void *row)
+{
+    return study->timed     ? ((const dea_sample *)row)->displacement
+           : study->phasors ? ((const dea_response *)row)->displacement
+                            : ((const dea_row *)row)->strain;
+}
+
+/* Size of the answer of the run that row number i belongs to: over time its largest, else its own. */
+static double size_of(const dea_study *study, const dea_bench_truth *field, size_t i)
+{
+    const size_t rows = field->comparison.layout.rows, first = i - i % rows;
+    double largest = fabs(answer_of(study, row_of(field, i)));
+    for (size_t k = first; k < first + rows && study->timed; k++) {
+        largest = fmax(largest, fabs(answer_of(study, row_of(field, k))));
+    }
+    return largest;
+}
+
+/* Numbers of a row count over time in whatever state, in statics where both are ok. */
+static bool comparable(const dea_study *study, const dea_layout *layout, const void *row, const void *exact)
+{
+    const bool ok = dea_layout_state(layout, row) == DEA_STATE_OK && dea_layout_state(layout, exact) == DEA_STATE_OK;
+    return (ok || study->along) && isfinite(answer_of(study, row)) && isfinite(answer_of(study, exact));
+}
+
 static void judge_model(const dea_bench_work *work, size_t number, double *errors)
 {
     dea_bench_model *model = &work->bench->models[number];
+    const dea_study *study = dea_study_of(work->bench->scene);
     const dea_bench_truth *own = &work->truths[number], *field = dea_bench_membrane(work);
-    for (size_t i = 0; i < work->points; i++) {
-        const dea_row row = row_of(own, i), exact = row_of(field, i);
-        if (row.state != DEA_STATE_OK || exact.state != DEA_STATE_OK) {
+    double size = 0.0, squares = 0.0;
+    for (size_t i = 0; i < work->bench->rows; i++) {
+        const void *row = row_of(own, i), *exact = row_of(field, i);
+        size = i % work->layout.rows == 0 || !study->timed ? size_of(study, field, i) : size;
+        if (!comparable(study, &work->layout, row, exact)) {
             model->error_left_out++;
-        } else if (exact.strain != 0.0) { /* nothing moves where nothing pulls */
-            errors[model->error_points++] = fabs(row.strain / exact.strain - 1.0);
+        } else if (size > 0.0) { /* nothing moves where nothing pulls */
+            const double error = fabs(answer_of(study, row) - answer_of(study, exact)) / size;
+            squares += error * error;
+            errors[model->error_points++] = error;
         }
     }
     if (model->error_points > 0) {
@@ -268,21 +299,27 @@ static void judge_model(const dea_bench_work *work, size_t number, double *error
         qsort(errors, count, sizeof *errors, compare);
         model->error_median = 0.5 * (errors[(count - 1) / 2] + errors[count / 2]);
         model->error_worst = errors[count - 1];
+        model->error_rms = sqrt(squares / (double)count);
     }
+}
+
+bool dea_bench_has_membrane(const dea_study *study)
+{
+    return study->timed || study->phasors || !study->along;
 }
 
 dea_status dea_bench_judge_models(dea_bench_work *work, dea_error *error)
 {
     const dea_bench *bench = work->bench;
     const dea_bench_truth *field = dea_bench_membrane(work);
-    if (dea_study_of(bench->scene)->along || !field->known) {
+    if (!field->known) {
         return DEA_OK;
     }
-    double *errors = malloc(work->points * sizeof *errors);
+    double *errors = malloc(bench->rows * sizeof *errors);
     if (!errors) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for %zu errors", work->points);
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for %zu errors", bench->rows);
     }
-    for (size_t i = 0; i < bench->model_count; i++) {
+    for (size_t i = 0; i < bench->model_count && dea_bench_has_membrane(dea_study_of(bench->scene)); i++) {
         if (work->truths[i].known && bench->models[i].model != field->scene.models[0]) {
             judge_model(work, i, errors);
         }

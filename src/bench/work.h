@@ -6,6 +6,7 @@
 
 #include "deaspice/bench.h"
 #include "result/compare.h"
+#include "study/study.h"
 
 enum { DEA_BENCH_RUNGS = 15 }; /* accuracies 1e-1 to 1e-15, of which a ladder begins with the second */
 
@@ -71,6 +72,8 @@ void dea_bench_take(dea_bench *bench, dea_bench_times *times, const dea_bench_se
 
 /* ---- judge */
 
+/* True where the models of a study are held against the membrane. */
+bool dea_bench_has_membrane(const dea_study *study);
 /* A number for the numeric columns and states of points: equal for equal results. */
 uint64_t dea_bench_digest(const dea_layout *layout, const char *points, size_t count);
 /* Engine that promises most for the model of that scene, NULL: none can do it; ties go to the first. */

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "drive/signal.h"
 #include "drive/waves.h"
 
 enum { OFFSET, AMPLITUDE, FROM, TO, DURATION, PHASE, DELAY };

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "deaspice/result.h"
-#include "drive/wave.h"
+#include "drive/signal.h"
 
 /* Most segments of a run: a waveform that repeats more often than this wants shorter runs. */
 enum { MOST_SEGMENTS = 8000000 };

@@ -2,7 +2,7 @@
 #ifndef DEA_SIGNAL_H
 #define DEA_SIGNAL_H
 
-#include "deaspice/scene.h"
+#include "drive/wave.h"
 
 typedef struct dea_segment {
     double from, to;   /* [s], from < to */
@@ -14,16 +14,6 @@ typedef struct dea_segment {
     double step; /* longest step through such a run [s]; 0: any */
     bool corner; /* of a line of a run: at its end is a corner that no step may pass; of the run: it may have such lines */
 } dea_segment;
-
-/* amplitude sin(2 pi n + phase), whose turns n at age t are f t + rate t^2/2, or f (e^(growth t) - 1)/growth of a chirp whose
- * frequency grows by equal factors. */
-typedef struct dea_tone {
-    double amplitude; /* [V] */
-    double frequency; /* at age 0 [Hz] */
-    double phase;     /* [rad] */
-    double rate;      /* [Hz/s] */
-    double growth;    /* [1/s] */
-} dea_tone;
 
 /* offset + sum of tones. */
 typedef struct dea_curve {

@@ -3,7 +3,7 @@
 #ifndef DEA_DRIVE_WAVE_H
 #define DEA_DRIVE_WAVE_H
 
-#include "drive/signal.h"
+#include "deaspice/scene.h"
 
 /* One number of a waveform: the key below drive.waveform.<name>. */
 typedef struct dea_wave_number {
@@ -65,6 +65,16 @@ dea_waveform dea_waveform_none(void);
 bool dea_wave_blame(dea_wave_fault *fault, const dea_wave_number *number, const char *problem, const char *accepted);
 /* True where edges that take that time and lie so far apart touch in a corner, or keep the shortest distance. */
 bool dea_wave_apart(double gap, double rise, double shortest);
+
+/* amplitude sin(2 pi n + phase), whose turns n at age t are f t + rate t^2/2, or f (e^(growth t) - 1)/growth of a chirp whose
+ * frequency grows by equal factors. */
+typedef struct dea_tone {
+    double amplitude; /* [V] */
+    double frequency; /* at age 0 [Hz] */
+    double phase;     /* [rad] */
+    double rate;      /* [Hz/s] */
+    double growth;    /* [1/s] */
+} dea_tone;
 
 /* For lay(): false where a waveform repeats more often than a run has room for, which then fails. */
 bool dea_lay_affords(struct dea_wave_builder *builder, double repeats);

@@ -1,6 +1,6 @@
 #include "engine/solve.h"
 
-#include "engine/line.h"
+#include "scene/line.h"
 #include "study/study.h"
 
 #include <math.h>

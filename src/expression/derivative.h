@@ -11,6 +11,8 @@ dea_expr dea_expr_derivative(dea_pool *pool, dea_expr ref, dea_operation kind, i
 
 /* @p ref with node or symbol number @p index replaced by an expression; the same term where it holds none. */
 dea_expr dea_expr_put(dea_pool *pool, dea_expr ref, dea_operation kind, int index, dea_expr by);
+/* The same of one term wherever it stands. */
+dea_expr dea_expr_replace(dea_pool *pool, dea_expr ref, dea_expr term, dea_expr by);
 /* @p ref with all nodes at 0. */
 dea_expr dea_expr_at_rest(dea_pool *pool, dea_expr ref);
 

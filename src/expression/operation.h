@@ -46,11 +46,6 @@ typedef enum dea_operation {
         DEA_OPERATIONS
 } dea_operation;
 
-/* What stands in an expression beside its operands: their derivatives, or their values at rest and their changes. */
-typedef struct dea_operand_change {
-    dea_expr rest, now, change;
-} dea_operand_change;
-
 typedef struct dea_operation_row {
     const char *name;
     int operands;     /* 0, 1 or 2 */
@@ -64,8 +59,6 @@ typedef struct dea_operation_row {
     bool inner;  /* its text stays within what uses it: a simulator's iteration follows nodes along their tangents, and that of a
                     logarithm as a node of its own leads the exponential behind it astray */
     double (*value)(double x, double y);
-    dea_expr (*derivative)(dea_pool *pool, dea_expr own, dea_expr a, dea_expr b, dea_expr da, dea_expr db);
-    dea_expr (*change)(dea_pool *pool, dea_expr rest, const dea_operand_change *a, const dea_operand_change *b);
 } dea_operation_row;
 
 /* The row of an operation; leaves have rows without functions and text. */

@@ -1,4 +1,5 @@
 /* From the scene to one static point. */
+#include "geometry/second.h"
 #include "model/models.h"
 
 void dea_film_prepare(const dea_scene *scene, dea_film *film)
@@ -66,6 +67,21 @@ static void place_skin(const dea_electrode *electrode, dea_point *point)
     }
 }
 
+static void place_second(const dea_scene *scene, dea_second *second)
+{
+    dea_scene other;
+    second->there = scene->antagonist.there;
+    if (!second->there) {
+        return;
+    }
+    dea_second_scene(scene, &other);
+    dea_film_prepare(&other, &second->film);
+    second->kind = other.actuator.kind;
+    second->film_thickness = other.actuator.layers * other.actuator.film_thickness;
+    second->layers = other.actuator.layers;
+    second->voltage = other.drive.voltage;
+}
+
 void dea_point_place(const dea_scene *scene, dea_point *point)
 {
     const dea_actuator *actuator = &scene->actuator;
@@ -78,15 +94,23 @@ void dea_point_place(const dea_scene *scene, dea_point *point)
     point->focal_length = actuator->focal_length;
     point->refractive_index = actuator->refractive_index;
     point->load = scene->load.stiffness > 0.0 ? scene->load.stiffness : 0.0;
+    point->force = isnan(scene->load.force) ? 0.0 : scene->load.force;
+    place_second(scene, &point->second);
     place_skin(&scene->electrode, point);
 }
 
 bool dea_point_valid(const dea_point *point)
 {
     const dea_film *film = &point->film;
+    if (point->second.there) {
+        const dea_point second = dea_point_second(point);
+        dea_point alone = *point;
+        alone.second.there = false;
+        return dea_point_valid(&alone) && dea_point_valid(&second);
+    }
     return point->frame_radius > 0.0 && point->coverage > 0.0 && point->coverage < 1.0 && point->film_thickness > 0.0 &&
            film->prestretch >= 1.0 && film->permittivity > 0.0 && film->valid && isfinite(film->modulus) &&
-           isfinite(point->voltage) && (point->skin_share == 0.0 || (point->skin_share > 0.0 && point->skin.valid));
+           isfinite(point->voltage) && isfinite(point->force) && (point->skin_share == 0.0 || (point->skin_share > 0.0 && point->skin.valid));
 }
 
 /* int w^2 dA over the disc of radius a [m^2]: w = R/a. */
@@ -131,7 +155,13 @@ double dea_point_mass(const dea_scene *scene, const dea_point *point)
     const double film = moving_disc(reference) + moving_annulus(reference, b);
     const double electrode = point->kind == DEA_DOT ? moving_disc(radius) : moving_annulus(radius, b);
     const double areal = dea_electrode_mass(scene);
-    const double load = scene->load.mass > 0.0 ? scene->load.mass : 0.0;
+    double load = scene->load.mass > 0.0 ? scene->load.mass : 0.0;
+    if (point->second.there) {
+        const dea_point second = dea_point_second(point);
+        dea_scene other;
+        dea_second_scene(scene, &other);
+        load += dea_point_mass(&other, &second);
+    }
     return scene->material.density * point->film_thickness * film + areal * electrode + load;
 }
 
@@ -154,7 +184,7 @@ double dea_point_resonance(const dea_scene *scene, const dea_point *point)
     enum { SCAN = 64 };
     const double l0 = point->film.prestretch, f = point->frame_radius / l0, a = point->coverage * f;
     const double areal = dea_electrode_mass(scene);
-    if (point->skin_share > 0.0 || point->load > 0.0 || scene->load.mass > 0.0) {
+    if (point->skin_share > 0.0 || point->load > 0.0 || scene->load.mass > 0.0 || point->second.there) {
         return (double)NAN; /* the two regions have one modulus no more, or the edge a mass of its own */
     }
     const double bare = scene->material.density, coated = bare + areal * l0 * l0 / point->film_thickness;

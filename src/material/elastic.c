@@ -25,8 +25,8 @@ double dea_law_energy(const dea_law *law, const double constants[DEA_LAW_CONSTAN
     return law->energy(constants, l1, l2);
 }
 
-/* A strain that no film reaches. */
-static const double far = 1e4;
+/* A strain that no film reaches; Ogden films whose largest exponent is just above 4 hold past 1e4 without a fold. */
+static const double far = 1e9;
 
 /* Strains at which I1 - 3 = 2 y + y^-2 - 3 reaches @p most, by bisection in y = lambda^2 on either side of 1. */
 static void ends_find(dea_film *film, double most)

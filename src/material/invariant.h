@@ -74,8 +74,8 @@ DEA_INLINE double dea_invariant_rise(dea_slopes_at *slopes, dea_slope_gain *gain
 DEA_INLINE dea_change dea_invariant_change(dea_slopes_at *slopes, dea_slope_gain *gain, const dea_film *film, double e)
 {
     const double y0 = film->square;
-    const double d = y0 * e * (2.0 + e); /* y - y0 */
-    const double y = y0 + d;
+    const double d = y0 * e * (2.0 + e);           /* y - y0 */
+    const double y = y0 * ((1.0 + e) * (1.0 + e)); /* not y0 + d: small where the film is squeezed to nothing */
     const double inverse = 1.0 / (y * y);
     const double q = (y + y0) * inverse * film->inverse_fourth;
     const double dg = d * (1.0 + q); /* g - g0 */

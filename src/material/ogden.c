@@ -104,7 +104,8 @@ static void prepare(dea_film *film)
     }
 }
 
-/* With s = (1 + e)^alpha - 1 the change of lambda^-2 alpha is -s (2 + s)/(1 + s)^2 of it. */
+/* With s = (1 + e)^alpha - 1 and q = 1 + s the change of lambda^-2 alpha is -s (2 + s)/q^2 of it; where q is small, a film that is
+ * squeezed to nothing, the sum would keep none of its digits. */
 static dea_change change_at(const dea_film *film, double e)
 {
     const double x = log1p(e);
@@ -114,10 +115,11 @@ static dea_change change_at(const dea_film *film, double e)
         const term o = term_of(film->constants, k);
         if (o.mu != 0.0) {
             const double s = expm1(o.alpha * x);
-            const double shrink = 1.0 / ((1.0 + s) * (1.0 + s));
+            const double q = s > -0.5 ? 1.0 + s : exp(o.alpha * x);
+            const double shrink = 1.0 / (q * q);
             const double out = film->rest[k];      /* lambda_pre^alpha */
             const double thin = 1.0 / (out * out); /* lambda_pre^-2 alpha */
-            const double grown = out * (1.0 + s), thinned = thin * shrink;
+            const double grown = out * q, thinned = thin * shrink;
             sum.value += o.mu * (out * s + thin * s * (2.0 + s) * shrink);
             sum.slope += o.mu * o.alpha * (grown + 2.0 * thinned) * over;
             sum.curve += o.mu * o.alpha * ((o.alpha - 1.0) * grown - 2.0 * (2.0 * o.alpha + 1.0) * thinned) * over * over;

@@ -42,7 +42,28 @@ static double ratio_of(const dea_point *point)
     return point->kind == DEA_DOT ? b / (1.0 - b) : (1.0 - b) / b;
 }
 
-static void fill(const dea_point *point, double pressure, double active, dea_row *row)
+/* sigma - sigma_pre of the film at an equi-biaxial strain, @p coated: with what its skin adds [Pa]. */
+static dea_change change_at(const dea_point *point, double strain, bool coated)
+{
+    dea_change change, skin;
+    point->film.law->change(&point->film, 1, &strain, &change);
+    if (coated && point->skin_share > 0.0) {
+        const double share = point->skin_share * point->film.square;
+        point->skin.law->change(&point->skin, 1, &strain, &skin);
+        change.value += share * skin.value;
+        change.slope += share * skin.slope;
+    }
+    return change;
+}
+
+/* Under a load the electroded film need not hold what the passive one does: is sigma_A - eps E^2 positive? */
+static bool is_active_taut(const dea_point *point, double pressure, double active)
+{
+    const double square = (1.0 + active) * (1.0 + active);
+    return point->film.tension * point->film.prestretch + change_at(point, active, true).value - pressure * square * square > 0.0;
+}
+
+static dea_found found_at(const dea_point *point, double pressure, double active, bool alone)
 {
     const bool dot = point->kind == DEA_DOT;
     const double passive = -ratio_of(point) * active;
@@ -51,12 +72,33 @@ static void fill(const dea_point *point, double pressure, double active, dea_row
     const double square = stretch * stretch;
     const double area = dea_point_cross_section(point) / (1.0 + strain); /* A(lambda_a) = 2 pi r_a H/(lambda_pre^2 lambda_a) */
     const bool taut = point->film.prestretch * (1.0 + passive) > 1.0;
-    dea_row_fill(row, point,
-                 (dea_found){.strain = strain,
-                             .force = dea_point_sign(point) * area * pressure * square * square,
-                             .stretch = point->film.square * square,
-                             .capacitance = capacitance_of(point, strain),
-                             .taut = taut});
+    return (dea_found){.strain = strain,
+                       .force = dea_point_sign(point) * area * pressure * square * square,
+                       .stretch = point->film.square * square,
+                       .capacitance = capacitance_of(point, strain),
+                       .taut = taut && (alone || is_active_taut(point, pressure, active))};
+}
+
+static void fill(const dea_point *point, double pressure, double active, dea_row *row)
+{
+    dea_row_fill(row, point, found_at(point, pressure, active, !dea_point_is_loaded(point)));
+}
+
+/* A (sigma_disc - sigma_annulus) inward, A eps E^2 outward from the disc or inward from the annulus, A = A_cross/(1 + s). */
+static bool hold(const dea_point *point, double strain, dea_hold *hold)
+{
+    const bool dot = point->kind == DEA_DOT;
+    const double b = point->coverage, annulus = -b * strain / (1.0 - b), turn = -b / (1.0 - b);
+    const double active = dot ? strain : annulus, active_turn = dot ? 1.0 : turn;
+    const dea_change in = change_at(point, strain, dot), out = change_at(point, annulus, !dot);
+    const double edge = 1.0 + strain, area = dea_point_cross_section(point) / edge, radius = dea_point_divide(point);
+    const double stress = in.value - out.value;
+    hold->found = found_at(point, dea_point_pressure(point), active, false);
+    hold->held = area * stress;
+    hold->held_slope = area / radius * (in.slope - turn * out.slope - stress / edge);
+    hold->push = hold->found.force;
+    hold->push_slope = hold->push / radius * (4.0 * active_turn / (1.0 + active) - 1.0 / edge);
+    return edge > 0.0 && 1.0 + annulus > 0.0 && isfinite(hold->held);
 }
 
 static void solve_many(const dea_point *points, size_t count, double accuracy, dea_row *rows)
@@ -187,9 +229,15 @@ static void build(const dea_symbols *symbols, dea_network *network)
     }
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force, A eps E^2, Eq. 18 [N]",
                     SCALE(network->sign, dea_hyperelastic_force(symbols, disc, active)));
-    network->end = dot ? dea_symbols_annulus_width(symbols) : MUL(symbols->coverage, symbols->frame_radius);
+    network->ends = true;
     network->field = dea_hyperelastic_field(symbols, active);
     dea_network_taut(network, SUB(MUL(symbols->prestretch, ADD(one, passive)), one));
+    if (symbols->loaded) {
+        const dea_expr pull = MUL(dea_symbols_pressure(symbols), SQUARE(SQUARE(MUL(symbols->prestretch, ADD(one, active)))));
+        const dea_expr film = ADD(dea_symbols_rest_stress(symbols), dea_hyperelastic_change(symbols, active));
+        const dea_expr coated = symbols->skin ? ADD(film, dea_hyperelastic_skin(symbols, active, active)) : film;
+        dea_network_taut(network, SUB(coated, pull));
+    }
 }
 
 /* Equi-biaxial, whatever the place: lambda_P of Eq. 18. */
@@ -212,6 +260,7 @@ const dea_model dea_model_coverage = {
     .solve = solve,
     .solve_many = solve_many,
     .along = along,
+    .hold = hold,
     .network = build,
     .dynamic = true,
 };

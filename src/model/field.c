@@ -132,11 +132,17 @@ static bool advance(const membrane *m, radial_state start, double step, radial_s
     return change <= m->mesh.change * fabs(start.d);
 }
 
-/* D on the annulus side of R_a from the continuity of s1 there; NAN where there is none.
- * s1 - s1_disc = p1(l - D, l) - p1(l, l) + (k_d - k_o) l^3 + k_o D l^2 = 0 */
+/* s1 of the annulus less that of the disc, and of what a load holds [Pa]:
+ * p1(l - D, l) - p1(l, l) + (k_d - k_o) l^3 + k_o D l^2 */
+static double jump_of_stress(const membrane *m, double l, double d)
+{
+    const double rise = m->film->law->rise(m->film->constants, l, -d, 0.0) + beside_jump(m, l, d);
+    return rise + (m->disc_k - m->annulus_k) * l * l * l + m->annulus_k * d * l * l;
+}
+
+/* D on the annulus side of R_a from the continuity of s1 there; NAN where there is none. */
 static double jump_at_edge(const membrane *m, double l)
 {
-    const double jump = (m->disc_k - m->annulus_k) * l * l * l;
     double sound = 0.0; /* last place within the energy */
     double d = 0.0;
     for (int i = 0; i < 80; i++) {
@@ -146,8 +152,7 @@ static double jump_at_edge(const membrane *m, double l)
             continue;
         }
         sound = d;
-        const double rise = m->film->law->rise(m->film->constants, l, -d, 0.0) + beside_jump(m, l, d);
-        const double residual = rise + jump + m->annulus_k * d * l * l;
+        const double residual = jump_of_stress(m, l, d);
         const double s11 = here.w11 - m->annulus_k * l * l;
         const double most = 0.25 * (l - d); /* lambda_1 moves by a quarter at most: the first root from lambda_2 on is meant */
         const double step = s11 > 0.0 ? residual / s11 : copysign(most, residual);
@@ -230,14 +235,12 @@ static void note_step(const membrane *m, radial_state from, double step, radial_
     note_between(m, from, step, ends, hoop_slope, x);
 }
 
-/* Integrates from the edge, where the disc has the stretch lambda_pre + edge, to the frame; returns e there. x may be NULL. */
-static double miss_at_frame(const membrane *m, double edge, extremes *x)
+/* Integrates from the edge, where the disc has the stretch l = lambda_pre + edge and the annulus l - d, to the frame; returns e
+ * there. x may be NULL. */
+static double miss_from(const membrane *m, double edge, double d, extremes *x)
 {
     const double l = m->film->prestretch + edge;
-    if (!(l > 0.0)) {
-        return NAN;
-    }
-    radial_state s = {jump_at_edge(m, l), edge, 0.0};
+    radial_state s = {d, edge, 0.0};
     if (x) {
         const double disc = disc_stress(m, l).p1 - m->disc_k * l * l * l;
         const bool lens = m->annulus_k > 0.0;
@@ -267,6 +270,13 @@ static double miss_at_frame(const membrane *m, double edge, extremes *x)
         x->charge = s.c;
     }
     return s.e;
+}
+
+/* The same where nothing holds the edge but what the point says. */
+static double miss_at_frame(const membrane *m, double edge, extremes *x)
+{
+    const double l = m->film->prestretch + edge;
+    return l > 0.0 ? miss_from(m, edge, jump_at_edge(m, l), x) : NAN;
 }
 
 /* The same problem under a share of the load. */
@@ -500,6 +510,29 @@ static membrane membrane_of(const dea_point *point, double pressure, dea_field_m
     return (membrane){point, &point->film, !dot, dot ? pressure : 0.0, dot ? 0.0 : pressure, -log(point->coverage), mesh};
 }
 
+/* D behind an edge that is held, where e = 0 at the frame: by secants from Lame's solution, 2 e/(1 - B^2); NAN where there is none. */
+static double jump_of_held(const membrane *m, double edge)
+{
+    enum { MOST = 60 };
+    double d0 = 0.0, d = 2.0 * edge / (1.0 - m->point->coverage * m->point->coverage);
+    double miss0 = miss_from(m, edge, d0, NULL);
+    for (int i = 0; i < MOST && d != d0; i++) {
+        const double miss = miss_from(m, edge, d, NULL);
+        if (isnan(miss)) { /* past the end of the film */
+            d = 0.5 * (d0 + d);
+            continue;
+        }
+        const double step = miss == 0.0 ? 0.0 : -miss * (d - d0) / (miss - miss0);
+        d0 = d;
+        miss0 = miss;
+        d += step;
+        if (fabs(step) <= 1e-14 * fabs(d)) {
+            return d;
+        }
+    }
+    return d == d0 ? d : (double)NAN;
+}
+
 /* Integrates over a stretch of x in steps that are short enough. */
 static bool advance_to(const membrane *m, double length, radial_state *s)
 {
@@ -525,7 +558,8 @@ bool dea_field_profile(const dea_point *point, double strain, size_t count, cons
     const double nominal = dea_point_nominal_field(point), pre = point->film.prestretch;
     const membrane m = membrane_of(point, point->film.permittivity * nominal * nominal, (dea_field_mesh){longest_step, 1e-13});
     const double edge = pre * strain;
-    radial_state s = {jump_at_edge(&m, pre + edge), edge, 0.0};
+    const bool pulled = point->force != 0.0 || point->second.there; /* what else acts on the edge is not looked at */
+    radial_state s = {pulled ? jump_of_held(&m, edge) : jump_at_edge(&m, pre + edge), edge, 0.0};
     double last = 0.0;
     for (size_t i = 0; i < count; i++) {
         if (!advance_to(&m, x[i] - last, &s)) {
@@ -537,16 +571,39 @@ bool dea_field_profile(const dea_point *point, double strain, size_t count, cons
     return true;
 }
 
-void dea_field_fill(const dea_point *point, dea_field_found found, dea_row *row)
+/* 2 pi H R_a [m^2]. */
+static double lever_of(const dea_point *point)
+{
+    return 2.0 * DEA_PI * point->film_thickness * dea_point_divide(point) / point->film.prestretch;
+}
+
+static dea_found found_in(const dea_point *point, dea_field_found found)
 {
     const double nominal = dea_point_nominal_field(point), pressure = point->film.permittivity * nominal * nominal;
-    const double lever = 2.0 * DEA_PI * point->film_thickness * dea_point_divide(point) / point->film.prestretch;
-    dea_row_fill(row, point,
-                 (dea_found){.strain = found.strain,
-                             .force = dea_point_sign(point) * lever * pressure * found.edge_force,
-                             .stretch = found.stretch,
-                             .capacitance = found.capacitance,
-                             .taut = found.taut});
+    return (dea_found){.strain = found.strain,
+                       .force = dea_point_sign(point) * lever_of(point) * pressure * found.edge_force,
+                       .stretch = found.stretch,
+                       .capacitance = found.capacitance,
+                       .taut = found.taut};
+}
+
+void dea_field_fill(const dea_point *point, dea_field_found found, dea_row *row)
+{
+    dea_row_fill(row, point, found_in(point, found));
+}
+
+/* From what an integration found of the film at an edge. */
+static dea_found found_of(const dea_point *point, double edge, const extremes *x)
+{
+    const dea_film *film = &point->film;
+    const double strain = edge / film->prestretch;
+    /* (2 pi eps/H) (r/lambda_pre)^2 c */
+    const double annulus = 2.0 * dea_point_full_capacitance(point) * x->charge / (film->square * film->square);
+    return found_in(point, (dea_field_found){.strain = strain,
+                                             .edge_force = x->edge_force,
+                                             .stretch = x->largest_area,
+                                             .capacitance = point->kind == DEA_DOT ? dea_point_disc_capacitance(point, strain) : annulus,
+                                             .taut = x->least_stress > 0.0});
 }
 
 void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row)
@@ -572,16 +629,50 @@ void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row)
         dea_row_refuse(row, DEA_STATE_FAILED);
         return;
     }
-    const double strain = edge / film->prestretch;
-    /* (2 pi eps/H) (r/lambda_pre)^2 c */
-    const double annulus = 2.0 * dea_point_full_capacitance(point) * x.charge / (film->square * film->square);
-    dea_field_fill(point,
-                   (dea_field_found){.strain = strain,
-                                     .edge_force = x.edge_force,
-                                     .stretch = x.largest_area,
-                                     .capacitance = dot ? dea_point_disc_capacitance(point, strain) : annulus,
-                                     .taut = x.least_stress > 0.0},
-                   row);
+    dea_row_fill(row, point, found_of(point, edge, &x));
+}
+
+/* ---- a film whose edge is held */
+
+/* What a film exerts on its edge, outward [N], and D there. */
+static double force_on_edge(const membrane *m, double edge, double *d)
+{
+    *d = jump_of_held(m, edge);
+    return lever_of(m->point) * jump_of_stress(m, m->film->prestretch + edge, *d);
+}
+
+/* Without voltage, inward; and what the voltage adds, outward: all of it on the disc of a dot, whose annulus does not feel it. */
+static double held_at(const membrane *full, const membrane *still, double edge, double *push, double *d)
+{
+    const double held = -force_on_edge(still, edge, d), l = full->film->prestretch + edge;
+    *push = full->lens ? force_on_edge(full, edge, d) + held : lever_of(full->point) * full->disc_k * l * l * l;
+    return held;
+}
+
+static bool hold(const dea_point *point, double strain, dea_hold *hold)
+{
+    const double nudge = 1e-5; /* of the stretch: slopes tell folds and steer Newton's steps, no digit hangs on them */
+    const double nominal = dea_point_nominal_field(point), pre = point->film.prestretch, edge = pre * strain, step = pre * nudge;
+    dea_point bare = *point;
+    bare.load = 0.0;
+    const dea_field_mesh mesh = {step_for(1e-9), little};
+    const membrane full = membrane_of(&bare, point->film.permittivity * nominal * nominal, mesh), still = under_load(&full, 0.0);
+    double d, side, above, below;
+    extremes x;
+    if (!(pre + edge > step)) {
+        return false;
+    }
+    const double up = held_at(&full, &still, edge + step, &above, &side);
+    const double down = held_at(&full, &still, edge - step, &below, &side);
+    const double over = 0.5 / (step * dea_point_divide(point) / pre);
+    hold->held = held_at(&full, &still, edge, &hold->push, &d);
+    hold->held_slope = (up - down) * over;
+    hold->push_slope = (above - below) * over;
+    const bool there = isfinite(hold->held) && isfinite(hold->push) && isfinite(miss_from(&full, edge, d, &x));
+    if (there) {
+        hold->found = found_of(point, edge, &x);
+    }
+    return there;
 }
 
 /* By collocation where that is enough, else by integration. */
@@ -615,6 +706,7 @@ const dea_model dea_model_field = {
     .solve = solve,
     .solve_many = solve_many,
     .along = dea_field_profile,
+    .hold = hold,
     .dynamic = true,
     .membrane = true,
 };

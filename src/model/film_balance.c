@@ -239,7 +239,7 @@ static void find(const dea_point *points, size_t count, const double *ratio, con
     settle(&w);
     for (size_t l = 0; l < count; l++) {
         const film_pair pair = pair_of(&points[l], ratio[l]);
-        const dea_path path = {place_at, &pair, w.stiffness[l], w.end[l], 1.0 / (1.0 + ratio[l])};
+        const dea_path path = {place_at, &pair, w.stiffness[l], w.end[l], 1.0 / (1.0 + ratio[l]), 0.0};
         strain[l] = w.strain[l];
         if (m[l] == 0.0) {
             strain[l] = 0.0;

@@ -51,36 +51,37 @@ static double fine_area(const dea_point *point)
     return (double)((1.0L - edge) * (1.0L + edge) / (1.0L - b * b));
 }
 
-static void solve(const dea_point *point, double accuracy, dea_row *row)
+/* M lambda_pre^2 with M = eps (U/H)^2 [Pa]. */
+static double softening_of(const dea_point *point)
 {
-    (void)accuracy;
-    const dea_film *film = &point->film;
-    const bool dot = point->kind == DEA_DOT;
-    const double b2 = point->coverage * point->coverage;
     const double nominal = dea_point_nominal_field(point);
-    const double m = film->permittivity * nominal * nominal; /* M */
-    const double soft = m * film->square;                    /* M lambda_pre^2 */
+    return point->film.permittivity * nominal * nominal * point->film.square;
+}
+
+/* Tangent moduli of the two regions, those of the electroded one softened and with the skin [Pa]. */
+typedef struct moduli {
+    double disc1, disc2, annulus1, annulus2;
+} moduli;
+
+static moduli moduli_of(const dea_point *point)
+{
+    const dea_film *film = &point->film;
+    const double soft = softening_of(point);
     const bool coated = point->skin_share > 0.0;
     const double softened1 = film->w11 - soft + (coated ? point->skin_share * point->skin.w11 : 0.0);
     const double softened2 = film->w12 - 2.0 * soft + (coated ? point->skin_share * point->skin.w12 : 0.0);
-    const double disc1 = dot ? softened1 : film->w11;
-    const double disc2 = dot ? softened2 : film->w12;
-    const double annulus1 = dot ? film->w11 : softened1;
-    const double annulus2 = dot ? film->w12 : softened2;
-    const double inverse = 1.0 / (1.0 - b2);
-    const double q = (1.0 + b2) * inverse;
+    return point->kind == DEA_DOT ? (moduli){softened1, softened2, film->w11, film->w12}
+                                  : (moduli){film->w11, film->w12, softened1, softened2};
+}
 
-    /* 1/n over 2 pi H: disc a + b, annulus a (1 + B^2)/(1 - B^2) - b */
-    double stiffness = disc1 + disc2 + annulus1 * q - annulus2 + load_stiffness(point);
-    if (fabs(stiffness) < nearly * film->w11 * inverse) {
-        stiffness = (double)fine_stiffness(point);
-    }
-    if (m > 0.0 && !(stiffness > 0.0)) {
-        dea_row_refuse(row, DEA_STATE_PULL_IN);
-        return;
-    }
-    const double load = dea_point_sign(point) * soft; /* F_DEA/(2 pi H r_a) */
-    const double strain = m > 0.0 ? load / stiffness : 0.0;
+/* The film at a strain; @p alone: in balance with its own force. */
+static dea_found found_at(const dea_point *point, double strain, bool alone)
+{
+    const dea_film *film = &point->film;
+    const bool dot = point->kind == DEA_DOT;
+    const double b2 = point->coverage * point->coverage, inverse = 1.0 / (1.0 - b2), q = (1.0 + b2) * inverse;
+    const moduli w = moduli_of(point);
+    const double soft = softening_of(point), load = dea_point_sign(point) * soft; /* F_DEA/(2 pi H r_a) */
     const double change = strain * film->prestretch; /* of the hoop stretch at r_a */
     const double edge = point->coverage * (1.0 + strain);
     const double maxwell = soft * film->prestretch;
@@ -88,22 +89,40 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
     const double annulus_rest = film->tension - (dot ? 0.0 : maxwell);
     /* annulus: d1 = -c (F^2/R^2 + 1), d2 = c (F^2/R^2 - 1) with d2 = change at r_a; linear in F^2/R^2, so its ends decide */
     const double rim = -2.0 * change * b2 * inverse;
-    const bool taut = is_taut(disc_rest, disc1, disc2, change, change) &&
-                      is_taut(annulus_rest, annulus1, annulus2, -q * change, change) &&
-                      is_taut(annulus_rest, annulus1, annulus2, rim, 0.0);
-    const bool cancels = !dot && fabs(1.0 - edge * edge) < nearly;
+    const bool taut = is_taut(disc_rest, w.disc1, w.disc2, change, change) &&
+                      is_taut(annulus_rest, w.annulus1, w.annulus2, -q * change, change) &&
+                      is_taut(annulus_rest, w.annulus1, w.annulus2, rim, 0.0);
+    const bool cancels = alone && !dot && fabs(1.0 - edge * edge) < nearly;
     const double area = dot ? (1.0 + strain) * (1.0 + strain) : cancels ? fine_area(point) : (1.0 - edge * edge) * inverse;
     const double force = 2.0 * DEA_PI * point->film_thickness * load * dea_point_divide(point);
     /* C_0 + C_1 u + C_2 u^2/2 with C_1 = 2 F_DEA/U^2, C_2 = -2/(n_el U^2) */
     const double share = dot ? 3.0 : q - 2.0, rest = dot ? b2 : 1.0 - b2;
     const double bend = 2.0 * b2 * strain * (2.0 * dea_point_sign(point) + share * strain);
     const double capacitance = dea_point_full_capacitance(point) * (rest + bend);
-    dea_row_fill(row, point,
-                 (dea_found){.strain = strain,
-                             .force = force,
-                             .stretch = film->square * area,
-                             .capacitance = capacitance,
-                             .taut = taut});
+    return (dea_found){.strain = strain,
+                       .force = force,
+                       .stretch = film->square * area,
+                       .capacitance = capacitance,
+                       .taut = taut};
+}
+
+static void solve(const dea_point *point, double accuracy, dea_row *row)
+{
+    (void)accuracy;
+    const double b2 = point->coverage * point->coverage, inverse = 1.0 / (1.0 - b2), q = (1.0 + b2) * inverse;
+    const moduli w = moduli_of(point);
+    const double soft = softening_of(point);
+
+    /* 1/n over 2 pi H: disc a + b, annulus a (1 + B^2)/(1 - B^2) - b */
+    double stiffness = w.disc1 + w.disc2 + w.annulus1 * q - w.annulus2 + load_stiffness(point);
+    if (fabs(stiffness) < nearly * point->film.w11 * inverse) {
+        stiffness = (double)fine_stiffness(point);
+    }
+    if (soft > 0.0 && !(stiffness > 0.0)) {
+        dea_row_refuse(row, DEA_STATE_PULL_IN);
+        return;
+    }
+    dea_row_fill(row, point, found_at(point, soft > 0.0 ? dea_point_sign(point) * soft / stiffness : 0.0, true));
 }
 
 /* Moduli of one region: W11, W12 and what the voltage takes off where it carries the electrode. */
@@ -196,6 +215,16 @@ static void linear(const dea_point *point, dea_linear *linear)
     linear->capacitance[2] = 2.0 * unit * share;
 }
 
+static bool hold(const dea_point *point, double strain, dea_hold *hold)
+{
+    dea_linear l;
+    linear(point, &l);
+    const double square = point->voltage * point->voltage, u = strain * dea_point_divide(point);
+    const double stiffness = l.stiffness + l.beside - point->load, softening = l.softening * square;
+    *hold = (dea_hold){found_at(point, strain, false), stiffness * u, stiffness, l.force * square - softening * u, -softening};
+    return stiffness > 0.0;
+}
+
 const dea_model dea_model_lame = {
     .name = "lame",
     .equation = "Lame's disc and annulus",
@@ -205,5 +234,6 @@ const dea_model dea_model_lame = {
     .solve = solve,
     .network = build,
     .linear = linear,
+    .hold = hold,
     .dynamic = true,
 };

@@ -26,34 +26,48 @@ static double fine_area(const dea_point *point)
     return (double)((1.0L - edge) * (1.0L + edge) / (1.0L - b * b));
 }
 
-static void solve(const dea_point *point, double accuracy, dea_row *row)
+/* Under a load the electroded film is taut where the strain that its stress stands for, [(Y + Y_skin) e - M lambda_pre^4]/Y, leaves a
+ * stretch above 1; alone it is that of the passive film. */
+static bool is_active_taut(const dea_point *point, double strain)
 {
-    (void)accuracy;
+    const double b = point->coverage, e = point->kind == DEA_DOT ? strain : -b * strain / (1.0 - b);
+    const double modulus = point->film.modulus + dea_point_skin_modulus(point);
+    return point->film.prestretch * (1.0 + (modulus * e - dea_point_pressure(point)) / point->film.modulus) > 1.0;
+}
+
+/* The film at a strain; @p alone: in balance with its own force. */
+static dea_found found_at(const dea_point *point, double strain, bool alone)
+{
     const dea_film *film = &point->film;
-    const double pressure = dea_point_pressure(point);
-    if (pressure > 0.0 && !(modulus_of(point) > 0.0)) {
-        dea_row_refuse(row, DEA_STATE_PULL_IN);
-        return;
-    }
-    const double sign = dea_point_sign(point);
+    const double pressure = dea_point_pressure(point), sign = dea_point_sign(point);
     const double b = point->coverage;
-    const double strain = sign * (1.0 - b) * pressure / modulus_of(point); /* Eq. 22 */
     const double stretch = 1.0 + strain;
     const double edge = b * stretch;
     /* passive stretch: Eq. 17 of a dot, the disc of a lens; electroded area: the disc of a dot, the annulus of a lens */
     const bool dot = point->kind == DEA_DOT;
     const bool taut = dot ? film->prestretch * (1.0 - edge) > 1.0 - b : film->prestretch * stretch > 1.0;
     const double left = 1.0 - edge * edge;
-    const double area = dot ? stretch * stretch : fabs(left) < nearly ? fine_area(point) : left / (1.0 - b * b);
+    const double area = dot ? stretch * stretch : alone && fabs(left) < nearly ? fine_area(point) : left / (1.0 - b * b);
     /* C_0 + C_1 u with C_1 u = 2 F_DEA/U^2 u = +-4 pi eps lambda_pre^2 r_a^2 s/H */
     const double rest = dot ? b * b : 1.0 - b * b;
     const double capacitance = dea_point_full_capacitance(point) * (rest + 4.0 * sign * b * b * strain);
-    dea_row_fill(row, point,
-                 (dea_found){.strain = strain,
-                             .force = sign * pressure * dea_point_cross_section(point),
-                             .stretch = film->square * area,
-                             .capacitance = capacitance,
-                             .taut = taut});
+    return (dea_found){.strain = strain,
+                       .force = sign * pressure * dea_point_cross_section(point),
+                       .stretch = film->square * area,
+                       .capacitance = capacitance,
+                       .taut = taut && ((alone && !dea_point_is_loaded(point)) || is_active_taut(point, strain))};
+}
+
+static void solve(const dea_point *point, double accuracy, dea_row *row)
+{
+    (void)accuracy;
+    const double pressure = dea_point_pressure(point);
+    if (pressure > 0.0 && !(modulus_of(point) > 0.0)) {
+        dea_row_refuse(row, DEA_STATE_PULL_IN);
+        return;
+    }
+    const double strain = dea_point_sign(point) * (1.0 - point->coverage) * pressure / modulus_of(point); /* Eq. 22 */
+    dea_row_fill(row, point, found_at(point, strain, true));
 }
 
 /* Two springs in parallel at the edge of the electrode, driven by the force source. */
@@ -81,6 +95,12 @@ static void build(const dea_symbols *symbols, dea_network *network)
     network->capacitance = ADD(dea_symbols_capacitance(symbols), MUL(slope, network->edge));
     const dea_expr passive = symbols->kind == DEA_DOT ? dea_symbols_annulus_strain(symbols) : network->strain;
     dea_network_taut(network, SUB(MUL(symbols->prestretch, ADD(one, passive)), one));
+    if (symbols->loaded) {
+        const dea_expr active = symbols->kind == DEA_DOT ? network->strain : dea_symbols_annulus_strain(symbols);
+        const dea_expr modulus = symbols->skin ? ADD(symbols->modulus, dea_symbols_skin_modulus(symbols)) : symbols->modulus;
+        const dea_expr strain = DIV(SUB(MUL(modulus, active), maxwell), symbols->modulus);
+        dea_network_taut(network, SUB(MUL(symbols->prestretch, ADD(one, strain)), one));
+    }
     dea_network_limit_area(symbols, network);
 }
 
@@ -95,6 +115,16 @@ static void linear(const dea_point *point, dea_linear *linear)
     linear->capacitance[1] = 2.0 * linear->force;
 }
 
+static bool hold(const dea_point *point, double strain, dea_hold *hold)
+{
+    dea_linear l;
+    linear(point, &l);
+    const dea_found found = found_at(point, strain, false);
+    const double stiffness = l.stiffness + l.beside - point->load;
+    *hold = (dea_hold){found, stiffness * strain * dea_point_divide(point), stiffness, found.force, 0.0};
+    return stiffness > 0.0;
+}
+
 const dea_model dea_model_lumped = {
     .name = "lumped",
     .equation = "Eqs. 19-23",
@@ -104,5 +134,6 @@ const dea_model dea_model_lumped = {
     .solve = solve,
     .network = build,
     .linear = linear,
+    .hold = hold,
     .dynamic = true,
 };

@@ -133,6 +133,35 @@ typedef struct dea_found {
     bool taut;          /* every region is in tension */
 } dea_found;
 
+/* A film whose edge is held at a strain. */
+typedef struct dea_hold {
+    dea_found found;
+    double held, held_slope; /* what the film without voltage pulls inward [N], and its slope over u [N/m] */
+    double push, push_slope; /* what the voltage adds outward [N], [N/m] */
+} dea_hold;
+
+/* True where the film is not alone with its edge: what its two regions hold then differs. */
+static inline bool dea_point_is_loaded(const dea_point *point)
+{
+    return point->load > 0.0 || point->force != 0.0 || point->second.there;
+}
+
+/* The second film as a point of its own, without what else acts on the edge. */
+static inline dea_point dea_point_second(const dea_point *point)
+{
+    const dea_second *second = &point->second;
+    dea_point other = {.film = second->film,
+                       .kind = second->kind,
+                       .frame_radius = point->frame_radius,
+                       .coverage = point->coverage,
+                       .film_thickness = second->film_thickness,
+                       .layers = second->layers,
+                       .voltage = second->voltage,
+                       .focal_length = (double)NAN,
+                       .refractive_index = (double)NAN};
+    return other;
+}
+
 /* Fills a row from what the model found and what follows from that. */
 static inline void dea_row_fill(dea_row *row, const dea_point *point, dea_found found)
 {
@@ -150,6 +179,7 @@ static inline void dea_row_fill(dea_row *row, const dea_point *point, dea_found 
     row->capacitance = found.capacitance;
     row->charge = found.capacitance * point->voltage;
     row->energy = 0.5 * row->charge * point->voltage;
+    row->second_field = 0.0;
     row->area_strain = dea_area_strain(point->kind, point->coverage, found.strain);
     row->focal_length = isnan(point->focal_length)
                             ? (double)NAN

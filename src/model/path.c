@@ -47,6 +47,12 @@ static bool find_fold(const dea_path *path, const reach *whole, double *low, dou
     return false;
 }
 
+bool dea_path_cannot_fold(const dea_path *path, double m, double x, const dea_path_place *at)
+{
+    const double mean = m / x, end = dea_path_fold(at) / at->weight;
+    return x <= 3.0 * dea_path_width(path, 0.0) && fmin(fmin(mean, end), path->rest) > 0.5 * fmax(fmax(mean, end), path->rest);
+}
+
 bool dea_path_grows(const dea_path *path, double x)
 {
     const reach whole = {0.0, x, path->rest, fold_at(path, x)};
@@ -82,7 +88,7 @@ static double bracketed_root(const dea_path *path, double m, double low, double 
         const double next = x - residual / (place.slope - m * place.weight_slope);
         const double step = fabs(next - x);
         x = next > low && next < high ? next : 0.5 * (low + high);
-        if (x == next && step <= 2e-16 * fabs(x)) {
+        if (x == next && step <= fmax(2e-16, path->rough) * fabs(x)) {
             break;
         }
     }

@@ -21,6 +21,7 @@ typedef struct dea_path {
     double rest;      /* dR/dx at rest [Pa], > 0 */
     double end;       /* x at which a region has vanished */
     double share;     /* largest change of a stretch, relative, that goes with dx = 1 at rest, inverted [1] */
+    double rough;     /* change of a root, relative, that says nothing: rounding of R, 0 where that is the last digit [1] */
 } dea_path;
 
 double dea_path_fold(const dea_path_place *place);
@@ -30,6 +31,10 @@ static inline double dea_path_width(const dea_path *path, double x)
 {
     return 0.05 * (1.0 + x) * path->share;
 }
+
+/* True where the slope of the load m that holds x keeps far from zero from rest to there: over so short a way its values at both
+ * ends and its mean that stay within a factor of two leave no room for a fold between. Spares the samples of dea_path_grows(). */
+bool dea_path_cannot_fold(const dea_path *path, double m, double x, const dea_path_place *at);
 
 /* True where the load grows all the way from rest to x, so that an equilibrium there is the first one. */
 bool dea_path_grows(const dea_path *path, double x);

@@ -103,14 +103,6 @@ static bool settle(const rings *r, const dea_path *path, double m, double *x, ri
     return false;
 }
 
-/* True where the slope of U^2 keeps far from zero from rest to x: over so short a way its values at both ends and its mean that
- * stay within a factor of two leave no room for a fold between. Spares the samples of dea_path_grows(). */
-static bool cannot_fold(const dea_path *path, double m, double x, const dea_path_place *at)
-{
-    const double mean = m / x, end = dea_path_fold(at) / at->weight;
-    return x <= 3.0 * dea_path_width(path, 0.0) && fmin(fmin(mean, end), path->rest) > 0.5 * fmax(fmax(mean, end), path->rest);
-}
-
 /* Equilibrium x = |s| under the load m = eps (U/H)^2 lambda_pre^3 and the place there; false where none is connected to rest. */
 static bool balance(const rings *r, double m, double *x, ring_place *at)
 {
@@ -119,11 +111,11 @@ static bool balance(const rings *r, double m, double *x, ring_place *at)
     const dea_film *skin = &r->point->skin;
     const double coat = r->dot ? skin->w11 + skin->w12 : 0.5 * skin->w11 * both - skin->w12;
     const double held = r->point->skin_share > 0.0 ? lame + r->point->skin_share * coat : lame;
-    const dea_path path = {path_place, r, film->prestretch * held + r->load, r->dot ? 2.0 * r->inner : 1.0, r->inner / (r->inner + 0.5)};
+    const dea_path path = {path_place, r, film->prestretch * held + r->load, r->dot ? 2.0 * r->inner : 1.0, r->inner / (r->inner + 0.5), 0.0};
     if (!isfinite(m) || !(path.rest > 0.0)) {
         return false;
     }
-    if (settle(r, &path, m, x, at) && (cannot_fold(&path, m, *x, &at->path) || dea_path_grows(&path, *x))) {
+    if (settle(r, &path, m, x, at) && (dea_path_cannot_fold(&path, m, *x, &at->path) || dea_path_grows(&path, *x))) {
         return true;
     }
     const bool found = dea_path_trace(&path, m, x);
@@ -150,35 +142,72 @@ static bool is_taut(const rings *r, double k, double x, double area, const ring_
     return r->film->tension + fmin(p, fmin(radial, hoop)) > 0.0;
 }
 
+static rings rings_of(const dea_point *point)
+{
+    const double b = point->coverage;
+    return (rings){.point = point,
+                   .film = &point->film,
+                   .dot = point->kind == DEA_DOT,
+                   .radial = -b / (1.0 - b),
+                   .hoop = b / (1.0 + b),
+                   .outer = 0.5 * (1.0 + b) / b,
+                   .inner = 0.5 * (1.0 - b) / b,
+                   .aspect = (1.0 + b) / (1.0 - b),
+                   .load = point->load * point->film.prestretch / (2.0 * DEA_PI * point->film_thickness)};
+}
+
+/* eps (U/H)^2 [Pa]. */
+static double pressure_of(const dea_point *point)
+{
+    const double nominal = dea_point_nominal_field(point);
+    return point->film.permittivity * nominal * nominal;
+}
+
+/* 2 pi H A [m^2], on which the sides of the balance act. */
+static double lever_of(const dea_point *point)
+{
+    return 2.0 * DEA_PI * point->film_thickness * (dea_point_divide(point) / point->film.prestretch);
+}
+
+static dea_found found_at(const rings *r, double x, const ring_place *at)
+{
+    const dea_point *point = r->point;
+    const dea_film *film = r->film;
+    const double k = pressure_of(point), m = k * film->square * film->prestretch;
+    const double sign = dea_point_sign(point), s = sign * x, area = area_at(r, s);
+    return (dea_found){.strain = s,
+                       .force = sign * lever_of(point) * m * (1.0 + s) * area,
+                       .stretch = film->square * area,
+                       .capacitance = dea_point_capacitance(point) * area * area,
+                       .taut = is_taut(r, k, x, area, at)};
+}
+
 static void solve(const dea_point *point, double accuracy, dea_row *row)
 {
     (void)accuracy;
-    const dea_film *film = &point->film;
-    const double b = point->coverage, nominal = dea_point_nominal_field(point);
-    const rings r = {.point = point,
-                     .film = film,
-                     .dot = point->kind == DEA_DOT,
-                     .radial = -b / (1.0 - b),
-                     .hoop = b / (1.0 + b),
-                     .outer = 0.5 * (1.0 + b) / b,
-                     .inner = 0.5 * (1.0 - b) / b,
-                     .aspect = (1.0 + b) / (1.0 - b),
-                     .load = point->load * film->prestretch / (2.0 * DEA_PI * point->film_thickness)};
-    const double k = film->permittivity * nominal * nominal, m = k * film->square * film->prestretch;
+    const rings r = rings_of(point);
+    const double m = pressure_of(point) * point->film.square * point->film.prestretch;
     double x = 0.0;
     ring_place at = {0};
     if (m != 0.0 && !balance(&r, m, &x, &at)) {
         dea_row_refuse(row, DEA_STATE_PULL_IN);
         return;
     }
-    const double sign = dea_point_sign(point), s = sign * x, area = area_at(&r, s);
-    const double force = 2.0 * DEA_PI * point->film_thickness * (dea_point_divide(point) / film->prestretch) * m;
-    dea_row_fill(row, point,
-                 (dea_found){.strain = s,
-                             .force = sign * force * (1.0 + s) * area,
-                             .stretch = film->square * area,
-                             .capacitance = dea_point_capacitance(point) * area * area,
-                             .taut = is_taut(&r, k, x, area, &at)});
+    dea_row_fill(row, point, found_at(&r, x, &at));
+}
+
+static bool hold(const dea_point *point, double strain, dea_hold *hold)
+{
+    rings r = rings_of(point);
+    r.load = 0.0;
+    const double sign = dea_point_sign(point), lever = lever_of(point), radius = dea_point_divide(point);
+    const ring_place at = place_at(&r, sign * strain);
+    hold->found = found_at(&r, at.x, &at);
+    hold->held = sign * lever * at.path.held;
+    hold->held_slope = lever / radius * at.path.slope;
+    hold->push = hold->found.force;
+    hold->push_slope = sign * hold->push / radius * at.path.weight_slope / at.path.weight;
+    return 1.0 + strain > 0.0 && 1.0 + r.radial * strain > 0.0 && isfinite(hold->held);
 }
 
 /* Relative changes of the stretches, and what area stretch the electroded film has over lambda_pre^2. */
@@ -278,7 +307,7 @@ static void build(const dea_symbols *symbols, dea_network *network)
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force U^2/2 dC/du of the true area [N]",
                     SCALE(network->sign, force));
     network->capacitance = MUL(dea_symbols_capacitance(symbols), SQUARE(e.area));
-    network->end = symbols->kind == DEA_DOT ? dea_symbols_annulus_width(symbols) : MUL(symbols->coverage, symbols->frame_radius);
+    network->ends = true;
     network->field = MUL(MUL(dea_symbols_nominal_field(symbols), SQUARE(symbols->prestretch)), e.area);
     limit_tension(symbols, network, &e);
 }
@@ -302,6 +331,7 @@ const dea_model dea_model_ring = {
     .edge = true,
     .solve = solve,
     .along = along,
+    .hold = hold,
     .network = build,
     .dynamic = true,
 };

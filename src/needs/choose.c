@@ -4,15 +4,19 @@
 #include <string.h>
 
 #include "deaspice/needs.h"
-#include "engine/line.h"
+#include "scene/line.h"
 #include "needs/probes.h"
 #include "needs/trial.h"
 #include "study/study.h"
 
 static const double safety = 1.5;       /* bound over the largest error of the probes */
-static const double trial_share = 0.03; /* of the model error: what a run may be off by that a model is judged by */
+static const double still_share = 1e-3; /* of the model error: accuracy of answers at rest and in frequency */
+static const double coarsest = 0.1;     /* accuracy of the first runs that a model is judged by, or the model error [1] */
+static const double fine_share = 0.03;  /* of that: accuracy of the second ones */
 
 enum { VOLTAGES = 4, MOST_MODELS = 16 };
+
+enum { COARSE, FINE, RUNGS }; /* runs of a trial */
 
 /* Most probes of an axis. */
 static size_t most_probes(const dea_scene *scene)
@@ -25,7 +29,7 @@ static size_t most_probes(const dea_scene *scene)
 
 static dea_row row_of(const dea_scene *scene, const dea_model *model)
 {
-    return dea_probe_row(scene, model, 1e-3 * scene->model_error);
+    return dea_probe_row(scene, model, still_share * scene->model_error);
 }
 
 /* Relative error of the strain; infinite where the states differ. */
@@ -56,64 +60,104 @@ static double largest_error(const dea_scene *scene, const dea_model *model, cons
     return change;
 }
 
-/* Largest difference of the displacement over the truth's peak, and what both runs may be off by; infinite where the states
- * differ. */
-static double swing_error(const dea_trial_run *run, const dea_trial_run *truth, size_t rows)
+/* What the truth answers at a probe, found once for all models that are held against it. */
+typedef struct standard {
+    const dea_scene *scene; /* borrowed; all axes at their place */
+    const dea_model *truth;
+    dea_trial_run runs[RUNGS]; /* owned samples: in time, coarse and fine */
+    bool flown[RUNGS];
+    bool unsolved;         /* no engine of this process solved the truth */
+    dea_response *responses; /* owned, in frequency */
+} standard;
+
+static void standard_close(standard *s)
+{
+    for (int i = 0; i < RUNGS; i++) {
+        free(s->runs[i].samples);
+    }
+    free(s->responses);
+}
+
+/* Runs one model; *solved false where no engine of this process does. */
+static dea_status run_model(const dea_scene *scene, const dea_model *model, int rung, dea_trial_run *run, bool *solved,
+                            dea_error *error)
+{
+    dea_trial trial;
+    const dea_reduction all = {.ring = (double)INFINITY};
+    const double coarse = fmin(scene->model_error, coarsest);
+    dea_status status = dea_trial_open(scene, model, &all, rung == COARSE ? coarse : fine_share * coarse, &trial, error);
+    *solved = status == DEA_OK && trial.engine;
+    if (*solved) {
+        run->samples = malloc(trial.layout.point_size);
+        status = run->samples ? DEA_OK : dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a model is chosen");
+        *solved = run->samples && dea_trial_fly(&trial, &all, trial.scene.accuracy, run);
+    }
+    dea_trial_close(&trial);
+    return status;
+}
+
+/* Largest difference of the displacement, and what both runs may be off by, over the truth's peak. */
+typedef struct gap {
+    double change, doubt; /* infinite where the states differ; where one of the runs was not solved */
+} gap;
+
+static gap gap_of(const dea_trial_run *run, const dea_trial_run *truth, size_t rows)
 {
     double change = 0.0, peak = 0.0;
     for (size_t i = 0; i < rows; i++) {
         const dea_sample *a = &run->samples[i], *b = &truth->samples[i];
         if (a->state != b->state) {
-            return (double)INFINITY;
+            return (gap){.change = (double)INFINITY};
         }
         peak = fmax(peak, fabs(b->displacement));
         change = fmax(change, fabs(a->displacement - b->displacement));
     }
-    return run->error + truth->error + (change > 0.0 ? change / peak : 0.0);
+    return (gap){change > 0.0 ? change / peak : 0.0, run->error + truth->error};
 }
 
-/* Runs one model; false where no engine of this process solves it. */
-static bool run_model(const dea_scene *scene, const dea_model *model, dea_trial_run *run, dea_status *status, dea_error *error)
+static dea_status trial_gap(standard *s, const dea_model *model, int rung, gap *apart, dea_error *error)
 {
-    dea_trial trial;
-    const dea_reduction all = {.ring = (double)INFINITY};
-    *status = dea_trial_open(scene, model, &all, trial_share * scene->model_error, &trial, error);
-    bool solved = *status == DEA_OK && trial.engine;
-    if (solved) {
-        run->samples = malloc(trial.layout.point_size);
-        *status = run->samples ? DEA_OK : dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a model is chosen");
-        solved = run->samples && dea_trial_fly(&trial, &all, trial.scene.accuracy, run);
+    dea_status status = DEA_OK;
+    *apart = (gap){.doubt = (double)INFINITY};
+    if (!s->flown[rung] && !s->unsolved) {
+        bool solved;
+        status = run_model(s->scene, s->truth, rung, &s->runs[rung], &solved, error);
+        s->flown[rung] = status == DEA_OK;
+        s->unsolved = !solved;
     }
-    dea_trial_close(&trial);
-    return solved;
+    if (status == DEA_OK && !s->unsolved) {
+        dea_trial_run run = {0};
+        bool solved;
+        status = run_model(s->scene, model, rung, &run, &solved, error);
+        *apart = solved ? gap_of(&run, &s->runs[rung], dea_layout_of(s->scene).rows) : *apart;
+        free(run.samples);
+    }
+    return status;
 }
 
-static dea_status trial_error(const dea_scene *scene, const dea_model *model, const dea_model *truth, double *change,
-                              dea_error *error)
+/* Coarse runs rule most models out: fine ones of the membrane cost ten times that. */
+static dea_status trial_error(standard *s, const dea_model *model, double enough, double *change, dea_error *error)
 {
-    dea_trial_run run = {0}, wanted = {0};
-    dea_status status;
-    *change = (double)INFINITY;
-    if (run_model(scene, model, &run, &status, error) && run_model(scene, truth, &wanted, &status, error)) {
-        *change = swing_error(&run, &wanted, dea_layout_of(scene).rows);
+    gap apart;
+    dea_status status = trial_gap(s, model, COARSE, &apart, error);
+    if (status == DEA_OK && isfinite(apart.doubt) && !(safety * (apart.change - apart.doubt) > enough)) {
+        status = trial_gap(s, model, FINE, &apart, error);
     }
-    free(run.samples);
-    free(wanted.samples);
+    *change = apart.change + apart.doubt;
     return status;
 }
 
 /* A model that statics alone rule out is not run. */
-static dea_status moving_error(const dea_scene *scene, const dea_model *model, const dea_model *truth, double enough,
-                               double *change, dea_error *error)
+static dea_status moving_error(standard *s, const dea_model *model, double enough, double *change, dea_error *error)
 {
     dea_signal signal;
-    dea_status status = dea_signal_open(scene, &signal, error);
+    dea_status status = dea_signal_open(s->scene, &signal, error);
     if (status == DEA_OK) {
-        *change = largest_error(scene, model, truth, signal.largest);
+        *change = largest_error(s->scene, model, s->truth, signal.largest);
     }
     if (status == DEA_OK && safety * *change <= enough) {
         double moving;
-        status = trial_error(scene, model, truth, &moving, error);
+        status = trial_error(s, model, enough, &moving, error);
         *change = fmax(*change, moving);
     }
     dea_signal_close(&signal);
@@ -127,6 +171,9 @@ static double response_error(const dea_response *a, const dea_response *b, size_
     double change = 0.0;
     for (size_t i = 0; i < count; i++) {
         const double turns[2] = {a[i].displacement_phase - b[i].displacement_phase, a[i].impedance_phase - b[i].impedance_phase};
+        if (a[i].state != b[i].state) {
+            return (double)INFINITY;
+        }
         const double here[] = {fabs(a[i].displacement / b[i].displacement - 1.0), fabs(a[i].impedance / b[i].impedance - 1.0),
                                fabs(remainder(turns[0], 360.0)) * DEA_PI / 180.0,
                                fabs(remainder(turns[1], 360.0)) * DEA_PI / 180.0};
@@ -137,63 +184,75 @@ static double response_error(const dea_response *a, const dea_response *b, size_
     return change;
 }
 
-/* By the first engine that has a frequency domain. */
-static dea_status small_error(const dea_scene *scene, const dea_model *model, const dea_model *truth, double *change,
-                              dea_error *error)
+/* Responses of a model, by the first engine that has a frequency domain; the caller frees them. */
+static dea_status respond(const dea_scene *scene, const dea_model *model, dea_response **responses, dea_error *error)
 {
-    const size_t rows = dea_layout_of(scene).rows;
     const dea_engine *engine = NULL;
+    dea_scene here = *scene; /* borrows what the scene owns */
+    here.accuracy = still_share * scene->model_error;
     for (size_t i = 0; i < dea_engine_count() && !engine; i++) {
-        const dea_engine *here = dea_engine_at(i);
-        engine = here->ac && !here->isolated ? here : NULL;
+        engine = dea_engine_at(i)->ac && !dea_engine_at(i)->isolated ? dea_engine_at(i) : NULL;
     }
-    dea_response *responses = malloc(2 * rows * sizeof *responses);
-    if (!responses || !engine) {
-        free(responses);
+    *responses = malloc(dea_layout_of(scene).rows * sizeof **responses);
+    if (!*responses || !engine) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a model is chosen");
     }
     void *session = NULL;
     dea_status status = engine->begin(&session, error);
     if (status == DEA_OK) {
-        status = engine->ac(session, scene, model, responses, NULL, error);
-        status = status == DEA_OK ? engine->ac(session, scene, truth, responses + rows, NULL, error) : status;
+        status = engine->ac(session, &here, model, *responses, NULL, error);
         engine->end(session);
     }
-    *change = status == DEA_OK ? response_error(responses, responses + rows, rows) : (double)INFINITY;
+    return status;
+}
+
+static dea_status small_error(standard *s, const dea_model *model, double *change, dea_error *error)
+{
+    dea_response *responses = NULL;
+    dea_status status = s->responses ? DEA_OK : respond(s->scene, s->truth, &s->responses, error);
+    if (status == DEA_OK) {
+        status = respond(s->scene, model, &responses, error);
+    }
+    *change = status == DEA_OK ? response_error(responses, s->responses, dea_layout_of(s->scene).rows) : (double)INFINITY;
     free(responses);
     return status;
 }
 
 /* ---- the choice */
 
-static dea_status error_at(const dea_scene *here, const dea_model *model, const dea_model *truth, double enough, double *change,
-                           dea_error *error)
+static dea_status error_at(standard *s, const dea_model *model, double enough, double *change, dea_error *error)
 {
-    if (dea_study_of(here)->timed) {
-        return moving_error(here, model, truth, enough, change, error);
+    const dea_study *study = dea_study_of(s->scene);
+    if (study->timed) {
+        return moving_error(s, model, enough, change, error);
     }
-    if (dea_study_of(here)->phasors) {
-        return small_error(here, model, truth, change, error);
+    if (study->phasors) {
+        return small_error(s, model, change, error);
     }
-    *change = dea_study_of(here)->along ? (double)INFINITY : static_error(here, model, truth);
+    *change = study->along ? (double)INFINITY : static_error(s->scene, model, s->truth);
     return DEA_OK;
 }
 
-/* Bound of a model's error over the study; from @p enough on it may be any number that large. A probe whose numbers are out of
- * range says nothing. */
-static dea_status bound_of(const dea_scene *scene, const dea_model *model, const dea_model *truth, double enough, double *bound,
-                           dea_error *error)
+/* A model that may be chosen; bound of its error over the probes so far, which from what is enough on may be any number that
+ * large. */
+typedef struct candidate {
+    const dea_model *model;
+    double bound;
+} candidate;
+
+/* Raises the bounds by the errors at one probe. A probe whose numbers are out of range says nothing. */
+static dea_status probe(standard *s, candidate *list, size_t count, double enough, dea_error *error)
 {
-    const size_t count = dea_probe_count(scene, most_probes(scene));
-    *bound = 0.0;
-    for (size_t i = 0; model != truth && i < count && *bound <= enough; i++) {
+    for (size_t i = 0; i < count; i++) {
         double change = 0.0;
-        const dea_scene here = dea_probe_scene(scene, most_probes(scene), i);
-        const dea_status status = error_at(&here, model, truth, enough, &change, error);
+        if (list[i].model == s->truth || list[i].bound > enough) {
+            continue;
+        }
+        const dea_status status = error_at(s, list[i].model, enough, &change, error);
         if (status != DEA_OK && status != DEA_ERROR_USAGE) {
             return status;
         }
-        *bound = fmax(*bound, status == DEA_OK ? safety * change : 0.0);
+        list[i].bound = fmax(list[i].bound, status == DEA_OK ? safety * change : 0.0);
     }
     return DEA_OK;
 }
@@ -206,24 +265,24 @@ static bool fits(const dea_scene *scene, const dea_engine *engine, const dea_mod
 }
 
 /* Models that fit, the cheapest first, and of those that cost the same the nearest to the membrane: the last of the table. */
-static size_t list_models(const dea_scene *scene, const dea_engine *engine, const dea_model *list[MOST_MODELS])
+static size_t list_models(const dea_scene *scene, const dea_engine *engine, candidate list[MOST_MODELS])
 {
     size_t count = 0;
     for (int form = 0; form < DEA_FORMS; form++) {
         for (size_t i = dea_model_count(); i-- > 0 && count < MOST_MODELS;) {
             const dea_model *model = dea_model_at(i);
             if ((int)dea_model_form(model) == form && fits(scene, engine, model)) {
-                list[count++] = model;
+                list[count++] = (candidate){.model = model};
             }
         }
     }
     return count;
 }
 
-static bool includes(const dea_model *const *list, size_t count, const dea_model *model)
+static bool includes(const candidate *list, size_t count, const dea_model *model)
 {
     for (size_t i = 0; i < count; i++) {
-        if (list[i] == model) {
+        if (list[i].model == model) {
             return true;
         }
     }
@@ -236,33 +295,40 @@ const dea_model *dea_needs_truth(dea_study_kind study)
     for (size_t i = 0; i < dea_model_count(); i++) {
         const dea_model *model = dea_model_at(i);
         const bool finer = !truth || dea_model_form(model) >= dea_model_form(truth);
-        const bool costly = dea_study_at(study)->timed && model->membrane; /* a run of it at every probe */
-        truth = finer && !costly && dea_study_takes(dea_study_at(study), model) ? model : truth;
+        truth = finer && dea_study_takes(dea_study_at(study), model) ? model : truth;
     }
     return truth;
 }
 
+static void choose(const candidate *list, size_t count, double wanted, dea_model_choice *choice)
+{
+    for (size_t i = 0; i < count && !choice->model; i++) {
+        if (list[i].bound < choice->bound || !choice->next) {
+            choice->next = list[i].model;
+            choice->bound = list[i].bound;
+        }
+        if (list[i].bound <= wanted) {
+            choice->model = list[i].model;
+        }
+    }
+}
+
 dea_status dea_needs_model(const dea_scene *scene, const dea_engine *engine, dea_model_choice *choice, dea_error *error)
 {
-    const dea_model *list[MOST_MODELS];
-    const size_t count = list_models(scene, engine, list);
+    candidate list[MOST_MODELS];
+    const size_t count = list_models(scene, engine, list), probes = dea_probe_count(scene, most_probes(scene));
     *choice = (dea_model_choice){.truth = dea_needs_truth(scene->study), .bound = (double)INFINITY};
     /* who cannot do the truth itself is told how good the best of the others is */
     const double wanted = scene->model_error;
     const double enough = includes(list, count, choice->truth) ? wanted : (double)INFINITY;
-    for (size_t i = 0; i < count && !choice->model; i++) {
-        double bound;
-        const dea_status status = bound_of(scene, list[i], choice->truth, enough, &bound, error);
-        if (status != DEA_OK) {
-            return status;
-        }
-        if (bound < choice->bound || !choice->next) {
-            choice->next = list[i];
-            choice->bound = bound;
-        }
-        if (bound <= wanted) {
-            choice->model = list[i];
-        }
+    dea_status status = DEA_OK;
+    for (size_t i = 0; i < probes && status == DEA_OK; i++) {
+        const dea_scene here = dea_probe_scene(scene, most_probes(scene), i);
+        standard s = {.scene = &here, .truth = choice->truth};
+        status = probe(&s, list, count, enough, error);
+        choice->unsolved = choice->unsolved || s.unsolved;
+        standard_close(&s);
     }
-    return DEA_OK;
+    choose(list, count, wanted, choice);
+    return status;
 }

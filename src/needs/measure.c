@@ -73,7 +73,7 @@ static double static_peak(const judge *j)
         charge = fmax(charge, fabs(j->with[FINE].samples[i].charge));
     }
     point.voltage = fmin(point.voltage, charge / dea_point_capacitance(&point));
-    j->trial.model->solve(&point, 1e-6, &row);
+    dea_model_solve(j->trial.model, &point, 1e-6, &row);
     return isfinite(row.displacement) ? fabs(row.displacement) : 0.0;
 }
 

@@ -2,12 +2,15 @@
 
 #include <math.h>
 
+#include "needs/first_peak.h"
 #include "network/swing.h"
 #include "needs/probes.h"
 #include "study/study.h"
 
 /* Of the solutions that are compared: the membrane costs some 20 us a probe then, and no printed digit is of it. */
 static const double accuracy = 1e-6;
+
+enum { MOST_STEPS = 350 }; /* of all first peaks: some 2 ms */
 
 /* Most probes of an axis where the study has so many of them: some 30 in all. */
 static size_t most_probes(const dea_scene *scene)
@@ -44,13 +47,25 @@ static dea_status compare_swings(const dea_scene *scene, const dea_model *model,
     return status;
 }
 
+/* False where there is no peak to compare. */
+static bool compare_peaks(const dea_scene *scene, const dea_model *model, const dea_model *truth, int *steps, dea_nearness *nearness)
+{
+    const double deviation = dea_first_peak_deviation(scene, model, truth, steps);
+    nearness->least_peak = fmin(nearness->least_peak, deviation); /* of a NAN and a number the number */
+    nearness->largest_peak = fmax(nearness->largest_peak, deviation);
+    return !isnan(deviation);
+}
+
 dea_status dea_nearness_measure(const dea_scene *scene, const dea_model *model, dea_nearness *nearness, dea_error *error)
 {
     const dea_model *truth = dea_model_at(dea_model_count() - 1); /* the finest */
     const size_t most = most_probes(scene), count = dea_probe_count(scene, most);
     dea_status (*const rest)(dea_scene *, dea_error *) = dea_study_of(scene)->rest;
     dea_status status = DEA_OK;
-    *nearness = (dea_nearness){.slow = (double)NAN, .fast = (double)NAN, .whole = count == dea_scene_point_count(scene)};
+    *nearness = (dea_nearness){.slow = (double)NAN, .fast = (double)NAN, .least_peak = (double)NAN, .largest_peak = (double)NAN,
+                                .whole = count == dea_scene_point_count(scene)};
+    bool peaks = nearness->whole && dea_study_of(scene)->timed;
+    int steps = MOST_STEPS;
     for (size_t i = 0; i < count && status == DEA_OK; i++) {
         dea_scene here = dea_probe_scene(scene, most, i);
         status = rest ? rest(&here, error) : DEA_OK;
@@ -60,6 +75,10 @@ dea_status dea_nearness_measure(const dea_scene *scene, const dea_model *model, 
         if (status == DEA_OK && rest) {
             status = compare_swings(&here, model, nearness, error);
         }
+        peaks = status == DEA_OK && peaks && compare_peaks(&here, model, truth, &steps, nearness);
+    }
+    if (!peaks) {
+        nearness->least_peak = nearness->largest_peak = (double)NAN;
     }
     return status;
 }

@@ -40,8 +40,14 @@ typedef struct planner {
     double speeds[DEA_SURROGATE_POINTS]; /* of the velocity, likewise [m/s] */
 } planner;
 
+/* A load that alone resists the edge of a membrane leaves its other nodes without an equation of motion: they keep their mass; so they do
+ * where the rim of a sheet resistance charges at once, which the one resistance of the stand-in hides. */
 static bool pays(const planner *p, dea_part part)
 {
+    const dea_scene *scene = p->surrogate.scene;
+    if (p->many_nodes && (scene->load.damping > 0.0 || scene->electrode.sheet_resistance > 0.0)) {
+        return false;
+    }
     return (p->engine->omits & 1u << part) != 0 && (!p->many_nodes || part == DEA_PART_MASS);
 }
 
@@ -59,7 +65,7 @@ static bool is_start(const planner *p, size_t probe)
 {
     const dea_scene *scene = p->surrogate.scene;
     const bool held = !isnan(scene->material.density) || dea_electrode_mass(scene) > 0.0 ||
-                      !isnan(scene->material.retardation) || dea_series_resistance(scene) > 0.0;
+                      !isnan(scene->material.retardation) || scene->load.damping > 0.0 || dea_series_resistance(scene) > 0.0;
     return held && scene->transient.from_bias && probe == 0;
 }
 
@@ -481,7 +487,7 @@ dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const 
     p.many_nodes = model->membrane;
     dea_status status = dea_surrogate_open(scene, model->membrane ? &dea_model_ring : model, &p.surrogate, &usable, error);
     if (status == DEA_OK) {
-        const dea_swing swing = p.many_nodes ? dea_swing_free(scene, model) : dea_swing_of(&p.surrogate.dynamics, 0.0, 0.0);
+        const dea_swing swing = p.many_nodes ? dea_swing_free(scene, model) : dea_swing_of(&p.surrogate.dynamics, p.surrogate.dynamics.rest, 0.0);
         needs->resonance = swing.frequency;
         needs->decay = swing.decay;
     }

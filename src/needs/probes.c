@@ -1,6 +1,6 @@
 #include "needs/probes.h"
 
-#include "engine/line.h"
+#include "scene/line.h"
 
 static size_t probes_of_axis(const dea_axis *axis, size_t most)
 {
@@ -36,7 +36,7 @@ dea_row dea_probe_row(const dea_scene *scene, const dea_model *model, double acc
     dea_film_prepare(scene, &point.film);
     dea_point_place(scene, &point);
     if (dea_point_valid(&point)) {
-        model->solve(&point, accuracy, &row);
+        dea_model_solve(model, &point, accuracy, &row);
     }
     return row;
 }

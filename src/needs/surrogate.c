@@ -90,8 +90,8 @@ static void add_point(dea_surrogate *s, double u, double square)
                                    .push_slope = e.push_slope,
                                    .square = square,
                                    .excess = 1.0};
-    if (s->loaded != 0.0) {
-        point->excess = fmax(1.0, fabs(e.push * largest / (stiffness_at(s, u, square) * s->loaded)));
+    if (s->loaded != s->dynamics.rest) {
+        point->excess = fmax(1.0, fabs(e.push * largest / (stiffness_at(s, u, square) * (s->loaded - s->dynamics.rest))));
     }
 }
 
@@ -113,14 +113,14 @@ static bool place_points(dea_surrogate *s)
     if (!dea_dynamics_equilibrium(&s->dynamics, largest, &s->loaded)) {
         return false;
     }
-    const double rest = dea_dynamics_edge(&s->dynamics, 0.0).capacitance;
+    const double still = s->dynamics.rest, rest = dea_dynamics_edge(&s->dynamics, still).capacitance;
     const double there = dea_dynamics_edge(&s->dynamics, s->loaded).capacitance;
     s->capacitance = fmax(rest, there);
     s->least_capacitance = fmin(rest, there);
-    if (!(stiffness_at(s, 0.0, 0.0) > 0.0 && stiffness_at(s, s->loaded, largest * largest) > 0.0)) {
+    if (!(stiffness_at(s, still, 0.0) > 0.0 && stiffness_at(s, s->loaded, largest * largest) > 0.0)) {
         return false;
     }
-    add_point(s, 0.0, 0.0);
+    add_point(s, still, 0.0);
     if (s->dynamics.linear) {
         s->points[0].excess = 1.0;
         if (softens_on_the_way(s)) { /* the walk takes the largest voltage of a segment for all of it: here, none */
@@ -190,10 +190,10 @@ static bool swing_out(dea_surrogate *s, double from, double step, double square,
 static bool find_way(dea_surrogate *s, way *w)
 {
     const double square = s->source.largest * s->source.largest;
-    const double step = s->loaded / STEPS;
+    const double rest = s->dynamics.rest, step = (s->loaded - rest) / STEPS;
     double pushed = 0.0, strained = 0.0; /* energy of the jump up, and down [J] */
     for (int i = 0; i <= STEPS; i++) {
-        const double u = i < STEPS ? i * step : s->loaded;
+        const double u = i < STEPS ? rest + i * step : s->loaded;
         const dea_edge e = dea_dynamics_edge(&s->dynamics, u);
         const double share = i == 0 || i == STEPS ? 0.5 : 1.0;
         const double held = dea_edge_held(&s->dynamics, &e, NULL);
@@ -203,21 +203,21 @@ static bool find_way(dea_surrogate *s, way *w)
     }
     const double jumps = s->swing * s->swing;
     return w->softest > 0.0 && swing_out(s, s->loaded, step, square, jumps * pushed, w) &&
-           swing_out(s, 0.0, -step, 0.0, jumps * strained, w);
+           swing_out(s, rest, -step, 0.0, jumps * strained, w);
 }
 
 /* A film that softens on its way is looked at where it is softest, too; false where nothing linear stands for it. */
 static bool place_softest(dea_surrogate *s)
 {
     way w = nowhere;
-    pass(s, 0.0, 0.0, &w);
-    if (s->dynamics.linear || s->loaded == 0.0) {
-        pass(s, 0.0, s->source.largest * s->source.largest, &w);
+    pass(s, s->dynamics.rest, 0.0, &w);
+    if (s->dynamics.linear || s->loaded == s->dynamics.rest) {
+        pass(s, s->dynamics.rest, s->source.largest * s->source.largest, &w);
     } else if (!find_way(s, &w)) {
         return false;
     }
     s->variation = fmax(w.stiffest / w.softest, w.most / w.least) - 1.0;
-    if (!s->dynamics.linear && w.u != 0.0 && w.u != s->loaded) {
+    if (!s->dynamics.linear && w.u != s->dynamics.rest && w.u != s->loaded) {
         add_point(s, w.u, w.square);
     }
     return w.softest > 0.0 && w.stiffest <= most_varied * w.softest;

@@ -2,14 +2,14 @@
 
 #include <math.h>
 
-static const double loosest = 1e-3; /* accuracy that a trial is run at [1] */
+static const double loosest = 1e-3; /* accuracy that does for a trial where an engine does not promise what is wanted [1] */
 
-/* Tightens to what the engine promises, from wanted on; false where it can do nothing of it. */
+/* Loosens to what the engine promises, from wanted on; false where it can do nothing of it. */
 static bool can_do(dea_trial *trial, const dea_engine *engine, const dea_reduction *reduction, double wanted)
 {
     dea_scene reduced = trial->scene;
     reduced.reduction = *reduction;
-    for (double accuracy = fmin(wanted, loosest); accuracy <= loosest; accuracy *= 10.0) {
+    for (double accuracy = wanted; accuracy <= fmax(wanted, loosest); accuracy *= 10.0) {
         trial->scene.accuracy = reduced.accuracy = accuracy;
         if (!dea_engine_refuses(engine, &trial->scene, trial->model) && !dea_engine_refuses(engine, &reduced, trial->model)) {
             return true;
@@ -32,8 +32,10 @@ static const dea_engine *appoint(dea_trial *trial, const dea_reduction *reductio
 dea_status dea_trial_open(const dea_scene *scene, const dea_model *model, const dea_reduction *reduction, double accuracy,
                           dea_trial *trial, dea_error *error)
 {
-    *trial = (dea_trial){.scene = *scene, .model = model, .layout = dea_layout_of(scene)};
+    *trial = (dea_trial){.scene = *scene, .model = model};
     trial->scene.reduction = (dea_reduction){.ring = (double)INFINITY};
+    trial->scene.transient.points = 0;
+    trial->layout = dea_layout_of(&trial->scene);
     trial->engine = appoint(trial, reduction, accuracy);
     dea_status status = dea_signal_open(scene, &trial->signal, error);
     if (status == DEA_OK && trial->engine) {

@@ -66,7 +66,7 @@ static void write_sines(const dea_curve_cards *c, const dea_segment *segment)
         fprintf(c->out, "V%s %s %s sin(", name, plus, minus);
         for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
             fputs(k > 0 ? " " : "", c->out);
-            c->number(c->out, numbers[k]);
+            dea_part_number(c->out, numbers[k]);
         }
         fputs(")\n", c->out);
     }
@@ -76,9 +76,9 @@ static void write_sines(const dea_curve_cards *c, const dea_segment *segment)
 static void write_age(const dea_curve_cards *c, const dea_segment *segment)
 {
     fputs("min(max(time-(", c->out);
-    c->number(c->out, fmax(segment->from, c->begin) - c->begin);
+    dea_part_number(c->out, fmax(segment->from, c->begin) - c->begin);
     fputs("),0),", c->out);
-    c->number(c->out, segment->to - fmax(segment->from, c->begin));
+    dea_part_number(c->out, segment->to - fmax(segment->from, c->begin));
     fputc(')', c->out);
 }
 
@@ -86,22 +86,22 @@ static void write_age(const dea_curve_cards *c, const dea_segment *segment)
 static void write_tone(const dea_curve_cards *c, const dea_segment *segment, const dea_tone *whole)
 {
     const dea_tone tone = dea_tone_from(whole, fmax(segment->from, c->begin) - segment->origin);
-    c->number(c->out, tone.amplitude);
+    dea_part_number(c->out, tone.amplitude);
     fputs("*sin(", c->out);
-    c->number(c->out, tone.phase);
+    dea_part_number(c->out, tone.phase);
     fputs("+(", c->out);
     if (tone.growth != 0.0) {
-        c->number(c->out, 2.0 * DEA_PI * tone.frequency / tone.growth);
+        dea_part_number(c->out, 2.0 * DEA_PI * tone.frequency / tone.growth);
         fputs(")*(exp((", c->out);
-        c->number(c->out, tone.growth);
+        dea_part_number(c->out, tone.growth);
         fputs(")*", c->out);
         write_age(c, segment);
         fputs(")-1))", c->out);
         return;
     }
-    c->number(c->out, 2.0 * DEA_PI * tone.frequency);
+    dea_part_number(c->out, 2.0 * DEA_PI * tone.frequency);
     fputs("+(", c->out);
-    c->number(c->out, DEA_PI * tone.rate);
+    dea_part_number(c->out, DEA_PI * tone.rate);
     fputs(")*", c->out);
     write_age(c, segment);
     fputs(")*", c->out);
@@ -115,7 +115,7 @@ static void write_chain(const dea_curve_cards *c)
     const dea_curve *curve = &c->signal->curve;
     size_t links = 0;
     fprintf(c->out, "VSOURCE %s wave0 ", c->node);
-    c->number(c->out, curve->offset);
+    dea_part_number(c->out, curve->offset);
     fputc('\n', c->out);
     for (size_t i = c->first; i < c->first + c->count; i++) {
         const dea_segment *segment = &c->signal->segments[i];
@@ -143,11 +143,11 @@ static void write_corners(const dea_curve_cards *c)
     fputs("* makes begin and end of the curves time points\nVDELAY delay 0 pwl(0 0", c->out);
     for (size_t i = c->first + 1; i < c->first + c->count; i++) {
         fputs(i % 4 == 0 ? "\n+ " : " ", c->out);
-        c->number(c->out, c->signal->segments[i].from - c->begin);
+        dea_part_number(c->out, c->signal->segments[i].from - c->begin);
         fputs(" 0", c->out);
     }
     fputc(' ', c->out);
-    c->number(c->out, end->to - c->begin + (c->signal->segments[c->first + 1].from - c->begin));
+    dea_part_number(c->out, end->to - c->begin + (c->signal->segments[c->first + 1].from - c->begin));
     fputs(" 0)\nRDELAY delay 0 1\n", c->out);
 }
 

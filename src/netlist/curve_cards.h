@@ -4,7 +4,7 @@
 #define DEA_CURVE_CARDS_H
 
 #include "drive/signal.h"
-#include "netlist/dialect.h"
+#include "netlist/part_text.h"
 
 /* Most behavioural sources of one netlist: a burst that repeats more often takes a shorter run. */
 enum { DEA_CURVE_CARDS_MAX = 200 };
@@ -12,7 +12,6 @@ enum { DEA_CURVE_CARDS_MAX = 200 };
 typedef struct dea_curve_cards {
     FILE *out;
     const dea_dialect *dialect;
-    void (*number)(FILE *out, double value);
     const dea_signal *signal;
     size_t first, count; /* segments of the netlist, curved or constant */
     double begin;        /* time of the run at which the netlist's begins [s] */

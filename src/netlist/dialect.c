@@ -1,20 +1,21 @@
 #include "netlist/dialect.h"
 
 #include <ctype.h>
-#include <ctype.h>
 #include <stdbool.h>
 #include <string.h>
+
+/* What stands round expressions and their parameters: these are put in as text, or the expression in braces knows them. */
+#define B_SOURCES .source = {"B", "B"}, .equals = {" v=", " i="}
+#define PUT_IN .open = "", .close = "", .left = "({", .right = "})"
+#define IN_BRACES .open = "{", .close = "}", .left = "", .right = ""
+#define NO_CARDS .transient = "", .ac = "", .sweep = ""
 
 static const dea_dialect dialects[] = {
     {
         .name = "ngspice",
         .title = "ngspice",
-        .source = {"B", "B"},
-        .equals = {" v=", " i="},
-        .open = "",
-        .close = "",
-        .left = "({",
-        .right = "})",
+        B_SOURCES,
+        PUT_IN,
         .inside = ".",
         .solver = ".options",
         .inductor = "",
@@ -28,29 +29,19 @@ static const dea_dialect dialects[] = {
     {
         .name = "ltspice",
         .title = "LTspice",
-        .source = {"B", "B"},
-        .equals = {" v=", " i="},
-        .open = "",
-        .close = "",
-        .left = "({",
-        .right = "})",
+        B_SOURCES,
+        PUT_IN,
         .inside = ":",
         .solver = ".options",
         .inductor = " rser=0", /* else 1 mOhm */
-        .transient = "",
-        .ac = "",
-        .sweep = "",
+        NO_CARDS,
         .save = ".save",
     },
     {
         .name = "xyce",
         .title = "Xyce",
-        .source = {"B", "B"},
-        .equals = {" v=", " i="},
-        .open = "{",
-        .close = "}",
-        .left = "",
-        .right = "",
+        B_SOURCES,
+        IN_BRACES,
         .inside = ":",
         .solver = NULL,
         .inductor = "",
@@ -66,18 +57,13 @@ static const dea_dialect dialects[] = {
         .title = "PSpice",
         .source = {"E", "G"},
         .equals = {" value=", " value="},
-        .open = "{",
-        .close = "}",
-        .left = "",
-        .right = "",
+        IN_BRACES,
         /* PSpice calls the natural logarithm log, and has no ln */
         .text = {[DEA_LN] = "log(@)", [DEA_POW] = "pwr(@,#)"},
         .inside = ".",
         .solver = ".options",
         .inductor = "",
-        .transient = "",
-        .ac = "",
-        .sweep = "",
+        NO_CARDS,
     },
 };
 

@@ -2,6 +2,8 @@
 
 #include "study/study.h"
 
+#include <math.h>
+
 void dea_export_head(const dea_export *export, const char *meaning)
 {
     const dea_scene *scene = export->scene;
@@ -10,15 +12,30 @@ void dea_export_head(const dea_export *export, const char *meaning)
             scene->models[0]->name, scene->models[0]->equation, export->dialect->title, meaning);
 }
 
+void dea_export_band(const dea_export *export, const char *u, const char *v)
+{
+    const dea_scene *scene = export->scene;
+    const size_t last = dea_layout_of(scene).rows - 1;
+    const dea_mobility_band band = {.from = scene->ac.from,
+                                    .to = dea_layout_place(scene, last),
+                                    .points_per_decade = last > 0 ? scene->ac.points_per_decade : 0,
+                                    .count = 1};
+    fprintf(export->out,
+            "* results: displacement v(%s) [m] and velocity v(%s) [m/s] per volt, input admittance -v(current) [S]\n"
+            "HCURRENT current 0 VSOURCE 1\n.print ac vm(%s) vp(%s) vm(%s) vp(%s) vm(current) vp(current)\n%s",
+            u, v, u, u, v, v, export->dialect->ac);
+    dea_cards_write_band(&band, export->out);
+}
+
 static dea_status refuse_models(const dea_scene *scene, dea_error *error)
 {
     if (scene->model_count > 1) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "a netlist holds one model, the scene has %zu: choose one, --model %s",
                         scene->model_count, scene->models[0]->name);
     }
-    if (scene->models[0]->membrane && dea_study_of(scene)->timed) {
-        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the motion of the model %s is no netlist: --as subckt is its part",
-                        scene->models[0]->name);
+    if (scene->models[0]->membrane && dea_study_of(scene)->timed && scene->electrode.sheet_resistance > 0.0) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the potential along a sheet resistance of the model %s is no netlist: --model ring "
+                                                      "has one resistance for it", scene->models[0]->name);
     }
     if (!scene->models[0]->network && !scene->models[0]->membrane) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is not a network: --model lumped is one",

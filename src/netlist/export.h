@@ -31,11 +31,12 @@ dea_status dea_export_transient(dea_export *export, dea_error *error);
 dea_status dea_export_ac(dea_export *export, dea_error *error);
 /* The membrane's. */
 dea_status dea_export_ac_rings(dea_export *export, dea_error *error);
+dea_status dea_export_transient_rings(dea_export *export, dea_error *error);
 
 /* First lines of every netlist: the title of the scene as a comment, the tool, what voltages and currents mean. */
 void dea_export_head(const dea_export *export, const char *meaning);
-/* Points `from` to `to`, excluded, of an axis as the voltage v(axis) of the index v(k); a list as a sum of its steps, each of which
- * rises between two indices. */
-void dea_export_axis(const dea_dialect *dialect, const dea_axis *axis, size_t from, size_t to, FILE *out);
+/* What is read of a frequency response from the nodes of displacement and velocity, and the card of its grid, on which the last
+ * frequency of the scene need not lie; last lines of the file. */
+void dea_export_band(const dea_export *export, const char *displacement, const char *velocity);
 
 #endif

@@ -4,12 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/line.h"
+#include "scene/line.h"
 #include "netlist/export.h"
 #include "netlist/netlist.h"
 #include "netlist/rings_line.h"
 #include "network/balance.h"
-#include "support/text.h"
+#include "support/memory_text.h"
 
 /* Most lines of one netlist, most values of an axis that is not uniform, and most steps from one point to the next. */
 enum { MOST_LINES = 2000, MOST_LIST = 400, MOST_PARTS = 64, NAMES_A_LINE = 6 };
@@ -61,7 +61,7 @@ static double solve_at(const line_text *l, size_t i)
     dea_film_prepare(&here, &point.film);
     dea_point_place(&here, &point);
     if (dea_point_valid(&point)) {
-        here.models[0]->solve(&point, 1e-9, &row);
+        dea_model_solve(here.models[0], &point, 1e-9, &row);
     }
     return row.displacement;
 }
@@ -100,44 +100,6 @@ static void find_stretch(line_text *l)
     l->w->left_out += l->w->points - (l->to - l->from);
 }
 
-static void write_parameter_sum(const dea_dialect *dialect, FILE *out, const char *sign, const char *name)
-{
-    fputs(sign, out);
-    dea_dialect_parameter(dialect, out, name);
-}
-
-void dea_export_axis(const dea_dialect *dialect, const dea_axis *axis, size_t from, size_t to, FILE *out)
-{
-    const bool uniform = axis->uniform && axis->count > 1;
-    fprintf(out, "* index of the point, held inside the points that have an equilibrium, and the value of %s there [%s]\n",
-            axis->key, axis->unit);
-    dea_dialect_source_begin(dialect, out, DEA_VOLTAGE, "point", "point", "0");
-    fprintf(out, "min(max(v(k),%zu),%zu)", from, to - 1);
-    dea_dialect_source_end(dialect, out);
-    dea_part_value(out, "axis_from", axis->values[uniform ? 0 : from]);
-    for (size_t i = from + 1; i < to && !uniform; i++) {
-        char name[32];
-        snprintf(name, sizeof name, "axis_step%zu", i);
-        dea_part_value(out, name, axis->values[i] - axis->values[i - 1]);
-    }
-    if (uniform) {
-        dea_part_value(out, "axis_span", axis->values[axis->count - 1] - axis->values[0]);
-    }
-    dea_dialect_source_begin(dialect, out, DEA_VOLTAGE, "axis", "axis", "0");
-    write_parameter_sum(dialect, out, "", "axis_from");
-    if (uniform) {
-        write_parameter_sum(dialect, out, "+", "axis_span");
-        fprintf(out, "*v(point)/%zu", axis->count - 1);
-    }
-    for (size_t i = from + 1; i < to && !uniform; i++) {
-        char name[32];
-        snprintf(name, sizeof name, "axis_step%zu", i);
-        write_parameter_sum(dialect, out, "+", name);
-        fprintf(out, "*min(max(v(point)-%zu,0),1)", i - 1);
-    }
-    dea_dialect_source_end(dialect, out);
-}
-
 static void write_guess(const line_text *l, const char *node, double value)
 {
     FILE *out = l->w->out;
@@ -153,7 +115,9 @@ static void write_start(line_text *l)
     fprintf(l->w->out, ".nodeset v(edge%zu)=", l->w->lines);
     dea_part_number(l->w->out, u);
     if (l->axis) {
-        write_guess(l, "point", (double)l->from);
+        if (dea_axis_holds(l->axis, l->from, l->to)) {
+            write_guess(l, "point", (double)l->from);
+        }
         write_guess(l, "axis", symbol_at(l, l->from));
     }
     snprintf(inside, sizeof inside, "xline%zu%s", l->w->lines, l->w->dialect->inside);
@@ -193,14 +157,16 @@ static dea_status write_membrane(line_text *l, dea_error *error)
 static dea_status write_line(line_text *l, dea_error *error)
 {
     FILE *out = l->w->out;
-    if (!dea_still_cards_open(&l->network, symbol_at(l, l->from), l->w->dialect, out, &l->cards)) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
+    const dea_still_line line = {l->scene, l->scene->models[0], l->axis, symbol_at(l, l->from)};
+    const dea_status status = dea_still_cards_open(&line, false, l->w->dialect, out, &l->cards, error);
+    if (status != DEA_OK) {
+        return status;
     }
     write_place(l);
     fprintf(out, ".subckt line%zu k edge\n", l->w->lines);
     dea_still_cards_write_numbers(&l->cards);
     if (l->axis) {
-        dea_export_axis(l->w->dialect, l->axis, l->from, l->to, out);
+        dea_axis_write(&l->cards.text, l->axis, l->from, l->to);
     }
     dea_still_cards_write_network(&l->cards, 0);
     fprintf(out, ".ends\nXLINE%zu k edge%zu line%zu\n", l->w->lines, l->w->lines, l->w->lines);
@@ -339,23 +305,20 @@ static dea_status refuse(const dea_export *export, dea_error *error)
 static dea_status write_lines(writer *w, dea_error *error)
 {
     const dea_scene *scene = w->export->scene;
-    char *names = NULL;
-    size_t length;
-    w->names = open_memstream(&names, &length);
-    if (!w->names) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
+    dea_memory_text names;
+    dea_status status = dea_memory_text_begin(&names, error);
+    w->names = names.out;
+    if (status == DEA_OK) {
+        status = dea_lines_visit(scene, 0, dea_scene_point_count(scene), visit_line, w, error);
     }
-    dea_status status = dea_lines_visit(scene, 0, dea_scene_point_count(scene), visit_line, w, error);
-    if (!dea_text_close(w->names) && status == DEA_OK) {
-        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
-    }
+    status = dea_memory_text_end(&names, status, error);
     if (status == DEA_OK && w->written == 0) {
         status = dea_fail(error, DEA_ERROR_UNSUPPORTED, "no point of the sweep has an equilibrium");
     }
     if (status == DEA_OK) {
-        write_analysis(w, names);
+        write_analysis(w, names.text);
     }
-    free(names);
+    free(names.text);
     return status;
 }
 

@@ -8,7 +8,7 @@
 
 #include "netlist/symbol.h"
 #include "output/atomic.h"
-#include "support/text.h"
+#include "support/memory_text.h"
 
 enum { PATH_ROOM = 4096 };
 
@@ -42,27 +42,11 @@ static dea_status put_file(const char *folder, const char *tool, const char *nam
     return status == DEA_OK ? closed : status;
 }
 
-/* A file in memory that is written to disk when it is whole. */
-typedef struct memory_file {
-    FILE *out;
-    char *text;
-    size_t length;
-} memory_file;
-
-static dea_status open_memory(memory_file *file, dea_error *error)
-{
-    *file = (memory_file){0};
-    file->out = open_memstream(&file->text, &file->length);
-    return file->out ? DEA_OK : dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a library is written");
-}
-
-static dea_status close_memory(memory_file *file, dea_status status, const char *folder, const char *tool, const char *name,
+/* Ends a text and puts it on disk where it is whole. */
+static dea_status close_memory(dea_memory_text *file, dea_status status, const char *folder, const char *tool, const char *name,
                                dea_error *error)
 {
-    const bool whole = dea_text_close(file->out);
-    if (status == DEA_OK && !whole) {
-        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a library is written");
-    }
+    status = dea_memory_text_end(file, status, error);
     if (status == DEA_OK) {
         status = put_file(folder, tool, name, file->text, file->length, error);
     }
@@ -72,8 +56,8 @@ static dea_status close_memory(memory_file *file, dea_status status, const char 
 
 static dea_status write_parts(const char *folder, const char *tool, const dea_dialect *dialect, dea_error *error)
 {
-    memory_file file;
-    const dea_status status = open_memory(&file, error);
+    dea_memory_text file;
+    const dea_status status = dea_memory_text_begin(&file, error);
     if (status != DEA_OK) {
         return status;
     }
@@ -98,9 +82,9 @@ static bool symbol_at(size_t index, dea_symbol *symbol)
 
 static dea_status write_kicad(const char *folder, dea_error *error)
 {
-    memory_file file;
+    dea_memory_text file;
     dea_symbol symbol;
-    const dea_status status = open_memory(&file, error);
+    const dea_status status = dea_memory_text_begin(&file, error);
     if (status != DEA_OK) {
         return status;
     }
@@ -117,9 +101,9 @@ static dea_status write_ltspice(const char *folder, dea_error *error)
     dea_symbol symbol;
     dea_status status = DEA_OK;
     for (size_t i = 0; status == DEA_OK && symbol_at(i, &symbol); i++) {
-        memory_file file;
+        dea_memory_text file;
         char name[DEA_PART_TITLE + 8];
-        status = open_memory(&file, error);
+        status = dea_memory_text_begin(&file, error);
         if (status == DEA_OK) {
             snprintf(name, sizeof name, "%s.asy", symbol.name);
             dea_symbol_ltspice(file.out, &symbol, "dea.lib");

@@ -19,6 +19,9 @@ static const dea_analogy analogies[] = {
      'L', 'C', true},
 };
 
+const dea_cures dea_part_cures = {
+    .per_metre = 1e6, .drift = 1e-9, .inertia = 1e-6, .lightest = 1e-24, .stop = 1e-3, .fastest = 1e9, .sense = 1e-3};
+
 enum { ANALOGIES = sizeof analogies / sizeof *analogies };
 
 const dea_analogy *dea_analogy_at(size_t index)
@@ -36,33 +39,11 @@ const dea_analogy *dea_analogy_find(const char *name)
     return NULL;
 }
 
-/* One parameter a product. */
-static void gather(dea_mobility *mobility)
+dea_status dea_mobility_take(dea_mobility *mobility, dea_error *error)
 {
-    dea_pool *pool = &mobility->network.pool;
-    dea_expr *const single[] = {&mobility->tension, &mobility->push, &mobility->resistance};
-    for (size_t i = 0; i < sizeof single / sizeof *single; i++) {
-        *single[i] = dea_expr_gathered(pool, *single[i]);
-    }
-    for (size_t a = 0; a < mobility->dynamics->stress_count; a++) {
-        mobility->stresses[a].stress = dea_expr_gathered(pool, mobility->stresses[a].stress);
-        mobility->stresses[a].lever = dea_expr_gathered(pool, mobility->stresses[a].lever);
-    }
-}
-
-dea_status dea_mobility_open(const dea_scene *scene, const dea_dynamics *dynamics, dea_mobility *mobility, dea_error *error)
-{
-    dea_scene film = *scene;
-    film.drive.voltage = 1.0;
-    film.drive.series_resistance = film.drive.leakage_resistance = (double)NAN;
-    *mobility = (dea_mobility){.dynamics = dynamics, .stiffness = (double)NAN};
+    const dea_dynamics *dynamics = mobility->dynamics;
     dea_network *network = &mobility->network;
-    const dea_status status = dea_network_build_named(&film, dynamics->model, NULL, &mobility->quantities, network, error);
-    if (status != DEA_OK) {
-        return status;
-    }
     dea_pool *pool = &network->pool;
-    dea_network_gather(network);
     dea_dynamics_stresses(dynamics, network, mobility->stresses);
     mobility->tension = dea_network_tension(network);
     mobility->tense = dea_expr_constant(pool, mobility->tension) != 0.0;
@@ -72,15 +53,42 @@ dea_status dea_mobility_open(const dea_scene *scene, const dea_dynamics *dynamic
         viscous = ADD(viscous, MUL(mobility->stresses[a].lever, dea_expr_slope(pool, mobility->stresses[a].stress)));
     }
     mobility->resistance = viscous;
-    gather(mobility);
-    if (pool->exhausted) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built");
+    return pool->exhausted ? dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built") : DEA_OK;
+}
+
+/* Takes the expressions so that every product has one parameter. */
+static dea_status take_gathered(dea_mobility *mobility, dea_error *error)
+{
+    dea_pool *pool = &mobility->network.pool;
+    dea_network_gather(&mobility->network);
+    const dea_status status = dea_mobility_take(mobility, error);
+    dea_expr *const single[] = {&mobility->tension, &mobility->push, &mobility->resistance};
+    for (size_t i = 0; i < sizeof single / sizeof *single; i++) {
+        *single[i] = dea_expr_gathered(pool, *single[i]);
     }
-    mobility->rest = dea_point_capacitance(&dynamics->point);
-    if (dynamics->linear) {
-        mobility->stiffness = dea_dynamics_linear(dynamics).stiffness;
+    for (size_t a = 0; a < mobility->dynamics->stress_count; a++) {
+        mobility->stresses[a].stress = dea_expr_gathered(pool, mobility->stresses[a].stress);
+        mobility->stresses[a].lever = dea_expr_gathered(pool, mobility->stresses[a].lever);
     }
-    return DEA_OK;
+    return status == DEA_OK && pool->exhausted ? dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built") : status;
+}
+
+dea_status dea_mobility_open(const dea_scene *scene, const dea_dynamics *dynamics, dea_mobility *mobility, dea_error *error)
+{
+    dea_scene film = *scene;
+    film.drive.voltage = 1.0;
+    film.drive.series_resistance = film.drive.leakage_resistance = (double)NAN;
+    *mobility = (dea_mobility){.dynamics = dynamics, .stiffness = (double)NAN};
+    dea_status status =
+        dea_network_build_named(&film, dynamics->model, NULL, &mobility->quantities, &mobility->network, error);
+    if (status == DEA_OK) {
+        status = take_gathered(mobility, error);
+    }
+    if (status == DEA_OK) {
+        mobility->rest = dea_point_capacitance(&dynamics->point);
+        mobility->stiffness = dynamics->linear ? dea_dynamics_linear(dynamics).stiffness : (double)NAN;
+    }
+    return status;
 }
 
 void dea_mobility_close(dea_mobility *mobility)
@@ -163,31 +171,22 @@ static void write_store(const dea_cards *c, char letter, const char *name, const
     fprintf(c->out, "%s\n", letter == 'L' ? c->form.dialect->inductor : "");
 }
 
-static void begin_source(const dea_cards *c, dea_quantity quantity, const char *name, const char *plus, const char *minus)
-{
-    dea_dialect_source_begin(c->form.dialect, c->out, quantity, name, plus, minus);
-}
-
-static void end_source(const dea_cards *c)
-{
-    dea_dialect_source_end(c->form.dialect, c->out);
-}
-
-static void write_parameter(const dea_cards *c, const char *name)
-{
-    dea_dialect_parameter(c->form.dialect, c->out, name);
-}
-
 /* Begins a behavioural source of a force: onto the edge, or against its motion. */
 static void begin_force(dea_cards *c, const char *name, bool onto)
 {
     const bool loop = c->form.analogy->loop;
+    const dea_quantity quantity = loop ? DEA_VOLTAGE : DEA_CURRENT;
     if (loop && onto) {
-        begin_source(c, DEA_VOLTAGE, name, "m0", "0");
+        dea_dialect_source_begin(c->form.dialect, c->out, quantity, name, "m0", "0");
         return;
     }
     place(c);
-    begin_source(c, loop ? DEA_VOLTAGE : DEA_CURRENT, name, onto ? "0" : c->ends[0], onto ? c->ends[0] : c->ends[1]);
+    dea_dialect_source_begin(c->form.dialect, c->out, quantity, name, onto ? "0" : c->ends[0], onto ? c->ends[0] : c->ends[1]);
+}
+
+static void end_force(const dea_cards *c)
+{
+    dea_dialect_source_end(c->form.dialect, c->out);
 }
 
 /* ---- linear mechanics */
@@ -263,12 +262,43 @@ static void write_linear_numbers(const dea_cards *c, double stiffness, double vi
     }
 }
 
+void dea_cards_write_inertia(const dea_cures *cures, const char *tag, const char *node, const char *mass, FILE *out)
+{
+    fprintf(out, "EMASS%s ma%s 0 %s 0 %.15g\nCMASS%s ma%s mb%s {%s}\nVMASS%s mb%s 0 0\nFMASS%s %s 0 VMASS%s {f_mass}\n", tag, tag, node,
+            cures->inertia, tag, tag, tag, mass, tag, tag, tag, node, tag);
+}
+
 static void write_mass(dea_cards *c)
 {
-    if (c->dynamics->mass > 0.0) {
-        fputs("* mass that moves with the edge [kg]\n", c->out);
+    const dea_cures *cures = c->form.cures;
+    if (!(c->dynamics->mass > 0.0)) {
+        return;
+    }
+    fputs("* mass that moves with the edge [kg]\n", c->out);
+    if (cures) {
+        dea_cards_write_inertia(cures, "", "edge", "inertia", c->out);
+        return;
+    }
+    place(c);
+    write_store(c, c->form.analogy->mass, "MASS", c->ends[0], c->ends[1], "m_edge", "v_start");
+}
+
+static void write_load(dea_cards *c)
+{
+    if (c->dynamics->damping > 0.0) {
         place(c);
-        write_store(c, c->form.analogy->mass, "MASS", c->ends[0], c->ends[1], "m_edge", "v_start");
+        fprintf(c->out, "* mechanical resistance of the load [N s/m]%s\nRLOAD %s %s {r_load}\n",
+                c->form.analogy->loop ? "" : ", whose inverse is the resistor", c->ends[0], c->ends[1]);
+    }
+}
+
+static void write_mass_numbers(const dea_cards *c, double mass)
+{
+    if (mass > 0.0) {
+        dea_part_value(c->out, "m_edge", mass);
+    }
+    if (c->dynamics->damping > 0.0) {
+        dea_part_value(c->out, "r_load", resistance(c, c->dynamics->damping));
     }
 }
 
@@ -282,16 +312,26 @@ static void close_loop(const dea_cards *c)
 
 /* ---- hyperelastic mechanics */
 
+/* What the branches relax to: a stress, or the displacement where the springs are linear. */
+static dea_stress_node followed_node(const dea_cards *c, size_t stress)
+{
+    return is_linear(c) ? (dea_stress_node){"u"} : dea_mobility_stress_node(c->dynamics, stress);
+}
+
 /* The relaxed stresses of the branches follow the stress with their time constants. */
 static void write_relaxations(const dea_cards *c)
 {
     const size_t count = c->dynamics->branch_count;
     for (size_t k = 0; k < dea_dynamics_states(c->dynamics); k++) {
-        const dea_stress_node stress = dea_mobility_stress_node(c->dynamics, k / count);
+        const dea_stress_node stress = followed_node(c, k / count);
         const size_t n = k + 1;
-        fprintf(c->out, "* branch %zu of the prony series: relaxed stress z [Pa], tau dz/dt = S - z\n", n);
-        fprintf(c->out, "GBRANCH%zu 0 z%zu %s z%zu 1\nCBRANCH%zu z%zu 0 {tau%zu} ic={z_start%zu}\n", n, n, stress.name, n, n, n,
-                n, n);
+        fprintf(c->out, "* branch %zu of the prony series: what it relaxes to, tau dz/dt = %s - z\n", n, is_linear(c) ? "u" : "S");
+        fprintf(c->out, "GBRANCH%zu 0 z%zu %s z%zu 1\nCBRANCH%zu z%zu 0 {c_relax%zu}", n, n, stress.name, n, n, n, k % count + 1);
+        if (c->form.cures) {
+            fputc('\n', c->out);
+        } else {
+            fprintf(c->out, " ic={z_start%zu}\n", n);
+        }
     }
 }
 
@@ -303,12 +343,9 @@ static void write_stress_force(const dea_cards *c, size_t a)
     dea_part_text_write(&c->text, c->mobility->stresses[a].lever);
     fprintf(c->out, count > 0 ? "*(v(%s)" : "*v(%s)", stress.name);
     for (size_t i = 0; i < count; i++) {
-        char name[24];
-        const size_t n = a * count + i + 1;
-        snprintf(name, sizeof name, "share%zu", n);
-        fputc('+', c->out);
-        write_parameter(c, name);
-        fprintf(c->out, "*(v(%s)-v(z%zu))", stress.name, n);
+        char branch[96];
+        snprintf(branch, sizeof branch, "+[share%zu]*(v(%s)-v(z%zu))", i + 1, stress.name, a * count + i + 1);
+        dea_part_text_format(&c->text, branch);
     }
     fputs(count > 0 ? ")" : "", c->out);
 }
@@ -318,43 +355,74 @@ static void write_spring_force(dea_cards *c)
 {
     fputs("* force of the film [N], its stresses and those of its branches on their levers [m^2]\n", c->out);
     begin_force(c, "SPRING", false);
+    dea_part_text_format(&c->text, c->form.cures ? "[a_um]*(" : "");
     for (size_t a = 0; a < c->dynamics->stress_count; a++) {
         fputs(a > 0 ? "+" : "", c->out);
         write_stress_force(c, a);
     }
     if (c->mobility->tense) {
-        fputc('+', c->out);
-        dea_part_text_write(&c->text, c->mobility->tension);
+        dea_part_text_format(&c->text, "+[]", c->mobility->tension);
     }
-    end_source(c);
+    fputs(c->form.cures ? ")" : "", c->out);
+    end_force(c);
+}
+
+void dea_cards_write_integral(const dea_cures *cures, const char *tag, const char *node, const char *from, const char *to, FILE *out)
+{
+    fprintf(out, "GDISP%s 0 %s %s %s %.15g\nCDISP%s %s 0 1\nGDRIFT%s %s 0 %s 0 %.15g\n",
+            tag, node, from, to, cures->per_metre, tag, node, tag, node, node, cures->drift);
+}
+
+/* In a part the edge is held where a parameter is out of its range, and a hyperelastic film is asked for no displacement past stops
+ * short of the centre and of the frame, where is no film. */
+static void write_displacement(const dea_cards *c)
+{
+    if (!c->form.cures) {
+        fputs("* displacement of the edge [m], the integral of its velocity\nGDISP 0 disp edge 0 1\nCDISP disp 0 1 ic={u_start}\n",
+              c->out);
+        return;
+    }
+    fputs("* displacement [um], the integral of the velocity, which leaks\n", c->out);
+    dea_cards_write_integral(c->form.cures, "", "u", "edge", "0", c->out);
+    fputs("GSAFE edge 0 u 0 {hold}\n", c->out);
+    if (!is_linear(c)) {
+        dea_part_text_source(&c->text, DEA_VOLTAGE, "CLIP", "w", "0", "min(max(v(u),[u_low]),[u_high])");
+        fputs("GSTOP edge 0 u w {k_stop}\n", c->out);
+    }
+}
+
+/* The springs of a part, of the relaxed film and of its branches [N/um], and its damper [N s/m]. */
+static void write_conductances(const dea_cards *c)
+{
+    fputs("* springs of film and branches, damper\nGSPRING edge 0 u 0 {k_um}\nGDAMP edge 0 edge 0 {r_damp}\n", c->out);
+    write_relaxations(c);
+    for (size_t i = 1; i <= c->dynamics->branch_count; i++) {
+        fprintf(c->out, "GHELD%zu edge 0 u z%zu {k_um%zu}\n", i, i, i);
+    }
 }
 
 static void write_hyperelastic_springs(dea_cards *c)
 {
     const dea_mobility *m = c->mobility;
-    if (!m->displaced) {
-        fputs("* displacement of the edge [m], the integral of its velocity\nGDISP 0 disp edge 0 1\nCDISP disp 0 1 ic={u_start}\n",
-              c->out);
-    }
     for (size_t a = 0; a < c->dynamics->stress_count; a++) {
         char name[32];
         const dea_stress_node node = dea_mobility_stress_node(c->dynamics, a);
         snprintf(name, sizeof name, "STRESS%s", node.name + strlen("stress"));
-        fputs("* stress S of the relaxed film [Pa], its change from rest\n", c->out);
-        begin_source(c, DEA_VOLTAGE, name, node.name, "0");
-        dea_part_text_write(&c->text, m->stresses[a].stress);
-        end_source(c);
+        fprintf(c->out, "* stress S of the relaxed film [%s], its change from rest\n", c->form.cures ? "MPa" : "Pa");
+        dea_part_text_source(&c->text, DEA_VOLTAGE, name, node.name, "0", "[]", m->stresses[a].stress);
     }
     write_relaxations(c);
     write_spring_force(c);
     if (c->dynamics->retardation > 0.0) {
         fputs("* kelvin-voigt damper, tau sum B dS/du times the velocity [N]\n", c->out);
         begin_force(c, "DAMPER", false);
-        write_parameter(c, "retardation");
-        fputc('*', c->out);
-        dea_part_text_write(&c->text, m->resistance);
-        fputs("*v(edge)", c->out);
-        end_source(c);
+        dea_part_text_format(&c->text, c->form.cures ? "[r_damp]*[]*" : "[retardation]*[]*", m->resistance);
+        if (c->form.cures) {
+            fprintf(c->out, "min(max(v(edge),-%.15g),%.15g)", c->form.cures->fastest, c->form.cures->fastest);
+        } else {
+            fputs("v(edge)", c->out);
+        }
+        end_force(c);
     }
 }
 
@@ -367,32 +435,26 @@ static void write_hyperelastic_numbers(const dea_cards *c, const dea_mobility_st
     if (d->retardation > 0.0) {
         dea_part_value(c->out, "retardation", d->retardation);
     }
+    for (size_t i = 0; i < d->branch_count; i++) {
+        indexed(c, "c_relax", i + 1, d->branches[i].tau);
+        indexed(c, "share", i + 1, d->branches[i].share);
+    }
     for (size_t k = 0; k < dea_dynamics_states(d); k++) {
-        const dea_branch *branch = &d->branches[k % d->branch_count];
-        indexed(c, "tau", k + 1, branch->tau);
-        indexed(c, "share", k + 1, branch->share);
         indexed(c, "z_start", k + 1, start->z[k]);
     }
 }
 
 /* ---- the port */
 
-static void write_resistors(const dea_cards *c)
+static void write_resistors(dea_cards *c)
 {
     if (c->dynamics->conductance > 0.0) {
         fputs("* leakage resistance of the film [Ohm]\nRLEAK film 0 {r_leak}\n", c->out);
     }
     if (isfinite(c->dynamics->limit)) {
         fputs("* series resistance of source and electrodes [Ohm] behind a source of no more than i_limit [A]\n", c->out);
-        begin_source(c, DEA_CURRENT, "SERIES", "source", "film");
-        fputs("min(", c->out);
-        write_parameter(c, "i_limit");
-        fputs(",max(-", c->out);
-        write_parameter(c, "i_limit");
-        fputs(",(v(source)-v(film))/", c->out);
-        write_parameter(c, "r_series");
-        fputs("))", c->out);
-        end_source(c);
+        dea_part_text_source(&c->text, DEA_CURRENT, "SERIES", "source", "film",
+                             "min([i_limit],max(-[i_limit],(v(source)-v(film))/[r_series]))");
     } else if (c->dynamics->series > 0.0) {
         fputs("* series resistance of source and electrodes [Ohm]\nRSERIES source film {r_series}\n", c->out);
     }
@@ -411,6 +473,27 @@ static void write_resistor_numbers(const dea_cards *c, double unit)
     }
 }
 
+void dea_cards_write_capacitor(const dea_cures *cures, FILE *out)
+{
+    fprintf(out, "CFILM film plate {c_rest}\nGSENSE plate 0 plate 0 %.15g\nGFILM p n plate 0 {i_film}\n"
+                 "* conductance of the leakage [S], 0 without a resistance\nGLEAK p n p n {leak}\n",
+            cures->sense);
+}
+
+/* The film of a part: its current is that of a capacitor, without a gain, so that what a simulator adds to nodes and pivots (gmin,
+ * rshunt, cshunt) stays what it is. v(plate) makes it a voltage; fed back into v(film), it leaves the capacitor its whole voltage. A
+ * conductance has no noise, as a resistor would. The force is a node to be read. */
+static void write_part_film(dea_cards *c)
+{
+    fputs("* film: v(film) = charge/c_rest on a capacitor of c_rest, whose current is d(C U)/dt; v(plate) is this current [mA]\n", c->out);
+    dea_part_text_source(&c->text, DEA_VOLTAGE, "CHARGE", "film", "0", "v(plate)+[ok]*v(p,n)*[]/[c_rest]",
+                         c->mobility->network.capacitance);
+    dea_cards_write_capacitor(c->form.cures, c->out);
+    fputs("* electrostatic force [N] onto the edge, (1/2) U^2 dC/du, Eq. 21\n", c->out);
+    dea_part_text_source(&c->text, DEA_VOLTAGE, "FORCE", "force", "0", "[ok]*[]*v(p,n)*v(p,n)", c->mobility->push);
+    fputs("GFORCE 0 edge force 0 {many}\n", c->out);
+}
+
 /* Behind a resistance the charge is a state: the integral of the film's current, whose voltage is that charge over C(u). */
 static void write_film(dea_cards *c)
 {
@@ -418,19 +501,12 @@ static void write_film(dea_cards *c)
         fputs("* film: its current into its capacitance at rest [F], whose charge over C(u) is its voltage, i = d(C U)/dt\n"
               "VFILM film plate 0\nFCHARGE 0 charge VFILM 1\nCCHARGE charge 0 {c_unit} ic={u_rest}\n",
               c->out);
-        begin_source(c, DEA_VOLTAGE, "FILM", "plate", "0");
-        fputs("v(charge)*", c->out);
-        write_parameter(c, "c_rest");
-        fputs("/(", c->out);
-        dea_part_text_write(&c->text, c->mobility->network.capacitance);
-        fputc(')', c->out);
-        end_source(c);
+        dea_part_text_source(&c->text, DEA_VOLTAGE, "FILM", "plate", "0", "v(charge)*[c_rest]/([])", c->mobility->network.capacitance);
     }
     fputs("* electrostatic force f_dea = U^2/2 dC/du [N], Eq. 21, onto the edge\n", c->out);
     begin_force(c, "FORCE", true);
-    dea_part_text_write(&c->text, c->mobility->push);
-    fputs("*v(film)*v(film)", c->out);
-    end_source(c);
+    dea_part_text_format(&c->text, "[]*v(film)*v(film)", c->mobility->push);
+    end_force(c);
 }
 
 static void write_port_numbers(const dea_cards *c, const dea_cards_numbers *n)
@@ -446,13 +522,13 @@ static void write_port_numbers(const dea_cards *c, const dea_cards_numbers *n)
 /* ---- a transient */
 
 /* Every expression that a card writes, as often as it does. */
-static void declare(dea_cards *c)
+void dea_cards_declare(dea_cards *c)
 {
     const dea_mobility *m = c->mobility;
     dea_part_text_call(&c->text, &m->network);
     dea_part_text_root(&c->text, "push");
     dea_part_text_use(&c->text, m->push);
-    if (c->dynamics->series > 0.0) {
+    if (c->dynamics->series > 0.0 || c->form.cures) {
         dea_part_text_root(&c->text, "capacity");
         dea_part_text_use(&c->text, m->network.capacitance);
     }
@@ -469,7 +545,7 @@ static void declare(dea_cards *c)
     }
     if (!is_linear(c) && c->dynamics->retardation > 0.0) {
         dea_part_text_root(&c->text, "damping");
-        dea_part_text_use(&c->text, m->resistance);
+        (c->form.cures ? dea_part_text_use_as_factor : dea_part_text_use)(&c->text, m->resistance);
     }
 }
 
@@ -493,15 +569,22 @@ bool dea_cards_open(const dea_mobility *mobility, const dea_cards_form *form, FI
         cards->symbols[i] = q->names[i];
     }
     const bool flux = is_linear(cards) && !form->analogy->loop;
-    snprintf(cards->node, sizeof cards->node, flux ? "(%sn_spring%s*i(LSPRING))" : "v(disp)", form->dialect->left,
-             form->dialect->right);
+    if (form->cures) {
+        snprintf(cards->node, sizeof cards->node, "(%.15g*v(%s))", 1.0 / form->cures->per_metre, flux ? "u" : "w");
+    } else {
+        snprintf(cards->node, sizeof cards->node, flux ? "(%sn_spring%s*i(LSPRING))" : "v(disp)", form->dialect->left,
+                 form->dialect->right);
+    }
     cards->text.node = cards->node;
     cards->text.symbols = cards->symbols;
-    evaluate(cards, 0.0);
-    cards->text.values = form->numbers ? cards->values : NULL;
-    dea_part_text_share(&cards->text);
-    declare(cards);
-    return !cards->text.exhausted;
+    if (form->numbers) {
+        evaluate(cards, 0.0);
+        cards->text.values = cards->values;
+    }
+    if (!form->cures) { /* all nodes are given their values at the start */
+        dea_part_text_share(&cards->text);
+    }
+    return true;
 }
 
 void dea_cards_close(dea_cards *cards)
@@ -511,11 +594,17 @@ void dea_cards_close(dea_cards *cards)
     free(cards->symbols);
 }
 
+void dea_cards_write_quantities(const dea_quantities *q, FILE *out)
+{
+    for (int i = 1; i <= q->count; i++) {
+        dea_part_value(out, q->names[i], q->values[i]);
+    }
+}
+
 void dea_cards_write_numbers(dea_cards *c, const dea_cards_numbers *n)
 {
-    const dea_quantities *q = &c->mobility->quantities;
-    for (int i = 1; i <= q->count && !c->form.numbers; i++) {
-        dea_part_value(c->out, q->names[i], q->values[i]);
+    if (!c->form.numbers) {
+        dea_cards_write_quantities(&c->mobility->quantities, c->out);
     }
     dea_part_text_parameters(&c->text);
     write_port_numbers(c, n);
@@ -524,8 +613,8 @@ void dea_cards_write_numbers(dea_cards *c, const dea_cards_numbers *n)
     } else {
         write_hyperelastic_numbers(c, &n->start);
     }
+    write_mass_numbers(c, c->dynamics->mass > 0.0 ? n->mass : 0.0);
     if (c->dynamics->mass > 0.0) {
-        dea_part_value(c->out, "m_edge", n->mass);
         dea_part_value(c->out, "v_start", n->start.v);
     }
 }
@@ -533,18 +622,25 @@ void dea_cards_write_numbers(dea_cards *c, const dea_cards_numbers *n)
 void dea_cards_write_network(dea_cards *c)
 {
     fputs(DEA_CARDS_BEGIN, c->out);
-    for (int i = 0; i < c->mobility->network.element_count; i++) {
-        fprintf(c->out, "* %s: %s\n", c->mobility->network.elements[i].name, c->mobility->network.elements[i].meaning);
+    for (int i = 0; i < c->mobility->network.element_count && !c->form.cures; i++) {
+        const dea_element *element = &c->mobility->network.elements[i];
+        fprintf(c->out, "* %s%s: %s\n", element->second ? "second film, " : "", element->name, element->meaning);
     }
     dea_part_text_nodes(&c->text); /* the sources refer to them */
     write_resistors(c);
-    write_film(c);
-    if (is_linear(c)) {
-        write_linear_springs(c);
-    } else {
+    (c->form.cures ? write_part_film : write_film)(c);
+    if (c->form.cures || !(is_linear(c) || c->mobility->displaced)) {
+        write_displacement(c);
+    }
+    if (!is_linear(c)) {
         write_hyperelastic_springs(c);
+    } else if (c->form.cures) {
+        write_conductances(c);
+    } else {
+        write_linear_springs(c);
     }
     write_mass(c);
+    write_load(c);
     close_loop(c);
     fputs(DEA_CARDS_END, c->out);
 }
@@ -602,9 +698,7 @@ void dea_cards_write_small(dea_dynamics *d, const dea_mobility_bias *bias, const
     dea_part_value(out, "c_film", e.capacitance);
     dea_part_value(out, "transduction", 2.0 * e.push * bias->voltage);
     write_linear_numbers(&c, dea_dynamics_stiffness(d, bias->u, bias->voltage, true), dea_edge_viscous(d, &e), NULL);
-    if (d->mass > 0.0) {
-        dea_part_value(out, "m_edge", d->mass);
-    }
+    write_mass_numbers(&c, d->mass);
     fputs(DEA_CARDS_BEGIN, out);
     write_resistors(&c);
     fputs("* capacitance of the film at the bias [F]\nCFILM film 0 {c_film}\n"
@@ -616,6 +710,20 @@ void dea_cards_write_small(dea_dynamics *d, const dea_mobility_bias *bias, const
     fputs("* springs of the relaxed film at the bias and of the voltage\n", out);
     write_linear_springs(&c);
     write_mass(&c);
+    write_load(&c);
     close_loop(&c);
     fputs(DEA_CARDS_END, out);
+}
+
+void dea_cards_write_band(const dea_mobility_band *band, FILE *out)
+{
+    if (band->points_per_decade > 0) {
+        fprintf(out, ".ac dec %zu ", band->points_per_decade);
+    } else {
+        fprintf(out, ".ac lin %zu ", band->count > 1 ? band->count : 1);
+    }
+    dea_part_number(out, band->from);
+    fputc(' ', out);
+    dea_part_number(out, band->to);
+    fputs("\n.end\n", out);
 }

@@ -8,10 +8,9 @@
 #include "expression/derivative.h"
 #include "expression/formula.h"
 #include "model/models.h"
-#include "netlist/part_text.h"
+#include "netlist/mobility.h"
 #include "netlist/rings_part.h"
-#include "network/network.h"
-#include "support/text.h"
+#include "support/memory_text.h"
 
 /* The symbols of a part's network: parameters that the checks of the subcircuit have put into their ranges. */
 enum {
@@ -45,23 +44,18 @@ typedef struct part {
     size_t constants; /* of the law, in use */
     bool linear;
     size_t branches;
-    dea_network network; /* owned; of the membrane that of `ring`, for ranges and numbers at rest */
+    dea_dynamics elements; /* which there are: all, whatever their numbers turn out to be */
+    dea_mobility film;     /* owned; of the membrane that of `ring`, for ranges and numbers at rest. The voltage is taken out */
+    dea_cards cards;       /* owned */
     dea_rings_part *rings; /* owned; NULL: one node */
-    dea_part_text text;  /* owned */
-    /* expressions of the displacement and the symbols, the voltage taken out */
-    dea_network_stress stresses[DEA_NETWORK_STRESSES]; /* S_a and their levers B_a */
-    dea_expr slopes[DEA_NETWORK_STRESSES];             /* dS_a/du */
-    size_t stress_count;
-    dea_expr tension;                    /* what the stress at rest does by its levers, G(u) */
-    bool tense;                          /* there is a G */
-    dea_expr push, push_slope;           /* phi = (1/2) dC/du [N/V^2] and its slope */
-    dea_expr capacitance, c_rest;        /* C(u), C(0) */
-    dea_expr k_rest;                     /* stiffness at rest [N/m] */
-    dea_expr field;                      /* true field of 1 V */
-    dea_expr mass;                       /* of film and electrodes */
-    dea_expr divide, width;              /* r_a, r - r_a */
-    dea_expr *taut;                      /* owned; > 0 while taut, without voltage */
-    dea_expr *loosen;                    /* owned; what 1 V adds to it; grows with U^2 */
+    dea_expr push_slope;          /* of phi [N/V^2 m] */
+    dea_expr c_rest;              /* C(0) [F] */
+    dea_expr k_rest;              /* stiffness at rest [N/m] */
+    dea_expr field;               /* true field of 1 V */
+    dea_expr mass;                /* of film and electrodes */
+    dea_expr divide, width;       /* r_a, r - r_a */
+    dea_expr *taut;               /* owned; > 0 while taut, without voltage */
+    dea_expr *loosen;             /* owned; what 1 V adds to it; grows with U^2 */
 } part;
 
 /* Models that are parts. */
@@ -120,6 +114,7 @@ static dea_symbols symbols_of(dea_pool *pool, const part *p)
                            .film_thickness = MUL(s[LAYERS], s[THICK]),
                            .layers = s[LAYERS],
                            .load = NUM(0.0),
+                           .force = NUM(0.0),
                            .prestretch = s[STRETCH],
                            .permittivity = MUL(SCALE(DEA_EPSILON_0, s[EPS_R]), SQUARE(s[LAYERS])),
                            .breakdown = NUM(INFINITY),
@@ -148,84 +143,79 @@ static dea_expr moving_mass(const dea_symbols *symbols)
                MUL(dea_expr_symbol(pool, AREAL), symbols->kind == DEA_DOT ? disc : annulus));
 }
 
+static dea_status tell_memory(dea_error *error)
+{
+    return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is written");
+}
+
+/* The rings of the membrane. */
+static dea_status derive_rings(part *p, const dea_symbols *symbols, dea_error *error)
+{
+    dea_pool *pool = symbols->pool;
+    p->rings = malloc(sizeof *p->rings);
+    if (!p->rings) {
+        return tell_memory(error);
+    }
+    const dea_rings_numbers numbers = {dea_expr_symbol(pool, RHO), dea_expr_symbol(pool, AREAL), dea_expr_symbol(pool, DAMP), 1e6, 0.0};
+    dea_rings_part_make(symbols, &numbers, p->branches, p->rings);
+    return DEA_OK;
+}
+
+/* What tells whether the film is taut. */
+static dea_status derive_tensions(part *p, const form *of, dea_error *error)
+{
+    const dea_network *network = &p->film.network;
+    dea_pool *pool = &p->film.network.pool;
+    p->taut = calloc((size_t)network->tension_count + 1, sizeof *p->taut);
+    p->loosen = calloc((size_t)network->tension_count + 1, sizeof *p->loosen);
+    if (!p->taut || !p->loosen) {
+        return tell_memory(error);
+    }
+    for (int i = 0; i < network->tension_count; i++) {
+        const dea_expr tension = SCALE(of->tension, network->tension[i]);
+        p->taut[i] = at_volts(pool, tension, 0.0);
+        const dea_expr loaded = at_volts(pool, tension, 1.0);
+        p->loosen[i] = loaded == p->taut[i] ? NUM(0.0) : SCALE(1.0 / of->stress, SUB(loaded, p->taut[i]));
+    }
+    return DEA_OK;
+}
+
 /* All expressions of the part, from the model's network under a symbolic voltage. */
 static dea_status derive(part *p, const dea_model *model, dea_error *error)
 {
-    dea_network *network = &p->network;
+    const form *of = form_of(model);
+    dea_network *network = &p->film.network;
     dea_pool *pool = &network->pool;
     (void)NUM(0.0);
     if (pool->exhausted) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is made");
+        return tell_memory(error);
     }
     const dea_symbols symbols = symbols_of(pool, p);
-    const dea_status status = dea_network_build_symbols(&symbols, model->membrane ? &dea_model_ring : model, network, error);
+    dea_status status = dea_network_build_symbols(&symbols, model->membrane ? &dea_model_ring : model, network, error);
+    if (status == DEA_OK) {
+        dea_network_stress counted[DEA_STRESSES];
+        p->elements.stress_count = (size_t)dea_network_stresses(network, counted);
+        status = dea_mobility_take(&p->film, error);
+    }
     if (status != DEA_OK) {
         return status;
     }
-    const dea_expr pull = SUB(dea_network_load(network), MUL(dea_network_softening(network), network->edge));
-    p->push = at_volts(pool, pull, 1.0);
-    p->push_slope = dea_expr_slope(pool, p->push);
-    p->stress_count = (size_t)dea_network_stresses(network, p->stresses);
-    p->tension = dea_network_tension(network);
-    p->tense = dea_expr_constant(pool, p->tension) != 0.0;
-    dea_expr stiffness = dea_expr_slope(pool, p->tension);
-    for (size_t a = 0; a < p->stress_count; a++) {
-        p->slopes[a] = dea_expr_slope(pool, p->stresses[a].stress);
-        stiffness = ADD(stiffness, MUL(p->stresses[a].lever, p->slopes[a]));
-    }
-    p->k_rest = SCALE(form_of(model)->stress, dea_expr_at_rest(pool, stiffness));
-    p->capacitance = network->capacitance;
-    p->c_rest = dea_expr_at_rest(pool, p->capacitance);
+    p->film.push = at_volts(pool, p->film.push, 1.0);
+    p->push_slope = dea_expr_slope(pool, p->film.push);
+    p->k_rest =
+        SCALE(of->stress, dea_expr_at_rest(pool, ADD(dea_expr_slope(pool, p->film.tension), p->film.resistance)));
+    p->c_rest = dea_expr_at_rest(pool, network->capacitance);
     p->field = at_volts(pool, network->field, 1.0);
     p->mass = moving_mass(&symbols);
     p->divide = MUL(symbols.frame_radius, symbols.coverage);
     p->width = dea_symbols_annulus_width(&symbols);
     if (model->membrane && !pool->exhausted) {
-        p->rings = malloc(sizeof *p->rings);
-        if (!p->rings) {
-            return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is made");
-        }
-        const dea_rings_numbers numbers = {dea_expr_symbol(pool, RHO), dea_expr_symbol(pool, AREAL), dea_expr_symbol(pool, DAMP)};
-        dea_rings_part_make(&symbols, &numbers, p->branches, p->rings);
+        status = derive_rings(p, &symbols, error);
     }
-    p->taut = calloc((size_t)network->tension_count + 1, sizeof *p->taut);
-    p->loosen = calloc((size_t)network->tension_count + 1, sizeof *p->loosen);
-    if (!p->taut || !p->loosen) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is made");
+    if (status == DEA_OK) {
+        status = derive_tensions(p, of, error);
     }
-    for (int i = 0; i < network->tension_count; i++) {
-        const dea_expr tension = SCALE(form_of(model)->tension, network->tension[i]);
-        p->taut[i] = at_volts(pool, tension, 0.0);
-        const dea_expr loaded = at_volts(pool, tension, 1.0);
-        p->loosen[i] = loaded == p->taut[i] ? NUM(0.0) : SCALE(1.0 / form_of(model)->stress, SUB(loaded, p->taut[i]));
-    }
-    return pool->exhausted ? dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is made") : DEA_OK;
-}
-
-/* A source between two nodes. Its text holds `[name]` for a parameter and `[]` for the next expression. */
-static void source(const part *p, dea_quantity quantity, const char *name, const char *plus, const char *minus,
-                   const char *format, ...)
-{
-    va_list refs;
-    va_start(refs, format);
-    dea_dialect_source_begin(p->dialect, p->out, quantity, name, plus, minus);
-    for (const char *c = format; *c; c++) {
-        if (*c != '[') {
-            fputc(*c, p->out);
-            continue;
-        }
-        const char *end = strchr(c, ']');
-        if (end == c + 1) {
-            dea_part_text_write(&p->text, va_arg(refs, dea_expr));
-        } else {
-            char parameter[DEA_PART_NAME];
-            snprintf(parameter, sizeof parameter, "%.*s", (int)(end - c - 1), c + 1);
-            dea_dialect_parameter(p->dialect, p->out, parameter);
-        }
-        c = end;
-    }
-    va_end(refs);
-    dea_dialect_source_end(p->dialect, p->out);
+    return status == DEA_OK && pool->exhausted ? tell_memory(error) : status;
 }
 
 static void line(const part *p, const char *format, ...) DEA_PRINTF(2, 3);
@@ -307,17 +297,17 @@ static void check_law(const part *p, const form *of, int *count)
 /* True of what is neither a number nor a parameter, which its own card checks. */
 static bool is_made(const part *p, dea_expr ref)
 {
-    return p->network.pool.terms[ref].operation >= DEA_ADD;
+    return p->film.network.pool.terms[ref].operation >= DEA_ADD;
 }
 
 /* What else must be positive, from the network: the constants fit together, and the pre-stretch lies where the law holds. */
 static void check_ranges(const part *p, int count)
 {
     char name[DEA_PART_NAME];
-    for (int i = 0; i < p->network.range_count; i++) {
-        if (is_made(p, p->network.range[i])) {
+    for (int i = 0; i < p->film.network.range_count; i++) {
+        if (is_made(p, p->film.network.range[i])) {
             line(p, ".param ok%d={ok%d*min(max(%s*1e30,0),1)}", count, count - 1,
-                 dea_part_text_parameter(&p->text, p->network.range[i], name));
+                 dea_part_text_parameter(&p->cards.text, p->film.network.range[i], name));
             count++;
         }
     }
@@ -358,52 +348,63 @@ static int write_checks(const part *p, const form *of)
     return count;
 }
 
+/* What is written beside the network of one node; its own text is declared behind it. */
+static void declare_node(part *p)
+{
+    dea_part_text *text = &p->cards.text;
+    dea_part_text_root(text, "field");
+    dea_part_text_use(text, p->field);
+    dea_part_text_root(text, "mass");
+    dea_part_text_use(text, p->mass);
+    if (p->linear) {
+        dea_part_text_root(text, "rest");
+        dea_part_text_use(text, p->push_slope);
+    }
+    for (int i = 0; i < p->film.network.tension_count; i++) {
+        dea_part_text_root(text, "taut");
+        dea_part_text_use(text, p->taut[i]);
+        dea_part_text_use(text, p->loosen[i]);
+    }
+    dea_cards_declare(&p->cards);
+}
+
 static void declare(part *p)
 {
-    dea_part_text *text = &p->text;
-    const dea_network *network = &p->network;
+    dea_part_text *text = &p->cards.text;
+    const dea_network *network = &p->film.network;
     const struct {
         const char *root;
         dea_expr ref;
-    } all[] = {{"push", p->push},      {"capacity", p->capacitance}, {"capacity", p->c_rest},
-               {"stiffness", p->k_rest}, {"field", p->field},        {"mass", p->mass},
-               {"size", p->divide},    {"size", p->width},           {"rest", p->linear ? p->push_slope : p->tension}};
-    dea_part_text_call(text, network);
+    } all[] = {{"capacity", p->c_rest}, {"stiffness", p->k_rest}, {"size", p->divide}, {"size", p->width}};
+    if (p->rings) {
+        dea_part_text_root(text, "membrane");
+        dea_rings_part_declare(p->rings, text);
+    } else {
+        dea_part_text_call(text, network);
+    }
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         dea_part_text_root(text, all[i].root);
         dea_part_text_use(text, all[i].ref);
     }
-    for (size_t a = 0; a < p->stress_count && !p->linear; a++) {
-        dea_part_text_root(text, "lever");
-        dea_part_text_use(text, p->stresses[a].lever);
-        dea_part_text_use(text, p->stresses[a].stress);
-    }
+    dea_part_text_root(text, "range");
     for (int i = 0; i < network->range_count; i++) {
         if (is_made(p, network->range[i])) {
             dea_part_text_use(text, network->range[i]);
         }
     }
-    for (int i = 0; i < network->tension_count; i++) {
-        dea_part_text_root(text, "taut");
-        dea_part_text_use(text, p->taut[i]);
-        dea_part_text_use(text, p->loosen[i]);
-    }
-    for (size_t a = 0; a < p->stress_count && !p->linear; a++) {
-        dea_part_text_root(text, "damping");
-        dea_part_text_use_as_factor(text, p->slopes[a]);
+    if (!p->rings) {
+        declare_node(p);
     }
 }
 
 /* Names for what a designer knows by name. */
 static void give_names(part *p)
 {
-    dea_part_text *text = &p->text;
-    text->symbols = symbol_names;
-    text->node = p->linear ? "(1e-6*v(u))" : "(1e-6*v(w))";
+    dea_part_text *text = &p->cards.text;
     dea_part_text_name(text, p->divide, "r_a", "radius of the disc edge [m]");
     dea_part_text_name(text, p->width, "r_ring", "width of the annulus [m]");
-    for (int i = 0; i < p->network.element_count; i++) {
-        const dea_element *element = &p->network.elements[i];
+    for (int i = 0; i < p->film.network.element_count; i++) {
+        const dea_element *element = &p->film.network.elements[i];
         char name[DEA_PART_NAME], meaning[96];
         snprintf(name, sizeof name, "k%s", strchr(element->name, '_'));
         snprintf(meaning, sizeof meaning, "1/%s: %s", element->name, element->meaning);
@@ -414,249 +415,124 @@ static void give_names(part *p)
     dea_part_text_name(text, p->k_rest, "k_rest", "stiffness of the relaxed film at rest [N/m]");
     dea_part_text_name(text, p->c_rest, "c_rest", "capacitance of the film at rest [F]");
     dea_part_text_name(text, p->mass, "m_film", "mass that moves with the edge [kg]");
-    dea_part_text_name(text, p->push, "push", "force on the edge per square of the voltage, (1/2) dC/du [N/V^2], Eq. 21");
+    dea_part_text_name(text, p->film.push, "push", "force on the edge per square of the voltage, (1/2) dC/du [N/V^2], Eq. 21");
 }
 
-/* Numbers of the cards below, beside the network's own. A film without mass and damper keeps 1 ns of damping: its edge would have
- * no velocity at an edge of the voltage otherwise. */
+/* Numbers of the network that are not its own. A film without mass and damper keeps 1 ns of damping: its edge would have no velocity
+ * at an edge of the voltage otherwise. A branch without a share follows at once: its state would only be one more pole. */
 static void write_numbers(const part *p)
 {
-    char name[DEA_PART_NAME];
-    line(p, ".param per_um={1e-6/%s}", dea_part_text_parameter(&p->text, p->divide, name));
+    const dea_cures *cures = &dea_part_cures;
     const char *reach = p->linear ? "1e6" : "0.99e6"; /* of the way [um/m] */
-    line(p, ".param u_low={-%s*%s}", reach, dea_part_text_parameter(&p->text, p->divide, name));
-    line(p, ".param u_high={%s*%s}", reach, dea_part_text_parameter(&p->text, p->width, name));
-    line(p, ".param still={max(1-m_film*1e30,0)*max(1-retard*1e30,0)}");
-    line(p, ".param damp={retard+1e-9*still}");
-    line(p, ".param inertia={m_film+1e-24*%s}", dea_part_text_parameter(&p->text, p->k_rest, name));
-}
-
-/* The current of the film is that of a capacitor, without a gain: what a simulator adds to nodes and pivots (gmin, rshunt,
- * cshunt) stays what it is. v(plate) makes it a voltage, whose tolerance, 1e-6, is one of 1 nA, which the digits of kilovolts can
- * keep in short steps; fed back into v(film), it leaves the capacitor its whole voltage. A conductance has no noise, as a resistor
- * would. */
-static void write_port(const part *p)
-{
-    line(p, "* film: v(film) = charge/c_rest on a capacitor of c_rest, whose current is d(C U)/dt; v(plate) is this current [mA]");
-    source(p, DEA_VOLTAGE, "charge", "film", "0", "v(plate)+[ok]*v(p,n)*[]/[c_rest]", p->capacitance);
-    line(p, ".param i_film={1e-3*many}\nCFILM film plate {c_rest}\nGSENSE plate 0 plate 0 1e-3\nGFILM p n plate 0 {i_film}");
-    line(p, "* conductance of the leakage [S], 0 without a resistance");
-    line(p, ".param leak={many*r_leak/(r_leak*r_leak+1e-30)}\nGLEAK p n p n {leak}");
-    line(p, "* electrostatic force [N] onto the edge, (1/2) U^2 dC/du");
-    source(p, DEA_VOLTAGE, "force", "force", "0", "[ok]*[]*v(p,n)*v(p,n)", p->push);
-    line(p, "GFORCE 0 edge force 0 {many}");
-}
-
-/* The velocity enters with a large factor, so that pivoting finds it from the integrator and not from a difference of forces:
- * only so do springs in parallel share right at the operating point. */
-static void write_integrator(FILE *out, const char *from, const char *to)
-{
-    fprintf(
-        out,
-        "* u = displacement [um], the integral of the velocity; it leaks 1e-9 of itself a second, so that springs in parallel\n"
-        "* have an operating point\n"
-        "GDISP 0 u %s %s 1e6\nCDISP u 0 1\nGDRIFT u 0 u 0 1e-9\n",
-        from, to);
-}
-
-static void write_displacement(const part *p)
-{
-    write_integrator(p->out, "edge", "0");
-    line(p, "* holds the edge where a parameter is out of its range [N/um]");
-    line(p, ".param hold={1-ok}\nGSAFE edge 0 u 0 {hold}");
-    line(p,
-         "* mass that moves with the edge [kg]; a capacitor of a millionth of it, so that the tolerance of currents, 1e-12, is");
-    line(p, "* one of 1e-6 N: the force of inertia is 0 at rest, where a kink of the voltage would ask for steps without end");
-    line(p, ".param f_mass={1e6*many}\nEMASS m1 0 edge 0 1e-6\nCMASS m1 m2 {inertia}\nVMASS m2 0 0\nFMASS edge 0 VMASS {f_mass}");
-}
-
-/* What tells the elements and nodes of several stresses apart; nothing where there is one. */
-typedef struct mark {
-    char element[2], node[2];
-} mark;
-
-/* z relaxes to what the branch follows with its time. A branch without a share follows at once: its state would only be one more
- * pole. */
-static void write_relaxation(const part *p, size_t i, const char *follows, const mark *m)
-{
-    line(p, "GRELAX%zu%s 0 z%zu%s %s z%zu%s 1\nCRELAX%zu%s z%zu%s 0 {c_relax%zu}", i, m->element, i, m->node, follows, i, m->node, i,
-         m->element, i, m->node, i);
-}
-
-static void write_relaxation_time(const part *p, size_t i)
-{
-    line(p, ".param c_relax%zu={relax%zu*min(part%zu*1e30,1)+1e-30}", i, i, i);
-}
-
-static void write_linear_springs(const part *p)
-{
-    char name[DEA_PART_NAME];
-    const char *k = dea_part_text_parameter(&p->text, p->k_rest, name);
-    line(p, "* springs [N/um], damper [N s/m], branches: z relaxes to u with the time of the branch");
-    line(p, ".param k_um={1e-6*many*%s}\n.param r_damp={many*damp*%s}", k, k);
-    line(p, "GSPRING edge 0 u 0 {k_um}\nGDAMP edge 0 edge 0 {r_damp}");
+    line(p, ".param per_um={1e-6/r_a}\n.param u_low={-%s*r_a}\n.param u_high={%s*r_ring}", reach, reach);
+    line(p, "* what holds the edge where a parameter is out of its range [N/um]\n.param hold={1-ok}");
+    line(p, ".param still={max(1-rho*1e30,0)*max(1-areal*1e30,0)*max(1-retard*1e30,0)}\n.param damp={retard+1e-9*still}");
+    line(p, ".param f_mass={%.15g*many}", 1.0 / cures->inertia);
     for (size_t i = 1; i <= p->branches; i++) {
-        line(p, ".param k_um%zu={share%zu*k_um}", i, i);
-        write_relaxation_time(p, i);
-        write_relaxation(p, i, "u", &(mark){"", ""});
-        line(p, "GBRANCH%zu edge 0 u z%zu {k_um%zu}", i, i, i);
+        line(p, ".param c_relax%zu={relax%zu*min(part%zu*1e30,1)+1e-30}", i, i, i);
     }
+    line(p, ".param i_film={%.15g*many}\n.param leak={many*r_leak/(r_leak*r_leak+1e-30)}", cures->sense);
 }
 
-/* Stress number @p a with its branches and the forces of both and of the damper. */
-static void write_stress(const part *p, size_t a)
+/* Those of a film of one node. */
+static void write_node_numbers(const part *p)
 {
-    mark m = {"", ""};
-    char node[32], name[32], text[64];
-    if (p->stress_count > 1) {
-        m = (mark){{(char)('A' + (int)a), '\0'}, {(char)('a' + (int)a), '\0'}};
-    }
-    snprintf(node, sizeof node, "s%s", m.node);
-    snprintf(name, sizeof name, "stress%s", m.node);
-    source(p, DEA_VOLTAGE, name, node, "0", "[]", p->stresses[a].stress);
-    for (size_t i = 1; i <= p->branches; i++) {
-        if (a == 0) {
-            write_relaxation_time(p, i);
+    const dea_cures *cures = &dea_part_cures;
+    char k[DEA_PART_NAME];
+    (void)dea_part_text_parameter(&p->cards.text, p->k_rest, k);
+    line(p, ".param inertia={m_film+%.15g*%s}", cures->lightest, k);
+    if (p->linear) {
+        line(p, "* springs of film and branches [N/um], damper [N s/m]");
+        line(p, ".param k_um={many*%s/%.15g}\n.param r_damp={many*damp*%s}", k, cures->per_metre, k);
+        for (size_t i = 1; i <= p->branches; i++) {
+            line(p, ".param k_um%zu={share%zu*k_um}", i, i);
         }
-        write_relaxation(p, i, node, &m);
-        line(p, "EBRANCH%zu%s b%zu%s b%zu%s %s z%zu%s {share%zu}", i, m.element, i, m.node, i - 1, m.node, node, i, m.node,
-             i);
+    } else {
+        line(p, "* areas in um^2, stop behind the reach of the film [N/um]");
+        line(p, ".param a_um={1e6*many}\n.param r_damp={damp*a_um}\n.param k_stop={%.15g*many*%s}", cures->stop, k);
     }
-    line(p, "EBRANCH0%s b0%s 0 %s 0 1\n* force of springs and branches, and of the damper, tau B dS/du times the velocity [N]", m.element,
-         m.node, node);
-    if (a == 0) {
-        line(p, ".param a_um={1e6*many}\n.param r_damp={damp*a_um}");
-    }
-    snprintf(name, sizeof name, "spring%s", m.node);
-    snprintf(text, sizeof text, "[a_um]*[]*v(b%zu%s)", p->branches, m.node);
-    source(p, DEA_CURRENT, name, "edge", "0", text, p->stresses[a].lever);
-    /* an iterate whose velocity runs away would overflow the product, which ends a run instead of shortening its step */
-    snprintf(name, sizeof name, "damper%s", m.node);
-    source(p, DEA_CURRENT, name, "edge", "0", "[r_damp]*[]*[]*min(max(v(edge),-1e3),1e3)", p->stresses[a].lever, p->slopes[a]);
 }
 
-static void write_hyperelastic_springs(const part *p)
+/* Node of what is positive while all of the film is taut, t0, t1, ... each the least so far. */
+static void write_tautness(const part *p, char node[24])
 {
-    line(p, "* s = change of the stress of the springs [MPa] on the area B(u); branches: z relaxes to s with the time of the branch");
-    for (size_t a = 0; a < p->stress_count; a++) {
-        write_stress(p, a);
-    }
-    if (p->tense) {
-        line(p, "* the stress at rest on the change of these areas [N]");
-        source(p, DEA_CURRENT, "tension", "edge", "0", "[a_um]*[]", p->tension);
+    const dea_part_text *text = &p->cards.text;
+    for (int i = 0; i < p->film.network.tension_count; i++) {
+        char name[24], least[64] = "[]+[]*v(p,n)*v(p,n)";
+        if (i > 0) {
+            snprintf(least, sizeof least, "min(v(%s),[]+[]*v(p,n)*v(p,n))", node);
+        }
+        snprintf(name, sizeof name, "taut%d", i);
+        snprintf(node, 24, "t%d", i);
+        dea_part_text_source(text, DEA_VOLTAGE, name, node, "0", least, p->taut[i], p->loosen[i]);
     }
 }
 
 /* v(bad) and v(slack) rise from 0 to 1 within a millionth of what they watch. */
 static void write_outputs(const part *p)
 {
-    line(p, "* to be read: strain [1], true field [V/um]");
+    const dea_part_text *text = &p->cards.text;
+    char taut[24] = "tension", slack[64];
+    line(p, "* to be read: strain [1], true field [V/um], of rings at r_a");
     line(p, "ESTRAIN strain 0 u 0 {per_um}");
-    source(p, DEA_VOLTAGE, "field", "field", "0", "[ok]*1e-6*[]*v(p,n)", p->field);
+    dea_part_text_source(text, DEA_VOLTAGE, "field", "field", "0", p->rings ? "[ok]*v(stretched)*v(p,n)" : "[ok]*1e-6*[]*v(p,n)", p->field);
     line(p, "* capacitance [pF] and charge [nC] of all films side by side");
     line(p, ".param c_scale={1e12*many}\n.param q_scale={1e9*many*c_rest}\nESTORED q 0 film plate {q_scale}");
-    source(p, DEA_VOLTAGE, "capacity", "c", "0", "[c_scale]*[]", p->capacitance);
-    line(p, "* bad = 1: a parameter out of its range, or no stable equilibrium of the relaxed film here (pull-in)");
-    source(p, DEA_VOLTAGE, "outside", "outside", "0", "max(v(u)-[u_high],[u_low]-v(u))");
+    dea_part_text_source(text, DEA_VOLTAGE, "capacity", "c", "0", p->rings ? "[c_scale]*[c_rest]*(1+v(swell))" : "[c_scale]*[]",
+           p->film.network.capacitance);
+    line(p, "* bad = 1: a parameter out of its range, the edge past centre or frame, or of linear springs no stable equilibrium of the");
+    line(p, "* relaxed film here (pull-in)");
+    dea_part_text_source(text, DEA_VOLTAGE, "outside", "outside", "0", "max(v(u)-[u_high],[u_low]-v(u))");
     if (p->linear) {
-        source(p, DEA_VOLTAGE, "net", "net", "0", "([]-[]*v(p,n)*v(p,n))/[k_rest]", p->k_rest, p->push_slope);
-        source(p, DEA_VOLTAGE, "bad", "bad", "0", "min(max(max(1-[ok],-1e6*v(net)),max(1e3*v(outside),0)),1)");
+        dea_part_text_source(text, DEA_VOLTAGE, "net", "net", "0", "([]-[]*v(p,n)*v(p,n))/[k_rest]", p->k_rest, p->push_slope);
+        dea_part_text_source(text, DEA_VOLTAGE, "bad", "bad", "0", "min(max(max(1-[ok],-1e6*v(net)),max(1e3*v(outside),0)),1)");
     } else {
-        source(p, DEA_VOLTAGE, "bad", "bad", "0", "min(max(1-[ok],max(1e3*v(outside),0)),1)");
+        dea_part_text_source(text, DEA_VOLTAGE, "bad", "bad", "0", "min(max(1-[ok],max(1e3*v(outside),0)),1)");
     }
     line(p, "* slack = 1: a region lost its tension, the film wrinkles");
-    for (int i = 0; i < p->network.tension_count; i++) {
-        char name[24], node[24], text[64] = "[]+[]*v(p,n)*v(p,n)";
-        snprintf(name, sizeof name, "taut%d", i);
-        snprintf(node, sizeof node, "t%d", i);
-        if (i > 0) {
-            snprintf(text, sizeof text, "min(v(t%d),[]+[]*v(p,n)*v(p,n))", i - 1);
-        }
-        source(p, DEA_VOLTAGE, name, node, "0", text, p->taut[i], p->loosen[i]);
+    if (!p->rings) {
+        write_tautness(p, taut);
     }
-    char text[64];
-    snprintf(text, sizeof text, "1-min(max(1e6*v(t%d),0),1)", p->network.tension_count - 1);
-    source(p, DEA_VOLTAGE, "slack", "slack", "0", text);
+    snprintf(slack, sizeof slack, "1-min(max(1e6*v(%s),0),1)", taut);
+    dea_part_text_source(text, DEA_VOLTAGE, "slack", "slack", "0", slack);
 }
 
 /* Cap of constant volume: eta = h/h_0 from h (3 a^2 + h^2) = const, f = (a^2 + h^2)/(2 h (n - 1)). */
 static void write_optics(const part *p)
 {
+    const dea_part_text *text = &p->cards.text;
     line(p, "* eta = height of the liquid's cap over its height at rest; focal = focal length [mm], 0 without optics");
-    source(p, DEA_VOLTAGE, "eta", "eta", "0", "(3+[flat])/(3*(1+v(strain))*(1+v(strain))+[flat]*v(eta)*v(eta))");
+    dea_part_text_source(text, DEA_VOLTAGE, "eta", "eta", "0", "(3+[flat])/(3*(1+v(strain))*(1+v(strain))+[flat]*v(eta)*v(eta))");
     line(p, ".param f_height={lens_on*1e3*height/(2*flat*(refract-1))}");
-    source(p, DEA_VOLTAGE, "focal", "focal", "0",
+    dea_part_text_source(text, DEA_VOLTAGE, "focal", "focal", "0",
            "[f_height]*((1+v(strain))*(1+v(strain))+[flat]*v(eta)*v(eta))/max(v(eta),1e-3)");
 }
 
-/* What is declared of the membrane: the numbers at rest, the ranges, the rings. */
-static void declare_rings(part *p)
-{
-    const dea_expr all[] = {p->c_rest, p->k_rest, p->divide, p->width};
-    dea_rings_part_declare(p->rings, &p->text);
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-        dea_part_text_use(&p->text, all[i]);
-    }
-    for (int i = 0; i < p->network.range_count; i++) {
-        if (is_made(p, p->network.range[i])) {
-            dea_part_text_use(&p->text, p->network.range[i]);
-        }
-    }
-}
-
-/* Film and outputs of the membrane; v(swell) = C/c_rest - 1. */
+/* The membrane and its film; v(swell) = C/c_rest - 1. */
 static void write_rings(part *p)
 {
-    line(p, ".param still={max(1-rho*1e30,0)*max(1-areal*1e30,0)*max(1-retard*1e30,0)}\n.param damp={retard+1e-9*still}");
-    for (size_t i = 1; i <= p->branches; i++) {
-        write_relaxation_time(p, i);
-    }
-    dea_rings_part_write(p->rings, &p->text);
+    const dea_part_text *text = &p->cards.text;
+    dea_rings_part_write(p->rings, &p->cards.text);
     line(p, "* film: v(film) = charge/c_rest on a capacitor of c_rest; v(plate) is its current [mA]");
-    source(p, DEA_VOLTAGE, "charge", "film", "0", "v(plate)+[ok]*v(p,n)*(1+v(swell))");
-    line(p, ".param i_film={1e-3*many}\ncfilm film plate {c_rest}\ngsense plate 0 plate 0 1e-3\ngfilm p n plate 0 {i_film}");
-    line(p, ".param leak={many*r_leak/(r_leak*r_leak+1e-30)}\ngleak p n p n {leak}");
-    line(p, "* to be read: strain [1], force [N], true field at r_a [V/um], capacitance [pF], charge [nC]");
-    char name[DEA_PART_NAME];
-    line(p, ".param per_um={1e-6/%s}\nestrain strain 0 u 0 {per_um}", dea_part_text_parameter(&p->text, p->divide, name));
-    source(p, DEA_VOLTAGE, "force", "force", "0", "[ok]*v(pull)*v(p,n)*v(p,n)");
-    source(p, DEA_VOLTAGE, "field", "field", "0", "[ok]*v(stretched)*v(p,n)");
-    line(p, ".param c_scale={1e12*many*c_rest}\n.param q_scale={1e9*many*c_rest}\nestored q 0 film plate {q_scale}");
-    source(p, DEA_VOLTAGE, "capacity", "c", "0", "[c_scale]*(1+v(swell))");
-    line(p, "* bad = 1: a parameter out of its range, or the edge past centre or frame; slack = 1: the film wrinkles");
-    line(p, ".param u_low={-0.99e6*r_a}\n.param u_high={0.99e6*r_ring}");
-    source(p, DEA_VOLTAGE, "bad", "bad", "0", "min(max(1-[ok],max(1e3*(v(u)-[u_high]),1e3*([u_low]-v(u)))),1)");
-    source(p, DEA_VOLTAGE, "slack", "slack", "0", "1-min(max(1e6*v(tension),0),1)");
+    dea_part_text_source(text, DEA_VOLTAGE, "charge", "film", "0", "v(plate)+[ok]*v(p,n)*(1+v(swell))");
+    dea_cards_write_capacitor(&dea_part_cures, p->out);
+    dea_part_text_source(text, DEA_VOLTAGE, "force", "force", "0", "[ok]*v(pull)*v(p,n)*v(p,n)");
 }
 
 static void write_body(part *p, const form *of)
 {
-    (p->rings ? declare_rings : declare)(p);
+    declare(p);
     give_names(p);
     const int checks = write_checks(p, of);
-    dea_part_text_parameters(&p->text);
+    dea_part_text_parameters(&p->cards.text);
     check_ranges(p, checks);
+    write_numbers(p);
     if (p->rings) {
         write_rings(p);
-        if (p->kind == DEA_LENS) {
-            write_optics(p);
-        }
-        return;
-    }
-    write_numbers(p);
-    write_displacement(p);
-    if (!p->linear) {
-        line(p, "* w = u between stops short of the centre and of the frame [um]: past them is no film");
-        source(p, DEA_VOLTAGE, "clip", "w", "0", "min(max(v(u),[u_low]),[u_high])");
-        line(p, ".param k_stop={1e-3*many*k_rest}\nGSTOP edge 0 u w {k_stop}");
-    }
-    dea_part_text_nodes(&p->text);
-    if (p->linear) {
-        write_linear_springs(p);
     } else {
-        write_hyperelastic_springs(p);
+        write_node_numbers(p);
+        dea_cards_write_network(&p->cards);
     }
-    write_port(p);
     write_outputs(p);
     if (p->kind == DEA_LENS) {
         write_optics(p);
@@ -766,16 +642,18 @@ static dea_status write_part(part *p, const dea_scene *defaults, const dea_model
     if (status != DEA_OK) {
         return status;
     }
-    if (!dea_part_text_open(&p->text, &p->network.pool, p->dialect, p->out)) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is written");
+    const dea_cards_form cured = {.dialect = p->dialect, .analogy = dea_analogy_at(0), .cures = &dea_part_cures};
+    if (!dea_cards_open(&p->film, &cured, p->out, &p->cards)) {
+        return tell_memory(error);
     }
+    p->cards.text.symbols = symbol_names;
     dea_part_name_of(p->kind, model, own);
     name = name ? name : own;
     line(p, "* %s: %s", name, form_of(model)->meaning);
     write_header(p, name, list, dea_part_parameters(defaults, model, list));
     write_body(p, form_of(model));
     line(p, ".ends %s", name);
-    return p->text.exhausted ? dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is written") : DEA_OK;
+    return p->cards.text.exhausted ? tell_memory(error) : DEA_OK;
 }
 
 dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, const char *name, const dea_dialect *dialect,
@@ -789,29 +667,27 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "a circuit part has no skin of its electrodes");
     }
     const size_t branches = defaults->material.prony_count;
-    char *text = NULL;
-    size_t length = 0;
+    dea_memory_text text;
+    dea_status status = dea_memory_text_begin(&text, error);
     part p = {.dialect = dialect,
-              .out = open_memstream(&text, &length),
+              .out = text.out,
               .kind = defaults->actuator.kind,
               .law = defaults->material.law,
               .constants = constants_in_use(&defaults->material),
               .linear = model->linear != NULL,
               .branches = branches > PART_BRANCHES ? branches : PART_BRANCHES};
-    if (!p.out) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is written");
-    }
-    dea_status status = write_part(&p, defaults, model, name, error);
-    const bool whole = dea_text_close(p.out);
-    if (status == DEA_OK && !whole) {
-        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a part is written");
-    }
+    p.elements = (dea_dynamics){.model = model, .linear = p.linear, .softens = true, .branch_count = p.branches, .mass = 1.0, .retardation = 1.0};
+    p.film = (dea_mobility){.dynamics = &p.elements, .stiffness = p.linear ? 1.0 : (double)NAN};
     if (status == DEA_OK) {
-        dea_dialect_wrap(out, text);
+        status = write_part(&p, defaults, model, name, error);
     }
-    free(text);
-    dea_part_text_close(&p.text);
-    dea_network_free(&p.network);
+    status = dea_memory_text_end(&text, status, error);
+    if (status == DEA_OK) {
+        dea_dialect_wrap(out, text.text);
+    }
+    free(text.text);
+    dea_cards_close(&p.cards);
+    dea_mobility_close(&p.film);
     free(p.rings);
     free(p.taut);
     free(p.loosen);
@@ -826,7 +702,7 @@ void dea_part_write_mechanics(const char *prefix, FILE *out)
             "+ params: stiffness=100 m=1\n"
             ".param k_um={1e-6*stiffness*m}\n",
             prefix, prefix);
-    write_integrator(out, "a", "b");
+    dea_cards_write_integral(&dea_part_cures, "", "u", "a", "b", out);
     fprintf(out, "GSPRING a b u 0 {k_um}\n.ends %s_spring\n", prefix);
     fprintf(
         out,

@@ -1,6 +1,7 @@
 #include "netlist/part_text.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -479,4 +480,42 @@ void dea_part_text_write(const dea_part_text *text, dea_expr ref)
 {
     const stream s = {text, true, false};
     write_operand(&s, ref, precedence(&text->pool->terms[ref]) < 2);
+}
+
+static void write_format(const dea_part_text *text, const char *format, va_list terms)
+{
+    for (const char *c = format; *c; c++) {
+        const char *end = *c == '[' ? strchr(c, ']') : NULL;
+        if (!end) {
+            fputc(*c, text->out);
+            continue;
+        }
+        if (end == c + 1) {
+            dea_part_text_write(text, va_arg(terms, dea_expr));
+        } else {
+            char name[DEA_PART_NAME];
+            snprintf(name, sizeof name, "%.*s", (int)(end - c - 1), c + 1);
+            dea_dialect_parameter(text->dialect, text->out, name);
+        }
+        c = end;
+    }
+}
+
+void dea_part_text_format(const dea_part_text *text, const char *format, ...)
+{
+    va_list terms;
+    va_start(terms, format);
+    write_format(text, format, terms);
+    va_end(terms);
+}
+
+void dea_part_text_source(const dea_part_text *text, dea_quantity quantity, const char *name, const char *plus, const char *minus,
+                          const char *format, ...)
+{
+    va_list terms;
+    va_start(terms, format);
+    dea_dialect_source_begin(text->dialect, text->out, quantity, name, plus, minus);
+    write_format(text, format, terms);
+    dea_dialect_source_end(text->dialect, text->out);
+    va_end(terms);
 }

@@ -88,6 +88,11 @@ void dea_part_text_start(const dea_part_text *text, const char *inside, const do
 
 /* Writes an expression inside a behavioural source, as a factor: in brackets where it is a sum. */
 void dea_part_text_write(const dea_part_text *text, dea_expr ref);
+/* Writes a piece of such an expression: `[name]` in it stands for a parameter and `[]` for the next term. */
+void dea_part_text_format(const dea_part_text *text, const char *format, ...);
+/* A behavioural source whose expression is such a piece. */
+void dea_part_text_source(const dea_part_text *text, dea_quantity quantity, const char *name, const char *plus, const char *minus,
+                          const char *format, ...);
 /* Name of the node or .param of a declared term; a plain number is its own name. */
 const char *dea_part_text_parameter(const dea_part_text *text, dea_expr ref, char name[DEA_PART_NAME]);
 

@@ -1,15 +1,13 @@
 #include "netlist/rings_cards.h"
 
-#include <ctype.h>
 #include <math.h>
 
 #include "expression/formula.h"
+#include "netlist/rings_text.h"
 #include "network/hyperelastic.h"
 
 /* Stresses are written in MPa: nodes that held 1e5 Pa would round by more than the tolerances that displacements want. */
 static const double mega = 1e6;
-
-enum { NAME = 24 };
 
 /* Reference radius over F and dR/dx over F at a place x of [-1, 1] of an element. */
 typedef struct place {
@@ -95,6 +93,8 @@ void dea_rings_cards_make(const dea_symbols *symbols, dea_rings_mesh mesh, dea_r
         make_stress(&cards->symbols, (dea_rings_strain)strain, false, pressure, cards->stress[strain][0]);
         make_stress(&cards->symbols, (dea_rings_strain)strain, true, pressure, cards->stress[strain][1]);
     }
+    const dea_expr thickness = DIV(SQUARE(symbols->prestretch), symbols->film_thickness);
+    cards->load = SCALE(0.5 / (DEA_PI * mega), MUL(symbols->load, thickness));
     dea_rings_slopes_of(mesh.disc, &cards->slopes[0]);
     dea_rings_slopes_of(mesh.annulus, &cards->slopes[1]);
     make_element(cards, true);
@@ -110,20 +110,6 @@ static const dea_expr *stress_of(const dea_rings_cards *cards, const dea_rings_r
 static int stresses_of(const dea_rings_ring *ring)
 {
     return ring->strain == DEA_RINGS_FREE ? 2 : 1; /* at the frame nothing moves with s_2 */
-}
-
-/* Number of a ring, from 1 at the centre. */
-static size_t number_of(const dea_rings_cards *cards, const dea_rings_ring *ring)
-{
-    return (size_t)(ring - cards->rings) + 1;
-}
-
-static void name(dea_part_text *text, dea_expr ref, const char *what, size_t number)
-{
-    char whole[DEA_PART_NAME];
-    snprintf(whole, sizeof whole, "%s%zu", what, number);
-    dea_part_text_name(text, ref, whole, "");
-    dea_part_text_use(text, ref);
 }
 
 /* A term is worth a node of its own where the strains stand in it so often, and more than a number times another: a source's
@@ -150,11 +136,11 @@ void dea_rings_cards_declare(const dea_rings_cards *cards, dea_part_text *text)
     bool declared[DEA_RINGS_STRAINS][2] = {{false}};
     for (size_t q = 0; q < cards->ring_count; q++) {
         const dea_rings_ring *ring = &cards->rings[q];
-        name(text, ring->radial, "radial", q + 1);
-        name(text, ring->along, "along", q + 1);
+        dea_rings_name(text, ring->radial, "radial", q + 1);
+        dea_rings_name(text, ring->along, "along", q + 1);
         if (ring->strain != DEA_RINGS_FRAME) {
-            name(text, ring->hoop, "hoop", q + 1);
-            name(text, ring->across, "across", q + 1);
+            dea_rings_name(text, ring->hoop, "hoop", q + 1);
+            dea_rings_name(text, ring->across, "across", q + 1);
         }
         bool *done = &declared[ring->strain][ring->electroded];
         for (int a = 0; a < stresses_of(ring) && !*done; a++) {
@@ -162,169 +148,94 @@ void dea_rings_cards_declare(const dea_rings_cards *cards, dea_part_text *text)
         }
         *done = true;
     }
+    dea_part_text_use(text, cards->load);
 }
 
-typedef struct writer {
-    const dea_rings_cards *cards;
-    dea_part_text *text;
-    FILE *out;
-} writer;
-
-static void begin(const writer *w, const char *node)
+/* Strains of a ring; their radii may move with the swept scalar. */
+static void write_swept_strains(const dea_rings_writer *w, const dea_rings_ring *ring, size_t number)
 {
-    dea_dialect_source_begin(w->text->dialect, w->out, DEA_VOLTAGE, node, node, "0");
-}
-
-static void end(const writer *w)
-{
-    dea_dialect_source_end(w->text->dialect, w->out);
-}
-
-/* A transconductance of @p slope times a parameter, from a control node into another; without parameter, NULL. */
-static void write_lever(const writer *w, const char *element, const char *into, bool out_of, const char *control, double slope,
-                        const char *factor)
-{
-    fprintf(w->out, "G%s %s %s %s 0 {", element, out_of ? into : "0", out_of ? "0" : into, control);
-    dea_part_number(w->out, slope);
-    fprintf(w->out, factor ? "*%s}\n" : "}\n", factor);
-}
-
-/* A node of the ring: that name and the ring's number. */
-typedef struct label {
-    char text[NAME];
-} label;
-
-static label label_of(const char *name, size_t number)
-{
-    label l;
-    snprintf(l.text, sizeof l.text, "%s%zu", name, number);
-    return l;
-}
-
-/* A parameter as text of a card, or what stands for one where it is swept. */
-static const char *parameter(const writer *w, dea_expr ref, char name[DEA_PART_NAME])
-{
-    return dea_part_text_parameter(w->text, ref, name);
-}
-
-/* Nodes that strain a ring: number, and its column of the slopes. */
-static bool strains(const writer *w, const dea_rings_ring *ring, size_t column, size_t *node, double *slope)
-{
-    *node = ring->first + column;
-    *slope = w->cards->slopes[!ring->disc].of[ring->place][column];
-    return *node > 0 && *node <= w->cards->node_count && fabs(*slope) > 1e-12; /* else 0 but for rounding */
-}
-
-static size_t columns_of(const writer *w, const dea_rings_ring *ring)
-{
-    return (ring->disc ? w->cards->mesh.disc : w->cards->mesh.annulus) + 1;
-}
-
-/* v(into) = the slopes' sum of the displacements, times a factor. */
-static void write_gradient(const writer *w, const dea_rings_ring *ring, const char *into, const char *factor)
-{
-    for (size_t i = 0; i < columns_of(w, ring); i++) {
-        size_t node;
-        double slope;
-        if (strains(w, ring, i, &node, &slope)) {
-            label element;
-            snprintf(element.text, sizeof element.text, "%s_%zu", into, node);
-            write_lever(w, element.text, into, false, label_of("u", node).text, slope, factor);
-        }
-    }
-    fprintf(w->out, "R%s %s 0 1\n", into, into);
-}
-
-/* Strains of a ring whose radii move with the swept scalar. */
-static void write_swept_strains(const writer *w, const dea_rings_ring *ring, size_t number)
-{
-    const label d = label_of("d", number), a = label_of("a", number), b = label_of("b", number);
-    write_gradient(w, ring, d.text, NULL);
-    begin(w, a.text);
+    const dea_rings_label d = dea_rings_label_of("d", number);
+    dea_rings_gradient(w, ring, d.text, 'u', NULL);
+    dea_rings_begin(w, dea_rings_label_of("a", number).text);
     dea_part_text_write(w->text, ring->radial);
     fprintf(w->out, "*v(%s)", d.text);
-    end(w);
+    dea_rings_end(w);
     if (ring->strain == DEA_RINGS_FREE) {
-        begin(w, b.text);
+        dea_rings_begin(w, dea_rings_label_of("b", number).text);
         dea_part_text_write(w->text, ring->hoop);
         fprintf(w->out, "*v(u%zu)", ring->node);
-        end(w);
+        dea_rings_end(w);
     }
 }
 
-static void write_strains(const writer *w, const dea_rings_ring *ring, size_t number)
+static void write_strains(const dea_rings_writer *w, const dea_rings_ring *ring, size_t number)
 {
-    char factor[DEA_PART_NAME];
-    const label a = label_of("a", number), b = label_of("b", number);
-    write_gradient(w, ring, a.text, parameter(w, ring->radial, factor));
+    dea_rings_gradient(w, ring, dea_rings_label_of("a", number).text, 'u', dea_rings_parameter(w, ring->radial).text);
     if (ring->strain == DEA_RINGS_FREE) {
-        write_lever(w, b.text, b.text, false, label_of("u", ring->node).text, 1.0, parameter(w, ring->hoop, factor));
-        fprintf(w->out, "R%s %s 0 1\n", b.text, b.text);
+        const dea_rings_label b = dea_rings_label_of("b", number);
+        dea_rings_lever(w, b.text, "0", b.text, dea_rings_node(w, 'u', ring->node).text, 1.0, dea_rings_parameter(w, ring->hoop).text);
+        dea_rings_sum(w, b.text);
     }
-}
-
-static bool is_swept(const writer *w, dea_expr ref)
-{
-    return w->text->moves[ref];
 }
 
 /* Stresses s and t; of a ring whose levers are swept times those. */
-static void write_stresses(const writer *w, const dea_rings_ring *ring, size_t number)
+static void write_stresses(const dea_rings_writer *w, const dea_rings_ring *ring, size_t number)
 {
     const dea_expr *stress = stress_of(w->cards, ring), levers[2] = {ring->along, ring->across};
     for (int a = 0; a < stresses_of(ring); a++) {
         dea_part_text_nodes_of(w->text, stress[a]);
     }
     for (int a = 0; a < stresses_of(ring); a++) {
-        begin(w, label_of(a == 0 ? "s" : "t", number).text);
+        dea_rings_begin(w, dea_rings_label_of(a == 0 ? "s" : "t", number).text);
         dea_part_text_write(w->text, stress[a]);
-        if (is_swept(w, levers[a])) {
+        if (w->text->moves[levers[a]]) {
             fputc('*', w->out);
             dea_part_text_write(w->text, levers[a]);
         }
-        end(w);
+        dea_rings_end(w);
     }
 }
 
 /* Forces of a ring on its nodes, as currents out of them. */
-static void write_forces(const writer *w, const dea_rings_ring *ring, size_t number)
+static void write_forces(const dea_rings_writer *w, const dea_rings_ring *ring, size_t number)
 {
-    char name[DEA_PART_NAME];
-    const bool swept = is_swept(w, ring->along);
-    const label s = label_of("s", number), t = label_of(ring->strain == DEA_RINGS_FREE ? "t" : "s", number);
-    for (size_t i = 0; i < columns_of(w, ring); i++) {
-        size_t node;
-        double slope;
-        if (strains(w, ring, i, &node, &slope)) {
-            label element;
-            snprintf(element.text, sizeof element.text, "f%zu_%zu", number, node);
-            write_lever(w, element.text, label_of("u", node).text, true, s.text, slope, swept ? NULL : parameter(w, ring->along, name));
-        }
-    }
+    const bool swept = w->text->moves[ring->along];
+    const dea_rings_label s = dea_rings_label_of("s", number), t = dea_rings_label_of(ring->strain == DEA_RINGS_FREE ? "t" : "s", number);
+    dea_rings_spread(w, ring, s.text, 'u', swept ? NULL : dea_rings_parameter(w, ring->along).text);
     if (ring->strain != DEA_RINGS_FRAME) {
         const double share = swept && ring->strain == DEA_RINGS_UNIFORM ? 0.5 : 1.0; /* across over along, where s holds along s_1 */
-        write_lever(w, label_of("h", number).text, label_of("u", ring->node).text, true, t.text, share,
-                    swept ? NULL : parameter(w, ring->across, name));
+        dea_rings_lever(w, dea_rings_label_of("h", number).text, dea_rings_node(w, 'u', ring->node).text, "0", t.text, share,
+                        swept ? NULL : dea_rings_parameter(w, ring->across).text);
     }
+}
+
+/* The spring between edge and frame. */
+static void write_load(const dea_rings_writer *w)
+{
+    if (dea_expr_constant(w->cards->symbols.pool, w->cards->load) == 0.0) {
+        return;
+    }
+    const dea_rings_label u = dea_rings_node(w, 'u', w->cards->edge);
+    dea_dialect_source_begin(w->text->dialect, w->out, DEA_CURRENT, "load", u.text, "0");
+    dea_part_text_write(w->text, w->cards->load);
+    fprintf(w->out, "*v(%s)", u.text);
+    dea_rings_end(w);
 }
 
 void dea_rings_cards_write(const dea_rings_cards *cards, dea_part_text *text)
 {
-    writer w = {cards, text, text->out};
+    const dea_rings_writer w = {.cards = cards, .text = text, .out = text->out};
     for (size_t q = 0; q < cards->ring_count; q++) {
         const dea_rings_ring *ring = &cards->rings[q];
-        const size_t number = number_of(cards, ring);
-        char suffix[NAME], a[NAME], b[NAME];
-        snprintf(suffix, sizeof suffix, "_%zu", number);
-        snprintf(a, sizeof a, "v(a%zu)", number);
-        snprintf(b, sizeof b, "v(b%zu)", number);
-        const char *const nodes[] = {a, b};
-        text->nodes = nodes;
-        text->suffix = suffix;
-        (is_swept(&w, ring->radial) ? write_swept_strains : write_strains)(&w, ring, number);
-        write_stresses(&w, ring, number);
-        write_forces(&w, ring, number);
-        dea_part_text_again(text);
-        text->nodes = NULL;
+        char a[DEA_PART_NAME], b[DEA_PART_NAME];
+        snprintf(a, sizeof a, "v(a%zu)", q + 1);
+        snprintf(b, sizeof b, "v(b%zu)", q + 1);
+        dea_rings_place here = {.nodes = (const char *const[]){a, b}};
+        dea_rings_enter(&w, &here, q + 1, "");
+        (text->moves[ring->radial] ? write_swept_strains : write_strains)(&w, ring, q + 1);
+        write_stresses(&w, ring, q + 1);
+        write_forces(&w, ring, q + 1);
+        dea_rings_leave(&w);
     }
+    write_load(&w);
 }

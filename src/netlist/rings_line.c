@@ -2,74 +2,27 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "engine/line.h"
+#include "scene/line.h"
 #include "expression/formula.h"
 #include "expression/tape.h"
-#include "netlist/export.h"
+#include "netlist/netlist.h"
+#include "netlist/rings_text.h"
 #include "network/still.h"
 
-enum { AXIS, SYMBOLS = 8 + DEA_LAW_CONSTANTS };
-
-/* A number of the scene that stays a symbol in the text: a parameter of that name. */
-typedef struct quantity {
-    char name[DEA_PART_NAME];
-    const char *unit;
-    double value;
-} quantity;
+enum { AXIS };
 
 typedef struct writer {
     const dea_rings_line *line;
     const dea_dialect *dialect;
     FILE *out;
     dea_pool pool; /* owned */
-    quantity quantities[SYMBOLS];
-    size_t count; /* of them; number 0 is the axis */
+    dea_rings_quantities quantities;
     dea_symbols symbols;
     dea_rings_cards cards;
     dea_part_text text; /* owned */
 } writer;
-
-/* A number becomes a symbol; what moves with the axis stays as it is. */
-static void name(writer *w, dea_expr *ref, const char *name, const char *unit)
-{
-    const double value = dea_expr_constant(&w->pool, *ref);
-    if (!isnan(value)) {
-        quantity *q = &w->quantities[w->count];
-        *q = (quantity){.unit = unit, .value = value};
-        snprintf(q->name, sizeof q->name, "%s", name);
-        *ref = dea_expr_symbol(&w->pool, (int)w->count++);
-    }
-}
-
-static void name_all(writer *w)
-{
-    dea_symbols *s = &w->symbols;
-    *s = dea_symbols_of(w->line->scene, w->line->axis, &w->pool);
-    w->quantities[AXIS] = (quantity){.name = "v(axis)"};
-    w->count = 1;
-    name(w, &s->frame_radius, "frame_radius", "m");
-    name(w, &s->coverage, "coverage", "1");
-    name(w, &s->film_thickness, "film_thickness", "m");
-    name(w, &s->prestretch, "prestretch", "1");
-    name(w, &s->permittivity, "permittivity", "F/m");
-    name(w, &s->voltage, "voltage", "V");
-    const size_t constants = s->law->constant_count * (s->law->entries > 1 ? w->line->scene->material.entry_count : 1);
-    for (size_t i = 0; i < constants; i++) {
-        char own[DEA_QUANTITY_NAME];
-        dea_constant_name(s->law, i, own);
-        name(w, &s->constants[i], own, s->law->constants[i % s->law->constant_count].unit);
-    }
-}
-
-static void write_quantities(const writer *w)
-{
-    for (size_t i = 1; i < w->count; i++) {
-        const quantity *q = &w->quantities[i];
-        fprintf(w->out, "* %s [%s]\n", q->name, q->unit);
-        dea_part_value(w->out, q->name, q->value);
-    }
-}
 
 /* The displacement of the edge in metres. */
 static void write_edge(const writer *w)
@@ -98,7 +51,7 @@ static dea_status write_start(writer *w, dea_error *error)
 {
     const dea_axis *axis = w->line->axis;
     const double none[] = {0.0, 0.0};
-    double symbols[SYMBOLS];
+    double symbols[DEA_RINGS_SYMBOLS];
     dea_tape tape;
     size_t count = 0;
     int *refs = calloc((size_t)w->pool.count + 1, sizeof *refs);
@@ -110,15 +63,16 @@ static dea_status write_start(writer *w, dea_error *error)
             refs[count++] = i;
         }
     }
-    for (size_t i = 0; i < w->count; i++) {
-        symbols[i] = i == AXIS ? axis->values[w->line->from] : w->quantities[i].value;
-    }
+    memcpy(symbols, w->quantities.values, sizeof symbols);
+    symbols[AXIS] = axis->values[w->line->from];
     const dea_status status =
-        dea_tape_compile_many(&w->pool, refs, (int)count, (int)w->count, DEA_RINGS_VARIABLES, &tape, error);
+        dea_tape_compile_many(&w->pool, refs, (int)count, (int)w->quantities.count, DEA_RINGS_VARIABLES, &tape, error);
     if (status == DEA_OK) {
         dea_tape_values(&tape, symbols, none);
         fputs(".nodeset", w->out);
-        write_guess(w, "point", (double)w->line->from);
+        if (dea_axis_holds(axis, w->line->from, w->line->to)) {
+            write_guess(w, "point", (double)w->line->from);
+        }
         write_guess(w, "axis", symbols[AXIS]);
         for (size_t i = 0; i < count; i++) {
             char node[DEA_PART_NAME];
@@ -135,9 +89,9 @@ static dea_status write_start(writer *w, dea_error *error)
 static dea_status write_all(writer *w, dea_error *error)
 {
     const dea_rings_line *line = w->line;
-    const char *symbols[SYMBOLS];
-    for (size_t i = 0; i < w->count; i++) {
-        symbols[i] = w->quantities[i].name;
+    const char *symbols[DEA_RINGS_SYMBOLS];
+    for (size_t i = 0; i < w->quantities.count; i++) {
+        symbols[i] = w->quantities.names[i];
     }
     w->text.symbols = symbols;
     if (line->axis) {
@@ -149,15 +103,15 @@ static dea_status write_all(writer *w, dea_error *error)
             w->cards.node_count, line->mesh.disc, line->mesh.annulus);
     fprintf(w->out, "* of v(edge): %.0e. ring q: strains v(a<q>), v(b<q>), stresses v(s<q>), v(t<q>) [MPa]\n", line->error);
     fprintf(w->out, ".subckt line%zu k edge\n", line->number);
-    write_quantities(w);
+    dea_rings_quantities_write(&w->quantities, w->out);
     dea_part_text_parameters(&w->text);
     if (line->axis) {
-        dea_export_axis(w->dialect, line->axis, line->from, line->to, w->out);
+        dea_axis_write(&w->text, line->axis, line->from, line->to);
     }
     dea_part_text_swept(&w->text);
     dea_rings_cards_write(&w->cards, &w->text);
     write_edge(w);
-    fprintf(w->out, ".ends\nxline%zu k edge%zu line%zu\n", line->number, line->number, line->number);
+    fprintf(w->out, ".ends\nXLINE%zu k edge%zu line%zu\n", line->number, line->number, line->number);
     return line->axis ? write_start(w, error) : DEA_OK;
 }
 
@@ -192,7 +146,7 @@ dea_status dea_rings_line_write(const dea_rings_line *line, const dea_dialect *d
     dea_status status = DEA_OK;
     (void)dea_expr_number(&w.pool, 0.0);
     if (!w.pool.exhausted) {
-        name_all(&w);
+        dea_rings_quantities_of(line->scene, line->axis, &w.pool, &w.symbols, &w.quantities);
         dea_rings_cards_make(&w.symbols, line->mesh, &w.cards);
     }
     if (!w.pool.exhausted && dea_part_text_open(&w.text, &w.pool, dialect, out)) {

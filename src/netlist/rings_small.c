@@ -1,5 +1,7 @@
 #include "netlist/rings_small.h"
 
+#include <ctype.h>
+
 #include "netlist/export.h"
 
 /* Changes of the nominal stresses of a ring over its strains e_a from the bias [Pa]: with the voltage, and those that damper and
@@ -20,11 +22,11 @@ static moduli moduli_of(const dea_rings_small *s, size_t ring, const dea_membran
                     {l0 * at->slope[0][0] / l[0], l0 * at->slope[0][1] / l[0], l0 * at->slope[1][1] / l[1]}};
 }
 
-/* A transconductance from node <name><control> into node @p into, number @p number. */
+/* A transconductance from node <name><control> into node @p into, number @p number; elements are in capitals. */
 static void lever(FILE *out, const char *element, const char *into, size_t number, const char *control, size_t of, double value)
 {
     if (value != 0.0) {
-        fprintf(out, "G%s%zu_%zu 0 %s%zu %s%zu 0 ", element, number, of, into, number, control, of);
+        fprintf(out, "G%c%zu_%zu 0 %s%zu %s%zu 0 ", toupper(*element), number, of, into, number, control, of);
         dea_part_number(out, value);
         fputc('\n', out);
     }
@@ -32,7 +34,7 @@ static void lever(FILE *out, const char *element, const char *into, size_t numbe
 
 static void unit_resistor(FILE *out, const char *node, size_t number)
 {
-    fprintf(out, "R%s%zu %s%zu 0 1\n", node, number, node, number);
+    fprintf(out, "R%c%zu %s%zu 0 1\n", toupper(*node), number, node, number);
 }
 
 /* Strains over displacements, or their rates over velocities: nodes a, b of u, c, d of v. */
@@ -47,12 +49,12 @@ static void write_strains(FILE *out, const dea_ring *ring, size_t number, const 
 }
 
 /* A symmetric pair of stresses of two strains times a factor. */
-static void write_pair(FILE *out, const char *tag, const char into[2][2], const char from[2][2], size_t number, const double w[3],
+static void write_pair(FILE *out, char tag, const char into[2][2], const char from[2][2], size_t number, const double w[3],
                        double factor)
 {
     for (int a = 0; a < 2; a++) {
         for (int b = 0; b < 2; b++) {
-            fprintf(out, "G%s%s%s%zu 0 %s%zu %s%zu 0 ", tag, into[a], from[b], number, into[a], number, from[b], number);
+            fprintf(out, "G%c%c%c%zu 0 %s%zu %s%zu 0 ", tag, toupper(*into[a]), toupper(*from[b]), number, into[a], number, from[b], number);
             dea_part_number(out, factor * w[a + b]);
             fputc('\n', out);
         }
@@ -68,10 +70,11 @@ static void write_branches(FILE *out, const dea_dynamics *film, size_t number)
     for (int a = 0; a < 2; a++) {
         const char *stress = stress_names[a], *viscous = viscous_names[a];
         for (size_t i = 0; i < film->branch_count; i++) {
-            fprintf(out, "GZ%s%zu_%zu 0 z%s%zu_%zu %s%zu z%s%zu_%zu 1\n", viscous, number, i + 1, viscous, number, i + 1, viscous,
+            const int name = toupper(*viscous);
+            fprintf(out, "GZ%c%zu_%zu 0 z%s%zu_%zu %s%zu z%s%zu_%zu 1\n", name, number, i + 1, viscous, number, i + 1, viscous,
                     number, viscous, number, i + 1);
-            fprintf(out, "CZ%s%zu_%zu z%s%zu_%zu 0 {tau%zu}\n", viscous, number, i + 1, viscous, number, i + 1, i + 1);
-            fprintf(out, "GR%s%zu_%zu 0 %s%zu %s%zu z%s%zu_%zu {share%zu}\n", viscous, number, i + 1, stress, number, viscous,
+            fprintf(out, "CZ%c%zu_%zu z%s%zu_%zu 0 {tau%zu}\n", name, number, i + 1, viscous, number, i + 1, i + 1);
+            fprintf(out, "GR%c%zu_%zu 0 %s%zu %s%zu z%s%zu_%zu {share%zu}\n", name, number, i + 1, stress, number, viscous,
                     number, viscous, number, i + 1, i + 1);
         }
     }
@@ -86,13 +89,13 @@ static void write_ring(FILE *out, const dea_rings_small *s, size_t index, const 
     const double lever_size = ring->volume * film->point.film.prestretch;
     fprintf(out, "* ring %zu at R = %.6g m: strains a, b, stresses s, t [Pa]\n", number, ring->radius);
     write_strains(out, ring, number, strain_names, "u");
-    write_pair(out, "w", stress_names, strain_names, number, w.film, 1.0);
+    write_pair(out, 'W', stress_names, strain_names, number, w.film, 1.0);
     if (film->retardation > 0.0) {
         write_strains(out, ring, number, rate_names, "v");
-        write_pair(out, "k", stress_names, rate_names, number, w.viscous, film->retardation);
+        write_pair(out, 'K', stress_names, rate_names, number, w.viscous, film->retardation);
     }
     if (film->branch_count > 0) {
-        write_pair(out, "y", viscous_names, strain_names, number, w.viscous, 1.0);
+        write_pair(out, 'Y', viscous_names, strain_names, number, w.viscous, 1.0);
         unit_resistor(out, "x", number);
         unit_resistor(out, "y", number);
         write_branches(out, film, number);
@@ -103,7 +106,7 @@ static void write_ring(FILE *out, const dea_rings_small *s, size_t index, const 
             const double slope = a == 0 ? ring->radial[i] : ring->hoop[i];
             const size_t node = ring->first + i + 1;
             if (slope != 0.0) {
-                fprintf(out, "GF%s%zu_%zu v%zu 0 %s%zu 0 ", stress_names[a], number, node, node, stress_names[a], number);
+                fprintf(out, "GF%c%zu_%zu v%zu 0 %s%zu 0 ", toupper(*stress_names[a]), number, node, node, stress_names[a], number);
                 dea_part_number(out, lever_size * slope);
                 fputc('\n', out);
             }
@@ -168,6 +171,16 @@ void dea_rings_small_write(const dea_rings_small *small, FILE *out)
     write_port(out, &m->film, look.capacitance);
     for (size_t n = 0; n < m->rings.node_count; n++) {
         write_node(out, small, n, 2.0 * push[n] * small->voltage);
+    }
+    if (m->film.damping > 0.0) {
+        fprintf(out, "* mechanical resistance of the load [N s/m]\nRLOAD v%zu 0 ", m->rings.edge + 1);
+        dea_part_number(out, 1.0 / m->film.damping);
+        fputc('\n', out);
+    }
+    if (m->film.point.load > 0.0) {
+        fprintf(out, "* spring of the load between edge and frame [N/m]\nGLOAD v%zu 0 u%zu 0 ", m->rings.edge + 1, m->rings.edge + 1);
+        dea_part_number(out, m->film.point.load);
+        fputc('\n', out);
     }
     for (size_t q = 0; q < m->rings.ring_count; q++) {
         write_ring(out, small, q, &look);

@@ -5,14 +5,15 @@
 
 #include "model/models.h"
 
-enum { ELASTIC, LOAD };
+enum { ELASTIC, LOAD, STEADY, FORCES };
 enum {
     STRAIN,
     FORCE,
     FIELD,
     BREAKDOWN,
+    SECOND_FIELD,
+    SECOND_BREAKDOWN,
     LENGTH,
-    END,
     CAPACITANCE,
     VOLTAGE,
     COVERAGE,
@@ -34,8 +35,9 @@ static dea_status compile_limits(dea_network *network, dea_balance *balance, dea
     limits[FORCE] = load;
     limits[FIELD] = network->field;
     limits[BREAKDOWN] = network->breakdown;
+    limits[SECOND_FIELD] = network->second_field;
+    limits[SECOND_BREAKDOWN] = network->second_breakdown;
     limits[LENGTH] = network->length;
-    limits[END] = network->end;
     limits[CAPACITANCE] = network->capacitance;
     limits[VOLTAGE] = network->voltage;
     limits[COVERAGE] = network->coverage;
@@ -55,10 +57,13 @@ dea_status dea_balance_open(dea_network *network, dea_balance *balance, dea_erro
     *balance = (dea_balance){.range_count = network->range_count,
                              .tension_count = network->tension_count,
                              .kind = network->kind,
-                             .sign = network->sign};
-    const dea_expr load = dea_network_load(network);
-    const dea_expr forces[] = {dea_network_elastic(network), load};
-    dea_status status = dea_tape_compile(&network->pool, forces, 2, &balance->forces, error);
+                             .sign = network->sign,
+                             .ends = network->ends,
+                             .symbol = (double)NAN};
+    const dea_expr load = dea_network_load(network), steady = dea_network_steady(network);
+    const dea_expr forces[FORCES] = {dea_network_elastic(network), load, steady};
+    balance->steady = dea_expr_constant(&network->pool, steady) != 0.0;
+    dea_status status = dea_tape_compile(&network->pool, forces, balance->steady ? FORCES : STEADY, &balance->forces, error);
     if (status == DEA_OK) {
         status = compile_limits(network, balance, load, error);
     }
@@ -106,12 +111,34 @@ double dea_forces_stiffness(const dea_forces *f)
     return f->load == 0.0 ? f->elastic_slope : f->elastic_slope - f->elastic / f->load * f->load_slope;
 }
 
-/* Past the end of an energy, where forces are no numbers, nothing is stable. */
-static double stiffness_at(dea_balance *balance, double symbol, double u)
+/* A way from a begin on: what grows there, and in which sense u moves. */
+typedef struct way {
+    dea_balance *balance;
+    double symbol, begin, sign;
+    bool steady; /* T grows, without load; else the load, beside all of T */
+} way;
+
+static dea_forces forces_on(const way *w, double distance)
 {
-    const dea_forces f = dea_balance_forces(balance, symbol, u);
+    dea_forces f = dea_balance_forces(w->balance, w->symbol, w->begin + w->sign * distance);
+    if (w->steady) {
+        const double t = dea_tape_value(&w->balance->forces, STEADY), slope = dea_tape_slope(&w->balance->forces, STEADY);
+        f = (dea_forces){f.elastic + t, f.elastic_slope + slope, t, slope};
+    }
+    return f;
+}
+
+/* Past the end of an energy, where forces are no numbers, nothing is stable. */
+static double stiffness_on(const way *w, double distance)
+{
+    const dea_forces f = forces_on(w, distance);
     const double stiffness = dea_forces_stiffness(&f);
     return isnan(stiffness) ? -(double)INFINITY : stiffness;
+}
+
+double dea_balance_radius(const dea_balance *balance)
+{
+    return dea_tape_value(&balance->limits, RADIUS);
 }
 
 double dea_balance_length(const dea_balance *balance)
@@ -119,19 +146,25 @@ double dea_balance_length(const dea_balance *balance)
     return dea_tape_value(&balance->limits, LENGTH);
 }
 
-double dea_balance_end(const dea_balance *balance)
+/* Outward the annulus ends at r - r_a = r_a (1 - B)/B, inward the disc at -r_a. */
+static double end_of(const dea_balance *balance, double begin, double sign)
 {
-    const double end = dea_tape_value(&balance->limits, END);
-    return end > 0.0 ? end * (1.0 - 1e-12) : 1e9 * dea_balance_length(balance);
+    const double b = dea_tape_value(&balance->limits, COVERAGE), radius = dea_tape_value(&balance->limits, RADIUS);
+    const double end = sign > 0.0 ? radius * (1.0 - b) / b - begin : radius + begin;
+    return balance->ends ? end * (1.0 - 1e-12) : 1e9 * dea_balance_length(balance);
 }
 
-/* First place on the way from `from` to `to` (distances from rest, where the stiffness is at_from and at_to) at which the
+double dea_balance_end(const dea_balance *balance)
+{
+    return end_of(balance, balance->steady ? balance->rest : 0.0, balance->sign);
+}
+
+/* First place on the way from `from` to `to` (distances from its begin, where the stiffness is at_from and at_to) at which the
  * stiffness is not positive, found by samples so close that it at most halves, or the stretch moves by 5 %, between two of them.
  * Returns true with a narrow bracket, else false. */
-static bool find_softening(dea_balance *balance, double symbol, double from, double at_from, double to, double at_to,
-                           double *before, double *after)
+static bool find_softening(const way *w, double from, double at_from, double to, double at_to, double *before, double *after)
 {
-    const double length = dea_balance_length(balance);
+    const double length = dea_balance_length(w->balance);
     double at = from;
     double stiffness = at_from;
     double next = to;
@@ -156,57 +189,109 @@ static bool find_softening(dea_balance *balance, double symbol, double from, dou
         } else {
             next = at + 0.5 * width;
         }
-        there = next == to ? at_to : stiffness_at(balance, symbol, balance->sign * next);
+        there = next == to ? at_to : stiffness_on(w, next);
     }
     return false;
 }
 
-bool dea_balance_folds(dea_balance *balance, double symbol, double *share, double *u)
+/* What the way comes to. */
+typedef struct arrival {
+    double low, high; /* distances between which its full load is reached, high NAN: a fold or the end is at low */
+    double share;     /* of the load at low */
+} arrival;
+
+static arrival follow(const way *w)
 {
-    dea_tape_run_values(&balance->limits, symbol, 0.0);
-    const double length = dea_balance_length(balance);
-    const double end = dea_balance_end(balance);
-    double before = 0.0;
-    double after = 0.0;
-    double from = 0.0;
-    double stiffness = stiffness_at(balance, symbol, 0.0);
+    const double length = dea_balance_length(w->balance), end = end_of(w->balance, w->begin, w->sign);
+    double before = 0.0, after = 0.0, from = 0.0, share = 0.0;
+    double stiffness = stiffness_on(w, 0.0);
     while (from < end) {
         const double to = fmin(end, from + 0.05 * (length + from));
-        const double next = stiffness_at(balance, symbol, balance->sign * to);
-        const bool softens = find_softening(balance, symbol, from, stiffness, to, next, &before, &after);
+        const double next = stiffness_on(w, to);
+        const bool softens = find_softening(w, from, stiffness, to, next, &before, &after);
         for (int i = 0; softens && i < 100; i++) {
             const double middle = 0.5 * (before + after);
             if (middle <= before || middle >= after) {
                 break;
             }
-            *(stiffness_at(balance, symbol, balance->sign * middle) > 0.0 ? &before : &after) = middle;
+            *(stiffness_on(w, middle) > 0.0 ? &before : &after) = middle;
         }
         const double at = softens ? before : to;
-        const dea_forces f = dea_balance_forces(balance, symbol, balance->sign * at);
-        if (f.elastic / f.load >= 1.0) {
-            return false;
+        const dea_forces f = forces_on(w, at);
+        share = f.elastic / f.load;
+        if (w->sign * f.elastic >= w->sign * f.load) {
+            return (arrival){from, at, share};
         }
         if (softens || to >= end) {
-            *share = f.elastic / f.load;
-            *u = balance->sign * at;
-            return true;
+            return (arrival){at, (double)NAN, share};
         }
         from = to;
         stiffness = next;
     }
-    return false;
+    return (arrival){from, (double)NAN, share};
+}
+
+bool dea_balance_folds(dea_balance *balance, double symbol, double *share, double *u)
+{
+    const double rest = dea_balance_rest(balance, symbol);
+    const way w = {balance, symbol, rest, balance->sign, false};
+    if (isnan(rest)) {
+        *share = 0.0;
+        *u = rest;
+        return true;
+    }
+    const arrival there = follow(&w);
+    *share = there.share;
+    *u = rest + w.sign * there.low;
+    return isnan(there.high);
+}
+
+/* The zero of R - F between two distances, by Newton's steps and halving. */
+static double arrive(const way *w, double low, double high)
+{
+    double at = 0.5 * (low + high);
+    for (int i = 0; i < 200 && high - low > 1e-16 * high; i++) {
+        const dea_forces f = forces_on(w, at);
+        const double excess = w->sign * (f.elastic - f.load);
+        *(excess < 0.0 ? &low : &high) = at;
+        const double next = at - excess / (f.elastic_slope - f.load_slope), step = fabs(next - at);
+        at = next > low && next < high ? next : 0.5 * (low + high);
+        if (at == next && step <= 2e-16 * fabs(at)) {
+            break;
+        }
+    }
+    return at;
+}
+
+double dea_balance_rest(dea_balance *balance, double symbol)
+{
+    dea_tape_run_values(&balance->limits, symbol, 0.0);
+    if (!balance->steady || symbol == balance->symbol) {
+        return balance->steady ? balance->rest : 0.0;
+    }
+    const dea_forces f = dea_balance_forces(balance, symbol, 0.0);
+    const double steady = dea_tape_value(&balance->forces, STEADY);
+    const way w = {balance, symbol, 0.0, steady < 0.0 ? -1.0 : 1.0, true};
+    balance->symbol = symbol;
+    balance->rest = f.elastic_slope > 0.0 ? 0.0 : (double)NAN;
+    if (steady != 0.0) {
+        const arrival there = follow(&w);
+        balance->rest = isnan(there.high) ? (double)NAN : w.sign * arrive(&w, there.low, there.high);
+    }
+    return balance->rest;
 }
 
 /* True where u, an equilibrium with the forces f, is the first one from rest. The limits hold their values at u. */
 static bool is_connected(dea_balance *balance, double symbol, double u, const dea_forces *f)
 {
-    const double distance = balance->sign * u;
+    const way w = {balance, symbol, balance->steady ? balance->rest : 0.0, balance->sign, false};
+    const double distance = w.sign * (u - w.begin);
     double before, after;
     if (!(distance > 0.0 && distance < dea_balance_end(balance))) {
         return false;
     }
-    const double rest = stiffness_at(balance, symbol, 0.0);
-    return !find_softening(balance, symbol, 0.0, rest, distance, dea_forces_stiffness(f), &before, &after);
+    const double rest = stiffness_on(&w, 0.0);
+    return !find_softening(&w, 0.0, rest, distance, dea_forces_stiffness(f), &before, &after);
 }
 
 /* The row at u, from the limits there. */
@@ -225,6 +310,7 @@ static dea_row row_of(const dea_balance *balance, double u)
     }
     row.charge = row.capacitance * dea_tape_value(limits, VOLTAGE);
     row.energy = 0.5 * row.charge * dea_tape_value(limits, VOLTAGE);
+    row.second_field = fabs(dea_tape_value(limits, SECOND_FIELD));
     row.area_strain = dea_area_strain(balance->kind, dea_tape_value(limits, COVERAGE), row.strain);
     row.focal_length = isnan(focal) ? focal
                                     : dea_lens_focal_length(focal, dea_tape_value(limits, REFRACTIVE_INDEX),
@@ -234,7 +320,7 @@ static dea_row row_of(const dea_balance *balance, double u)
             row.state = DEA_STATE_SLACK;
         }
     }
-    if (row.field > dea_tape_value(limits, BREAKDOWN)) {
+    if (row.field > dea_tape_value(limits, BREAKDOWN) || row.second_field > dea_tape_value(limits, SECOND_BREAKDOWN)) {
         row.state = DEA_STATE_BREAKDOWN;
     }
     return row;
@@ -248,17 +334,18 @@ void dea_balance_fill(dea_balance *balance, double symbol, double u, dea_row *ro
 
 bool dea_balance_accept(dea_balance *balance, double symbol, double u, double tolerance, dea_row *row)
 {
+    const double rest = dea_balance_rest(balance, symbol);
     const dea_forces f = dea_balance_forces(balance, symbol, u);
     dea_tape_run_values(&balance->limits, symbol, u);
     if (!in_range(balance)) {
         return false;
     }
-    if (f.load == 0.0 && fabs(u) <= 1e-15 * dea_balance_length(balance)) {
-        dea_balance_fill(balance, symbol, 0.0, row);
+    if (f.load == 0.0 && fabs(u - rest) <= fmax(1e-15 * dea_balance_length(balance), tolerance * fabs(rest))) {
+        dea_balance_fill(balance, symbol, rest, row);
         return true;
     }
     const double correction = (f.elastic - f.load) / (f.elastic_slope - f.load_slope);
-    if (!(fabs(correction) <= tolerance * fabs(u)) || !is_connected(balance, symbol, u, &f)) {
+    if (!(fabs(correction) <= tolerance * fmax(fabs(u), fabs(rest))) || !is_connected(balance, symbol, u, &f)) {
         return false;
     }
     *row = row_of(balance, u);

@@ -176,7 +176,9 @@ dea_status dea_dynamics_settle(const dea_scene *scene, const dea_model *model, d
                         .radius = NAN,
                         .focal_length = scene->actuator.focal_length,
                         .refractive_index = scene->actuator.refractive_index,
-                        .linear = model->linear != NULL && !scene->electrode.law && !(scene->load.stiffness > 0.0)};
+                        .linear = model->linear != NULL && !scene->electrode.law && !(scene->load.stiffness > 0.0) &&
+                                  !(fabs(scene->load.force) > 0.0) && !scene->antagonist.there};
+    d->damping = scene->load.damping > 0.0 ? scene->load.damping : 0.0;
     d->softens = !scene->reduction.softening;
     if (!dea_dynamics_relax(d, scene)) {
         return dea_fail(error, DEA_ERROR_USAGE, "the shares g of the branches sum to 1 or more");
@@ -185,9 +187,12 @@ dea_status dea_dynamics_settle(const dea_scene *scene, const dea_model *model, d
     if (status != DEA_OK) {
         return status;
     }
+    if ((d->point.force != 0.0 || d->point.second.there) && !dea_dynamics_equilibrium(d, 0.0, &d->rest)) {
+        d->rest = (double)NAN;
+    }
     set_port(scene, d);
     d->biased = scene->transient.from_bias;
-    d->clamped = d->series > 0.0 || d->dropped > 0.0 || dea_point_mass(scene, &d->point) > 0.0 || d->retardation > 0.0 ||
+    d->clamped = d->series > 0.0 || d->dropped > 0.0 || dea_point_mass(scene, &d->point) > 0.0 || dea_dynamics_is_damped(d) ||
                  !isnan(scene->material.retardation);
     d->radius = d->point.coverage * d->point.frame_radius;
     d->mass = scene->reduction.mass ? 0.0 : dea_point_mass(scene, &d->point);
@@ -290,6 +295,11 @@ double dea_edge_viscous(const dea_dynamics *d, const dea_edge *e)
     return sum;
 }
 
+double dea_edge_resistance(const dea_dynamics *d, const dea_edge *e)
+{
+    return d->retardation * dea_edge_viscous(d, e) + d->damping;
+}
+
 double dea_edge_viscous_slope(const dea_dynamics *d, const dea_edge *e)
 {
     double sum = 0.0;
@@ -313,9 +323,16 @@ bool dea_dynamics_equilibrium(const dea_dynamics *dynamics, double voltage, doub
     dea_point point = dynamics->point;
     dea_row row = dea_row_failed();
     point.voltage = voltage;
-    dynamics->model->solve(&point, 1e-12, &row);
+    dea_model_solve(dynamics->model, &point, 1e-12, &row);
     *u = row.displacement;
     return row.state != DEA_STATE_PULL_IN && row.state != DEA_STATE_FAILED;
+}
+
+bool dea_dynamics_begin(const dea_dynamics *d, bool from_bias, double source, double *u, double *voltage)
+{
+    *voltage = from_bias ? dea_dynamics_rest(d, source) : 0.0;
+    *u = d->rest;
+    return from_bias ? dea_dynamics_equilibrium(d, *voltage, u) : isfinite(*u);
 }
 
 double dea_dynamics_stiffness(dea_dynamics *dynamics, double u, double voltage, bool relaxed)
@@ -335,8 +352,9 @@ double dea_dynamics_hold(dea_dynamics *dynamics, double u, double voltage, const
 
 double dea_dynamics_scale(dea_dynamics *dynamics, double voltage)
 {
-    const dea_edge e = dea_dynamics_edge(dynamics, 0.0);
-    const double size = fabs(e.push * voltage * voltage / dea_edge_held_slope(dynamics, &e, NULL));
+    const double rest = isnan(dynamics->rest) ? 0.0 : dynamics->rest;
+    const dea_edge e = dea_dynamics_edge(dynamics, rest);
+    const double size = fabs(rest) + fabs(e.push * voltage * voltage / dea_edge_held_slope(dynamics, &e, NULL));
     const double longest = fmin(dynamics->radius, dynamics->point.frame_radius - dynamics->radius);
     return size > 0.0 && size < longest ? size : longest;
 }
@@ -413,8 +431,8 @@ static double velocity(dea_dynamics *d, double u, double voltage, double slope, 
     double stiffness;
     const double force = imbalance(d, u, voltage, z, &stiffness);
     const dea_edge e = dea_dynamics_edge(d, u);
-    if (d->retardation > 0.0) {
-        return -force / (d->retardation * dea_edge_viscous(d, &e));
+    if (dea_dynamics_is_damped(d)) {
+        return -force / dea_edge_resistance(d, &e);
     }
     const double push = 2.0 * e.push * voltage;
     double loss = 0.0;
@@ -438,7 +456,7 @@ double dea_dynamics_velocity_charged(dea_dynamics *dynamics, double u, double vo
 dea_sample dea_sample_refused(double time, double voltage, dea_state state)
 {
     const double none = (double)NAN;
-    return (dea_sample){time, voltage, none, none, none, none, none, none, none, none, none, state};
+    return (dea_sample){time, voltage, none, none, none, none, none, none, none, none, none, state, {none, none, none, none}};
 }
 
 /* Within the limit; NAN stays. */
@@ -484,7 +502,7 @@ double dea_dynamics_current(dea_dynamics *dynamics, const dea_moment *moment)
 /* The first sample of a run from rest, over a resistance that the network leaves out: the film has no charge yet. */
 static void sample_uncharged(dea_dynamics *dynamics, const dea_moment *moment, dea_sample *sample)
 {
-    const dea_moment rest = {.time = moment->time};
+    const dea_moment rest = {.time = moment->time, .u = dynamics->rest};
     const double series = dynamics->dropped;
     dynamics->dropped = 0.0;
     (void)dea_dynamics_sample(dynamics, &rest, sample);
@@ -493,15 +511,20 @@ static void sample_uncharged(dea_dynamics *dynamics, const dea_moment *moment, d
     sample->current = moment->source / series;
 }
 
+bool dea_dynamics_is_damped(const dea_dynamics *d)
+{
+    return d->retardation > 0.0 || d->damping > 0.0;
+}
+
 bool dea_dynamics_is_free(const dea_dynamics *d)
 {
-    return !(d->mass > 0.0) && !(d->retardation > 0.0);
+    return !(d->mass > 0.0) && !dea_dynamics_is_damped(d);
 }
 
 void dea_dynamics_lighten(dea_dynamics *d, double accuracy)
 {
     const dea_edge e = dea_dynamics_edge(d, 0.0);
-    const double resistance = d->retardation * dea_edge_viscous(d, &e);
+    const double resistance = dea_edge_resistance(d, &e);
     if (d->mass * dea_dynamics_stiffness(d, 0.0, 0.0, false) <= 1e-3 * accuracy * resistance * resistance) {
         d->mass = 0.0;
     }
@@ -583,7 +606,7 @@ void dea_audit_add(dea_audit *audit, dea_dynamics *dynamics, const dea_moment *m
     const double kept = fmax(0.0, fabs(m->source - m->voltage) - dynamics->series * dynamics->limit); /* by a source at its limit [V] */
     const double ohmic = leak + flow * flow * dynamics->series + (kept > 0.0 ? kept * fabs(flow) : 0.0);
     audit->work += weight * work;
-    audit->dissipated += weight * (ohmic + dynamics->retardation * dea_edge_viscous(dynamics, &e) * m->v * m->v);
+    audit->dissipated += weight * (ohmic + dea_edge_resistance(dynamics, &e) * m->v * m->v);
     audit->branch += weight * branch_force(dynamics, &e, z) * m->v;
     const double kinetic = 0.5 * dynamics->mass * m->v * m->v;
     audit->largest = fmax(fmax(audit->largest, kinetic), fmax(fabs(audit->work), fabs(audit->dissipated)));

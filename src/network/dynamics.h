@@ -1,12 +1,12 @@
 /* The moving network of one run: what every engine in the time and frequency domain, and every row of them, is made from.
  *
- *   m u'' + sum_a B_a(u) [ S_a(u) + tau_KV S_a'(u) u' + sum_i c_i (S_a - z_ai) ] + G(u) = phi(u) U^2,    z_ai' = (S_a -
- * z_ai)/tau_i
+ *   m u'' + r u' + sum_a B_a(u) [ S_a(u) + tau_KV S_a'(u) u' + sum_i c_i (S_a - z_ai) ] + G(u) = phi(u) U^2,
+ *   z_ai' = (S_a - z_ai)/tau_i
  *
  * with the film voltage U, the changes S_a of the long-term stresses from rest on their levers B_a (one with B = 1 and S = K u
- * where the springs are linear, one of Eq. 18, three of rings), what the stress at rest does by its levers, G, c_i = g_i/g_inf,
- * phi = (1/2) dC/du. Relaxed, z_ai = S_a. With an electrical port: d(C U)/dt + U/R_p = i, where i = (U_s - U)/R_s, held within
- * -I ... I by a source that gives no more than I: what it does not give is heat in it. */
+ * where the springs are linear, one of Eq. 18, three of rings), what the stress at rest does by its levers, less what is steady, G,
+ * c_i = g_i/g_inf, phi = (1/2) dC/du. Relaxed, z_ai = S_a. With an electrical port: d(C U)/dt + U/R_p = i, where
+ * i = (U_s - U)/R_s, held within -I ... I by a source that gives no more than I: what it does not give is heat in it. */
 #ifndef DEA_DYNAMICS_H
 #define DEA_DYNAMICS_H
 
@@ -25,6 +25,8 @@ typedef struct dea_dynamics {
     const dea_model *model;
     double mass;                        /* [kg], 0: none */
     double retardation;                 /* tau_KV [s], 0: none */
+    double damping;                     /* r of the load [N s/m], 0: none */
+    double rest;                        /* u without voltage [m]: 0 but under a steady force; NAN: there is no equilibrium */
     double held;                        /* sum of c_i of branches that are springs alone: S is that of film and these [1] */
     bool softens;                       /* the voltage changes the stiffness */
     dea_branch branches[DEA_PRONY_MAX]; /* slowest first, those of equal time drawn together */
@@ -78,6 +80,8 @@ double dea_edge_held_slope(const dea_dynamics *dynamics, const dea_edge *edge, c
 /* sum B_a S_a' [N/m], which damper and branches scale; and sum B_a' S_a' [N/m^2]: its slope but for S''. */
 double dea_edge_viscous(const dea_dynamics *dynamics, const dea_edge *edge);
 double dea_edge_viscous_slope(const dea_dynamics *dynamics, const dea_edge *edge);
+/* Mechanical resistance of damper and load, tau_KV sum B_a S_a' + r [N s/m]. */
+double dea_edge_resistance(const dea_dynamics *dynamics, const dea_edge *edge);
 /* Sets z to the branches relaxed at the edge. */
 void dea_edge_relax(const dea_dynamics *dynamics, const dea_edge *edge, double *z);
 /* Number of the z. */
@@ -87,6 +91,9 @@ static inline size_t dea_dynamics_states(const dea_dynamics *dynamics)
 }
 /* Static displacement under film voltage U from the model's own equation; false where there is none. */
 bool dea_dynamics_equilibrium(const dea_dynamics *dynamics, double voltage, double *u);
+/* Where a run begins under the first @p source voltage, and what of that the film has: rest without voltage, or from its bias the
+ * equilibrium; the branches are relaxed there. False where there is none. */
+bool dea_dynamics_begin(const dea_dynamics *dynamics, bool from_bias, double source, double *u, double *voltage);
 /* Net stiffness of the relaxed film dR/du - dF/du at u under film voltage U [N/m]; relaxed false: with the branches held. */
 double dea_dynamics_stiffness(dea_dynamics *dynamics, double u, double voltage, bool relaxed);
 /* Stiffness with the branches held at z that a film without mass and damper stays by: behind a series resistance its charge holds it,
@@ -107,7 +114,9 @@ double dea_dynamics_velocity_charged(dea_dynamics *dynamics, double u, double vo
  * zero before the electrode is gone, and what charges it ends there. */
 bool dea_dynamics_inside(dea_dynamics *dynamics, double u);
 
-/* True without mass and damper. */
+/* True where damper or load resist the velocity. */
+bool dea_dynamics_is_damped(const dea_dynamics *dynamics);
+/* True without mass and without what resists. */
 bool dea_dynamics_is_free(const dea_dynamics *dynamics);
 /* Drops a mass that a damper outweighs: it only matters for a moment m/r behind an edge, and then to m K/r^2 of the displacement. */
 void dea_dynamics_lighten(dea_dynamics *dynamics, double accuracy);
@@ -121,6 +130,7 @@ typedef struct dea_moment {
     double u, v;         /* [m], [m/s] */
     bool charging;       /* the slope of the charge is known better than the small drop over R_s: */
     double charge_slope; /* [A] */
+    const double *charge_slopes; /* those of the charges along an electrode with a sheet resistance [A]; NULL: not known so well */
 } dea_moment;
 
 /* At the first moment of a film at its bias the branches have relaxed and the charge rests: of forces that cancel nothing is

@@ -3,16 +3,28 @@
 #include "expression/derivative.h"
 #include "material/form.h"
 
+static dea_expr stretch_at(const dea_symbols *symbols, dea_expr e)
+{
+    dea_pool *pool = symbols->pool;
+    return MUL(symbols->prestretch, ADD(NUM(1.0), e));
+}
+
 /* Cauchy stresses at two relative stretches. */
 static dea_law_form form_at(const dea_symbols *symbols, dea_expr e1, dea_expr e2)
 {
     dea_pool *pool = symbols->pool;
-    const dea_expr l1 = MUL(symbols->prestretch, ADD(NUM(1.0), e1)), l2 = MUL(symbols->prestretch, ADD(NUM(1.0), e2));
+    const dea_expr l1 = stretch_at(symbols, e1), l2 = stretch_at(symbols, e2);
     dea_law_form form = {0};
     if (!pool->exhausted) {
         symbols->law->form(pool, symbols->constants, l1, l2, &form);
     }
     return form;
+}
+
+dea_expr dea_hyperelastic_thin(const dea_symbols *symbols, dea_expr e1, dea_expr e2)
+{
+    const dea_expr l1 = stretch_at(symbols, e1), l2 = stretch_at(symbols, e2);
+    return symbols->pool->exhausted ? 0 : dea_expr_change(symbols->pool, dea_form_invariants_of(symbols->pool, l1, l2).v);
 }
 
 dea_expr dea_hyperelastic_principal(const dea_symbols *symbols, dea_expr e1, dea_expr e2)

@@ -10,6 +10,8 @@ dea_expr dea_hyperelastic_change(const dea_symbols *symbols, dea_expr e);
 dea_expr dea_hyperelastic_principal(const dea_symbols *symbols, dea_expr e1, dea_expr e2);
 /* Both changes of the Cauchy stresses [Pa], likewise. */
 void dea_hyperelastic_cauchy(const dea_symbols *symbols, dea_expr e1, dea_expr e2, dea_expr stress[2]);
+/* Change of lambda_3^2 = 1/(lambda_1 lambda_2)^2 as it stands in them, of a law of the invariants. */
+dea_expr dea_hyperelastic_thin(const dea_symbols *symbols, dea_expr e1, dea_expr e2);
 /* lambda_pre (P_a - P_a(lambda_pre)) [Pa] at these stretches, likewise: work-conjugate to e_a. */
 void dea_hyperelastic_nominal(const dea_symbols *symbols, dea_expr e1, dea_expr e2, dea_expr stress[2]);
 

@@ -20,6 +20,14 @@ static void set_masses(const dea_scene *scene, dea_membrane *m)
     m->masses[m->rings.edge] += m->heavy && scene->load.mass > 0.0 ? scene->load.mass : 0.0;
 }
 
+const char dea_load_stalled[] = "load.damping alone leaves the other nodes of the membrane without an equation of motion: it takes "
+                                "material.density or material.retardation too";
+
+bool dea_load_stalls(const dea_scene *scene)
+{
+    return scene->load.damping > 0.0 && isnan(scene->material.density) && isnan(scene->material.retardation);
+}
+
 /* A ring at the frame has no node of its own: any does, with a hoop of 0. */
 static void find_own(dea_membrane *m)
 {
@@ -37,23 +45,23 @@ dea_status dea_membrane_open(const dea_scene *scene, const dea_model *model, dea
     const dea_status status = dea_dynamics_settle(scene, model, &m->film, error);
     if (status == DEA_OK) {
         dea_rings_cut(&m->film.point, mesh, &m->rings);
+        dea_sheet_open(scene, m);
         set_masses(scene, m);
         find_own(m);
     }
     return status;
 }
 
-dea_rings_mesh dea_membrane_usual_mesh(const dea_scene *scene)
-{
-    const dea_actuator *actuator = &scene->actuator;
-    const double coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
-    return (dea_rings_mesh){8, 16, coverage < 0.1};
-}
-
 static double square_of(const dea_membrane *m, double voltage)
 {
     const double field = voltage / m->film.point.film_thickness;
     return m->film.point.film.permittivity * field * field; /* k [Pa] */
+}
+
+/* k of a ring. */
+static double square_at(const dea_membrane *m, const dea_membrane_look *look, size_t r, double voltage)
+{
+    return square_of(m, dea_membrane_voltage(m, look, r, voltage));
 }
 
 /* lambda_pre (1 + e_a): stretches of a ring, and their changes from rest. */
@@ -115,6 +123,7 @@ static bool look_at_ring(const dea_membrane *m, size_t r, const double *u, dea_r
 
 bool dea_membrane_look_at(const dea_membrane *m, const double *u, dea_membrane_look *look)
 {
+    const double thickness = m->film.point.film_thickness, unit = m->film.point.film.permittivity / (thickness * thickness);
     double sum = 0.0;
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         const dea_ring *ring = &m->rings.rings[r];
@@ -122,12 +131,13 @@ bool dea_membrane_look_at(const dea_membrane *m, const double *u, dea_membrane_l
         if (!look_at_ring(m, r, u, at)) {
             return false;
         }
-        const double area = at->stretch[0] * at->stretch[1];
-        sum += ring->electroded ? ring->volume * area * area : 0.0;
+        const double area = at->stretch[0] * at->stretch[1], content = ring->electroded ? ring->volume * area * area : 0.0;
+        at->capacitance = unit * content;
+        sum += content;
     }
-    const double thickness = m->film.point.film_thickness;
     look->edge = u[m->rings.edge];
-    look->capacitance = m->film.point.film.permittivity / (thickness * thickness) * sum;
+    look->capacitance = unit * sum;
+    look->spread = false;
     return true;
 }
 
@@ -150,15 +160,26 @@ void dea_membrane_pull(const dea_membrane *m, double (*f)[2], double *force)
     }
 }
 
+/* Adds phi_n of one ring. */
+static void push_ring(const dea_membrane *m, const dea_membrane_look *look, size_t r, double *push)
+{
+    const double unit = square_of(m, 1.0), *l = look->rings[r].stretch;
+    const double f[2] = {-unit * l[0] * l[1] * l[1], -unit * l[0] * l[0] * l[1]};
+    pull_ring(m, r, f, push);
+}
+
+void dea_membrane_push_ring(const dea_membrane *m, const dea_membrane_look *look, size_t r, double *push)
+{
+    memset(push, 0, m->rings.node_count * sizeof *push);
+    push_ring(m, look, r, push);
+}
+
 void dea_membrane_push(const dea_membrane *m, const dea_membrane_look *look, double *push)
 {
-    const double unit = square_of(m, 1.0);
     memset(push, 0, m->rings.node_count * sizeof *push);
     for (size_t r = 0; r < m->rings.ring_count; r++) {
-        const double *l = look->rings[r].stretch;
-        const double f[2] = {-unit * l[0] * l[1] * l[1], -unit * l[0] * l[0] * l[1]};
         if (m->rings.rings[r].electroded) {
-            pull_ring(m, r, f, push);
+            push_ring(m, look, r, push);
         }
     }
 }
@@ -202,19 +223,17 @@ void dea_membrane_viscous(const dea_membrane *m, const dea_membrane_look *look, 
 
 void dea_membrane_force(const dea_membrane *m, const dea_membrane_look *look, double voltage, double (*x)[2], double *force)
 {
-    const double k = square_of(m, voltage);
     memset(force, 0, m->rings.node_count * sizeof *force);
     for (size_t r = 0; r < m->rings.ring_count; r++) {
-        const dea_ring *ring = &m->rings.rings[r];
         const dea_ring_look *at = &look->rings[r];
-        const double area = at->stretch[0] * at->stretch[1], pressure = ring->electroded ? k * area : 0.0;
+        const double area = at->stretch[0] * at->stretch[1], pressure = square_at(m, look, r, voltage) * area;
         double s[2];
         for (int a = 0; a < 2; a++) {
             s[a] = at->nominal[a] - pressure * at->stretch[1 - a] + (x ? x[r][a] / at->stretch[a] : 0.0);
         }
         pull_ring(m, r, s, force);
     }
-    force[m->rings.edge] -= m->film.point.load * look->edge;
+    force[m->rings.edge] += m->film.point.force - m->film.point.load * look->edge;
 }
 
 /* ds_a/dlambda_b of a ring: of the film, of its electrical part k lambda_a lambda_b^2, of x_a/lambda_a at constant x_a, and of a
@@ -233,10 +252,9 @@ static void ring_tangent(const dea_ring_look *at, double k, const double *x, dou
 
 bool dea_membrane_elliptic(const dea_membrane *m, const dea_membrane_look *look, double voltage, double (*x)[2], double share)
 {
-    const double k = square_of(m, voltage);
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         double t[2][2];
-        ring_tangent(&look->rings[r], m->rings.rings[r].electroded ? k : 0.0, x ? x[r] : NULL, share, t);
+        ring_tangent(&look->rings[r], square_at(m, look, r, voltage), x ? x[r] : NULL, share, t);
         if (!(t[0][0] > 0.0)) {
             return false;
         }
@@ -266,11 +284,10 @@ static void assemble_ring(const dea_membrane *m, size_t r, double t[2][2], doubl
 void dea_membrane_stiffness(const dea_membrane *m, const dea_membrane_look *look, double voltage, double (*x)[2], double share,
                             double *stiffness)
 {
-    const double k = square_of(m, voltage);
     memset(stiffness, 0, m->rings.node_count * m->rings.node_count * sizeof *stiffness);
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         double t[2][2];
-        ring_tangent(&look->rings[r], m->rings.rings[r].electroded ? k : 0.0, x ? x[r] : NULL, share, t);
+        ring_tangent(&look->rings[r], square_at(m, look, r, voltage), x ? x[r] : NULL, share, t);
         assemble_ring(m, r, t, stiffness);
     }
     stiffness[m->rings.edge * (m->rings.node_count + 1)] += m->film.point.load;
@@ -426,6 +443,9 @@ bool dea_membrane_follow(const dea_membrane *m, double voltage, const double *z,
 bool dea_membrane_still(const dea_membrane *m, double voltage, double *u)
 {
     memset(u, 0, m->rings.node_count * sizeof *u);
+    if (m->film.point.force != 0.0 && !follow(m, 0.0, 0.0, NULL, u)) {
+        return false;
+    }
     return follow(m, 0.0, voltage, NULL, u);
 }
 
@@ -461,7 +481,7 @@ static double edge_force(const dea_membrane *m, const dea_membrane_look *look, d
     const bool dot = m->film.point.kind == DEA_DOT;
     const size_t r = dot ? inner : inner + 1;
     const double *l = look->rings[r].stretch;
-    return (dot ? 1.0 : -1.0) * 2.0 * DEA_PI * m->rings.rings[r].radius * m->film.point.film_thickness * square_of(m, voltage) *
+    return (dot ? 1.0 : -1.0) * 2.0 * DEA_PI * m->rings.rings[r].radius * m->film.point.film_thickness * square_at(m, look, r, voltage) *
            l[0] * l[1] * l[1];
 }
 
@@ -475,30 +495,42 @@ static double largest_up_to(const dea_membrane *m, bool disc, const double *valu
         low = counts ? fmin(low, values[r]) : low;
         high = counts ? fmax(high, values[r]) : high;
     }
-    return high + (high - low) < limit ? high : dea_rings_largest(&m->rings, disc, values);
+    return high + (high - low) < limit ? high : dea_rings_largest(&m->rings, disc, values, NULL);
 }
 
-/* A row; its field is exact where lambda_1 lambda_2 passes a limit. */
-static void fill_row(const dea_membrane *m, const dea_membrane_look *look, double voltage, const double *u, double limit,
+/* The film voltage, or the largest of the rings. */
+static double peak_voltage(const dea_membrane *m, const dea_membrane_look *look, double voltage)
+{
+    double largest = 0.0;
+    for (size_t r = 0; r < m->rings.ring_count && look->spread; r++) {
+        largest = fmax(largest, fabs(dea_membrane_voltage(m, look, r, voltage)));
+    }
+    return look->spread ? largest : voltage;
+}
+
+/* A row under the peak of the voltage; its field is exact where lambda_1 lambda_2, times the share of that voltage, passes a limit. */
+static void fill_row(const dea_membrane *m, const dea_membrane_look *look, double peak, const double *u, double limit,
                      dea_row *row)
 {
-    const double k = square_of(m, voltage), tension = m->film.point.film.tension;
+    const double tension = m->film.point.film.tension;
     double loss[2][DEA_RINGS_MOST], area[DEA_RINGS_MOST], most = -INFINITY; /* of stresses */
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         const dea_ring_look *at = &look->rings[r];
+        const double k = square_at(m, look, r, peak);
         area[r] = at->stretch[0] * at->stretch[1];
         for (int a = 0; a < 2; a++) {
-            loss[a][r] = (m->rings.rings[r].electroded ? k * area[r] * at->stretch[1 - a] : 0.0) - at->nominal[a];
+            loss[a][r] = k * area[r] * at->stretch[1 - a] - at->nominal[a];
         }
+        area[r] *= look->spread && peak > 0.0 ? fabs(dea_membrane_voltage(m, look, r, peak)) / peak : 1.0;
     }
     for (int i = 0; i < 4; i++) {
         most = fmax(most, largest_up_to(m, i < 2, loss[i % 2], tension));
     }
     dea_point point = m->film.point;
-    point.voltage = voltage;
+    point.voltage = peak;
     dea_row_fill(row, &point,
                  (dea_found){.strain = u[m->rings.edge] / m->film.radius,
-                             .force = edge_force(m, look, voltage),
+                             .force = edge_force(m, look, peak),
                              .stretch = largest_up_to(m, m->film.point.kind == DEA_DOT, area, limit),
                              .capacitance = look->capacitance,
                              .taut = tension > most});
@@ -523,12 +555,15 @@ static double capacitance_rate(const dea_membrane *m, const dea_membrane_look *l
 double dea_membrane_current(const dea_membrane *m, const dea_membrane_look *look, const dea_moment *moment, const double *v)
 {
     const dea_dynamics *d = &m->film;
-    const double leak = moment->voltage * d->conductance;
+    const double leak = dea_sheet_leakage(m, look, moment->voltage);
     if (moment->charging) {
-        return moment->charge_slope + leak;
+        return moment->charge_slope + leak + dea_sheet_rim_current(m, look, moment->source, moment->slope, v);
     }
     if (d->series > 0.0) {
-        return (moment->source - moment->voltage) / d->series;
+        return (moment->source - dea_sheet_rim_voltage(m, look, moment->voltage)) / d->series;
+    }
+    if (look->spread) {
+        return dea_sheet_rim_current(m, look, moment->source, moment->slope, v) + dea_sheet_through(m, look);
     }
     return look->capacitance * moment->slope + capacitance_rate(m, look, v) * moment->voltage + leak;
 }
@@ -538,8 +573,9 @@ static bool fill_sample(const dea_membrane *m, const dea_membrane_look *look, co
 {
     dea_row row = dea_row_failed();
     const dea_point *point = &m->film.point;
-    const double field = fabs(moment->voltage) * point->layers / point->film_thickness; /* nominal, of a layer */
-    fill_row(m, look, moment->voltage, u, field > 0.0 ? point->film.breakdown / field : (double)INFINITY, &row);
+    const double peak = peak_voltage(m, look, moment->voltage);
+    const double field = fabs(peak) * point->layers / point->film_thickness; /* nominal, of a layer */
+    fill_row(m, look, peak, u, field > 0.0 ? point->film.breakdown / field : (double)INFINITY, &row);
     *sample = dea_sample_refused(moment->time, moment->source, DEA_STATE_PULL_IN);
     if (row.state == DEA_STATE_FAILED || !isfinite(v[m->rings.edge])) {
         return false;
@@ -553,7 +589,7 @@ static bool fill_sample(const dea_membrane *m, const dea_membrane_look *look, co
     sample->film_voltage = moment->voltage;
     if (m->film.port) {
         sample->current = dea_membrane_current(m, look, moment, v);
-        sample->charge = row.charge;
+        sample->charge = look->capacitance * moment->voltage;
         sample->capacitance = row.capacitance;
     }
     return true;
@@ -562,11 +598,12 @@ static bool fill_sample(const dea_membrane *m, const dea_membrane_look *look, co
 /* The first sample of a run from rest, over a resistance that the network leaves out: the film has no charge yet. */
 static bool sample_uncharged(const dea_membrane *m, const dea_moment *moment, dea_sample *sample)
 {
-    static const double still[DEA_RINGS_NODES] = {0.0};
+    static const double none[DEA_RINGS_NODES] = {0.0};
+    double still[DEA_RINGS_NODES];
     const dea_moment at = {.time = moment->time, .source = moment->source, .charging = true,
                            .charge_slope = moment->source / m->film.dropped};
     dea_membrane_look look;
-    return dea_membrane_look_at(m, still, &look) && fill_sample(m, &look, &at, still, still, sample);
+    return dea_membrane_still(m, 0.0, still) && dea_membrane_look_at(m, still, &look) && fill_sample(m, &look, &at, still, none, sample);
 }
 
 bool dea_membrane_sample(const dea_membrane *m, const dea_membrane_look *look, const dea_moment *moment, const double *u,
@@ -599,13 +636,12 @@ static bool find_modes(const dea_membrane *m, double *stiffness, dea_membrane_re
 
 bool dea_membrane_at_rest(const dea_membrane *m, dea_membrane_rest *rest)
 {
-    static const double still[DEA_RINGS_NODES] = {0.0};
     const size_t n = m->rings.node_count, edge = m->rings.edge;
-    double stiffness[DEA_RINGS_NODES * DEA_RINGS_NODES], held[DEA_RINGS_NODES * DEA_RINGS_NODES];
+    double still[DEA_RINGS_NODES], stiffness[DEA_RINGS_NODES * DEA_RINGS_NODES], held[DEA_RINGS_NODES * DEA_RINGS_NODES];
     double push[DEA_RINGS_NODES], shape[DEA_RINGS_NODES], stiff[DEA_RINGS_NODES];
     dea_membrane_look look;
     *rest = (dea_membrane_rest){0};
-    if (!dea_membrane_look_at(m, still, &look)) {
+    if (!dea_membrane_still(m, 0.0, still) || !dea_membrane_look_at(m, still, &look)) {
         return false;
     }
     dea_membrane_push(m, &look, push);
@@ -661,8 +697,11 @@ void dea_membrane_audit_add(dea_audit *audit, const dea_membrane *m, const dea_m
                             const double *v, const double *z, double weight)
 {
     const dea_dynamics *d = &m->film;
-    const double square = moment->voltage * moment->voltage, leak = square * d->conductance;
+    const double square = moment->voltage * moment->voltage;
     const bool series = d->series > 0.0;
+    const dea_sheet_powers sheets = look->spread ? dea_sheet_powers_of(m, look, moment, v) : (dea_sheet_powers){0};
+    const double leak = look->spread ? sheets.heat : square * d->conductance;
+    const double fed = look->spread ? sheets.fed : 0.5 * capacitance_rate(m, look, v) * square + leak;
     const double flow = series ? dea_membrane_current(m, look, moment, v) : 0.0;
     double rates[DEA_RINGS_MOST][2], x[DEA_RINGS_MOST][2];
     dea_membrane_rates(m, v, rates);
@@ -677,7 +716,8 @@ void dea_membrane_audit_add(dea_audit *audit, const dea_membrane *m, const dea_m
         nominal_of(m, look, x);
         ohmic += ring_power(m, x, rates);
     }
-    audit->work += weight * (series ? moment->source * flow : 0.5 * capacitance_rate(m, look, v) * square + leak);
+    ohmic += d->damping * v[m->rings.edge] * v[m->rings.edge];
+    audit->work += weight * (series ? moment->source * flow : fed);
     audit->dissipated += weight * ohmic;
     audit->largest = fmax(fmax(audit->largest, kinetic_energy(m, v)), fmax(fabs(audit->work), fabs(audit->dissipated)));
 }
@@ -707,7 +747,8 @@ static double way_integral(const dea_membrane *m, const double *u, const double 
         sum += dea_gauss_weight(g) * ring_power(m, f, rates);
     }
     const size_t edge = m->rings.edge;
-    return z ? sum : sum + 0.5 * m->film.point.load * (to[edge] - u[edge]) * (to[edge] + u[edge]);
+    const double way_of_edge = to[edge] - u[edge];
+    return z ? sum : sum + (0.5 * m->film.point.load * (to[edge] + u[edge]) - m->film.point.force) * way_of_edge;
 }
 
 void dea_membrane_audit_jump(dea_audit *audit, const dea_membrane *m, const double *u, const double *to, const double *z)
@@ -743,9 +784,11 @@ dea_membrane_energy dea_membrane_energy_of(const dea_membrane *m, double voltage
     const double none = (double)NAN;
     dea_membrane_look look;
     if (!dea_membrane_look_at(m, u, &look)) {
-        return (dea_membrane_energy){none, none, none, none};
+        return (dea_membrane_energy){none, none, none, none, none};
     }
-    return (dea_membrane_energy){.electric = 0.5 * look.capacitance * voltage * voltage,
+    const double electric = 0.5 * look.capacitance * voltage * voltage;
+    return (dea_membrane_energy){.electric = electric,
+                                 .fed = m->film.series > 0.0 ? 0.0 : electric,
                                  .elastic = way_integral(m, rest, u, NULL),
                                  .springs = m->film.branch_count > 0 ? spring_energy(m, &look, z) : 0.0,
                                  .kinetic = kinetic_energy(m, v)};
@@ -755,10 +798,11 @@ void dea_membrane_audit_close(const dea_audit *audit, const dea_membrane *m, con
                               const dea_membrane_energy *last, dea_summary *summary)
 {
     const double springs = last->springs - first->springs;
+    (void)m;
     summary->electric = last->electric - first->electric;
     summary->elastic = last->elastic - first->elastic + springs;
     summary->kinetic = last->kinetic - first->kinetic;
-    summary->work = audit->work + (m->film.series > 0.0 ? 0.0 : summary->electric);
+    summary->work = audit->work + last->fed - first->fed;
     summary->dissipated = audit->dissipated + audit->branch - springs;
     const double spent = summary->electric + summary->elastic + summary->kinetic + summary->dissipated;
     double largest = fmax(audit->largest, fabs(audit->branch));

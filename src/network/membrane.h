@@ -15,10 +15,12 @@
 
 #include "network/dynamics.h"
 #include "network/rings.h"
+#include "network/sheet.h"
 
 typedef struct dea_membrane {
     dea_dynamics film; /* all of the scene's network but its functions of u: damper, branches, port */
     dea_rings rings;
+    dea_sheet sheet; /* charges and potentials of its electrodes */
     double masses[DEA_RINGS_NODES]; /* m_n [kg]; all 0: none */
     bool heavy;
     size_t own[DEA_RINGS_MOST]; /* place, among the nodes of a ring, of the one at its own radius, which alone strains its hoop */
@@ -31,10 +33,14 @@ typedef struct dea_ring_look {
     double cauchy[2];      /* S_a [Pa] */
     double tangent[2][2];  /* dP_a/dlambda_b [Pa] */
     double slope[2][2];    /* dS_a/dlambda_b [Pa] */
+    double capacitance;    /* [F], 0 without electrode */
 } dea_ring_look;
 
+/* Where `spread`, functions that take a film voltage look at those of the rings instead. */
 typedef struct dea_membrane_look {
     dea_ring_look rings[DEA_RINGS_MOST];
+    bool spread;                     /* the potential is not the same all over the electrode: dea_sheet_look() */
+    double voltages[DEA_RINGS_MOST]; /* then those of electroded rings [V] */
     double edge;        /* displacement of the edge [m] */
     double capacitance; /* [F] */
 } dea_membrane_look;
@@ -43,8 +49,9 @@ typedef struct dea_membrane_look {
 dea_status dea_membrane_open(const dea_scene *scene, const dea_model *model, dea_rings_mesh mesh, dea_membrane *membrane,
                              dea_error *error);
 
-/* Nodes that tell the film at rest, and its first mode, to round-off; around a small disc they lie evenly in ln R. */
-dea_rings_mesh dea_membrane_usual_mesh(const dea_scene *scene);
+/* True where a load's damper alone would resist a membrane: its other nodes have no equation of motion then; and that in words. */
+bool dea_load_stalls(const dea_scene *scene);
+extern const char dea_load_stalled[];
 
 /* Number of the z. */
 static inline size_t dea_membrane_relaxed(const dea_membrane *membrane)
@@ -56,6 +63,13 @@ static inline size_t dea_membrane_relaxed(const dea_membrane *membrane)
 bool dea_membrane_look_at(const dea_membrane *membrane, const double *u, dea_membrane_look *look);
 /* phi_n = (1/2) dC/du_n [N/V^2]. */
 void dea_membrane_push(const dea_membrane *membrane, const dea_membrane_look *look, double *push);
+/* That of one electroded ring. */
+void dea_membrane_push_ring(const dea_membrane *membrane, const dea_membrane_look *look, size_t r, double *push);
+/* Voltage across a ring: 0 without electrode [V]. */
+static inline double dea_membrane_voltage(const dea_membrane *membrane, const dea_membrane_look *look, size_t r, double voltage)
+{
+    return !membrane->rings.rings[r].electroded ? 0.0 : look->spread ? look->voltages[r] : voltage;
+}
 /* x_a of all rings [Pa]; v NULL: 0, z NULL: relaxed. */
 void dea_membrane_viscous(const dea_membrane *membrane, const dea_membrane_look *look, const double *v, const double *z,
                           double (*x)[2]);
@@ -122,6 +136,7 @@ void dea_membrane_audit_jump(dea_audit *audit, const dea_membrane *membrane, con
 /* What is stored at a state [J]. */
 typedef struct dea_membrane_energy {
     double electric;
+    double fed; /* that of it which follows the source at once: of the whole film without R_s, or of its rim */
     double elastic; /* over that at rest, without springs of branches */
     double springs; /* of the branches */
     double kinetic;

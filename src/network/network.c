@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "expression/derivative.h"
+#include "geometry/second.h"
 #include "material/form.h"
 
 void dea_network_free(dea_network *network)
@@ -36,12 +37,12 @@ static void add_element(dea_network *network, dea_element element)
 
 void dea_network_add(dea_network *network, dea_role role, const char *name, const char *meaning, dea_expr value)
 {
-    add_element(network, (dea_element){role, name, meaning, value, 0});
+    add_element(network, (dea_element){role, name, meaning, false, value, 0});
 }
 
 void dea_network_add_stress(dea_network *network, const char *name, const char *meaning, dea_expr stress, dea_expr lever)
 {
-    add_element(network, (dea_element){DEA_ROLE_HYPERELASTIC, name, meaning, stress, lever});
+    add_element(network, (dea_element){DEA_ROLE_HYPERELASTIC, name, meaning, false, stress, lever});
 }
 
 void dea_network_call(dea_network *network, dea_expr ref, const char *name, const char *meaning)
@@ -261,6 +262,8 @@ dea_symbols dea_symbols_of(const dea_scene *scene, const dea_axis *axis, dea_poo
     s.breakdown = given(pool, breakdown) ? breakdown : NUM(INFINITY);
     coat(scene, axis, &s);
     s.load = scene->load.stiffness > 0.0 ? scalar(pool, scene, axis, &scene->load.stiffness) : NUM(0.0);
+    s.force = isnan(scene->load.force) ? NUM(0.0) : scalar(pool, scene, axis, &scene->load.force);
+    s.loaded = scene->load.stiffness > 0.0 || dea_expr_constant(pool, s.force) != 0.0;
     s.voltage = film_voltage(pool, scene, axis, &s);
     s.focal_length = scalar(pool, scene, axis, &actuator->focal_length);
     s.refractive_index = scalar(pool, scene, axis, &actuator->refractive_index);
@@ -338,7 +341,6 @@ static void place_edge(const dea_symbols *symbols, dea_network *network)
     network->focal_length = symbols->focal_length;
     network->refractive_index = symbols->refractive_index;
     network->length = MUL(divide_radius(symbols), SUB(one, symbols->coverage)); /* below both r_a and r - r_a */
-    network->end = NUM(0.0);
     dea_network_demand(network, symbols->coverage);
     dea_network_demand(network, SUB(one, symbols->coverage));
     dea_network_demand(network, symbols->permittivity);
@@ -351,12 +353,60 @@ static void place_edge(const dea_symbols *symbols, dea_network *network)
     network->breakdown = symbols->breakdown;
 }
 
+/* An element of the second film: its springs are elastic beside those of the first, what its voltage does is steady. */
+static dea_element as_second(dea_pool *pool, const dea_network *second, dea_element element)
+{
+    element.second = true;
+    if (element.role == DEA_ROLE_SPRING) {
+        element.role = DEA_ROLE_BESIDE;
+    } else if (element.role == DEA_ROLE_HYPERELASTIC) {
+        element.role = DEA_ROLE_TENSION;
+        element.value = MUL(element.lever, element.value);
+    } else if (element.role == DEA_ROLE_SOFTENING) {
+        element.role = DEA_ROLE_STEADY;
+        element.value = NEG(MUL(element.value, second->edge));
+    } else if (element.role == DEA_ROLE_SOURCE) {
+        element.role = DEA_ROLE_STEADY;
+    }
+    return element;
+}
+
+/* The other film on the same edge: u is that of both. */
+static void add_second(const dea_symbols *symbols, const dea_model *model, dea_network *network)
+{
+    dea_network second = {0};
+    place_edge(symbols, &second);
+    model->network(symbols, &second);
+    for (int i = 0; i < second.element_count; i++) {
+        add_element(network, as_second(&network->pool, &second, second.elements[i]));
+    }
+    for (int i = 0; i < second.tension_count; i++) {
+        dea_network_taut(network, second.tension[i]);
+    }
+    for (int i = 0; i < second.range_count; i++) {
+        dea_network_demand(network, second.range[i]);
+    }
+    network->second_field = second.field;
+    network->second_breakdown = second.breakdown;
+    network->pool.exhausted = network->pool.exhausted || second.pool.exhausted;
+    dea_network_free(&second);
+}
+
 dea_status dea_network_build_symbols(const dea_symbols *symbols, const dea_model *model, dea_network *network, dea_error *error)
 {
+    dea_pool *pool = symbols->pool;
     place_edge(symbols, network);
     model->network(symbols, network);
+    network->second_field = NUM(0.0);
+    network->second_breakdown = NUM(INFINITY);
+    if (symbols->second) {
+        add_second(symbols->second, model, network);
+    }
     if (dea_expr_constant(&network->pool, symbols->load) != 0.0) {
         dea_network_add(network, DEA_ROLE_BESIDE, "n_load", "compliance of the load between edge and frame [m/N]", symbols->load);
+    }
+    if (dea_expr_constant(&network->pool, symbols->force) != 0.0) {
+        dea_network_add(network, DEA_ROLE_STEADY, "f_load", "force of the load onto the edge, outward [N]", symbols->force);
     }
     if (network->pool.exhausted) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built");
@@ -377,34 +427,65 @@ void dea_constant_name(const dea_law *law, size_t index, char name[DEA_QUANTITY_
 }
 
 /* Makes a number a symbol; 0 stays, so that it vanishes. */
-static void lift(dea_quantities *quantities, dea_pool *pool, const char *name, dea_expr *field)
+static void lift(dea_quantities *quantities, dea_pool *pool, const char *whose, const char *name, dea_expr *field)
 {
     const double value = dea_expr_constant(pool, *field);
     if (isfinite(value) && value != 0.0 && quantities->count < DEA_QUANTITIES) {
         const int symbol = ++quantities->count;
-        snprintf(quantities->names[symbol], DEA_QUANTITY_NAME, "%s", name);
+        snprintf(quantities->names[symbol], DEA_QUANTITY_NAME, "%s%.*s", whose, DEA_QUANTITY_NAME - 8, name);
         quantities->values[symbol] = value;
         *field = dea_expr_symbol(pool, symbol);
     }
 }
 
-static void lift_all(dea_quantities *quantities, dea_symbols *s, bool modulus)
+/* Moduli of a law: of a film, "", of its skin or of the second film. */
+static void lift_law(dea_quantities *quantities, dea_pool *pool, const dea_law *law, const char *whose, dea_expr *constants)
 {
     char name[DEA_QUANTITY_NAME];
-    lift(quantities, s->pool, "frame_radius", &s->frame_radius);
-    lift(quantities, s->pool, "film_thickness", &s->film_thickness);
-    lift(quantities, s->pool, "permittivity", &s->permittivity);
     for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
-        if (s->law->constants[i % s->law->constant_count].modulus) {
-            dea_constant_name(s->law, i, name);
-            lift(quantities, s->pool, name, &s->constants[i]);
+        if (law->constants[i % law->constant_count].modulus) {
+            dea_constant_name(law, i, name);
+            lift(quantities, pool, whose, name, &constants[i]);
         }
     }
+}
+
+static void lift_all(dea_quantities *quantities, dea_symbols *s, const char *whose, bool modulus)
+{
+    lift(quantities, s->pool, whose, "frame_radius", &s->frame_radius);
+    lift(quantities, s->pool, whose, "film_thickness", &s->film_thickness);
+    lift(quantities, s->pool, whose, "permittivity", &s->permittivity);
+    if (dea_expr_constant(s->pool, s->voltage) != 1.0) { /* 1 V where a text multiplies by that of the film */
+        lift(quantities, s->pool, whose, "voltage", &s->voltage);
+    }
+    lift(quantities, s->pool, whose, "load_stiffness", &s->load);
+    lift(quantities, s->pool, whose, "load_force", &s->force);
+    lift_law(quantities, s->pool, s->law, whose, s->constants);
+    if (s->skin) {
+        lift_law(quantities, s->pool, s->skin, "skin_", s->skin_constants);
+    }
     if (modulus) {
-        lift(quantities, s->pool, "modulus", &s->modulus);
+        lift(quantities, s->pool, whose, "modulus", &s->modulus);
     } else {
         s->modulus = dea_symbols_modulus(s);
     }
+}
+
+/* Symbols of the second film, whose frame is that of the first. */
+static dea_symbols second_symbols(const dea_scene *scene, const dea_axis *axis, const dea_symbols *first, dea_quantities *quantities)
+{
+    dea_scene other;
+    dea_axis moved;
+    dea_second_scene(scene, &other);
+    const dea_axis *own = axis && dea_second_axis(scene, axis, &moved) ? &moved : NULL;
+    dea_symbols second = dea_symbols_of(&other, own, first->pool);
+    second.frame_radius = first->frame_radius;
+    second.coverage = first->coverage;
+    if (quantities) {
+        lift_all(quantities, &second, "second_", given(first->pool, scalar(first->pool, &other, own, &other.material.modulus)));
+    }
+    second.loaded = true;
+    return second;
 }
 
 static dea_status build(const dea_scene *scene, const dea_model *model, const dea_axis *axis, dea_quantities *quantities,
@@ -422,7 +503,13 @@ static dea_status build(const dea_scene *scene, const dea_model *model, const de
     if (quantities && !network->pool.exhausted) {
         *quantities = (dea_quantities){0};
         const dea_expr modulus = scalar(&network->pool, scene, axis, &scene->material.modulus);
-        lift_all(quantities, &symbols, given(&network->pool, modulus));
+        lift_all(quantities, &symbols, "", given(&network->pool, modulus));
+    }
+    dea_symbols second;
+    if (scene->antagonist.there && !network->pool.exhausted) {
+        second = second_symbols(scene, axis, &symbols, quantities);
+        symbols.second = &second;
+        symbols.loaded = true;
     }
     return dea_network_build_symbols(&symbols, model, network, error);
 }
@@ -478,7 +565,13 @@ int dea_network_stresses(dea_network *network, dea_network_stress *stresses)
 dea_expr dea_network_tension(dea_network *network)
 {
     dea_pool *pool = &network->pool;
-    return ADD(sum_of(network, DEA_ROLE_TENSION), MUL(sum_of(network, DEA_ROLE_BESIDE), network->edge));
+    const dea_expr elastic = ADD(sum_of(network, DEA_ROLE_TENSION), MUL(sum_of(network, DEA_ROLE_BESIDE), network->edge));
+    return SUB(elastic, dea_network_steady(network));
+}
+
+dea_expr dea_network_steady(dea_network *network)
+{
+    return sum_of(network, DEA_ROLE_STEADY);
 }
 
 dea_expr dea_network_softening(dea_network *network)

@@ -29,21 +29,26 @@ typedef struct dea_symbols {
     dea_expr skin_constants[DEA_LAW_CONSTANTS]; /* of it */
     dea_expr skin_share;                        /* t/H [1] */
     dea_expr load;                 /* stiffness of a spring between edge and frame [N/m], NUM(0): none */
+    dea_expr force;                /* onto the edge, outward [N], NUM(0): none */
+    bool loaded;                   /* the film is not alone with its edge */
+    const struct dea_symbols *second; /* of the other film on the edge, NULL: there is none */
     dea_expr voltage;              /* across the film [V] */
     dea_expr focal_length;         /* of a lens at rest [m], NAN: no optics */
     dea_expr refractive_index;     /* of its liquid [1] */
 } dea_symbols;
 
-typedef enum dea_role { DEA_ROLE_SPRING, DEA_ROLE_SOFTENING, DEA_ROLE_HYPERELASTIC, DEA_ROLE_TENSION, DEA_ROLE_BESIDE, DEA_ROLE_SOURCE } dea_role;
+typedef enum dea_role { DEA_ROLE_SPRING, DEA_ROLE_SOFTENING, DEA_ROLE_HYPERELASTIC, DEA_ROLE_TENSION, DEA_ROLE_BESIDE, DEA_ROLE_STEADY, DEA_ROLE_SOURCE } dea_role;
 
 /* One element between edge and frame. */
 typedef struct dea_element {
     dea_role role;
     const char *name;    /* netlist name, e.g. "n_a" */
     const char *meaning; /* what it is, with its unit and equation */
+    bool second;         /* of the second film */
     dea_expr value; /* spring, softening: stiffness 1/n [N/m]; hyperelastic spring: change of its stress from rest [Pa]; tension:
                        what the stress at rest does by its levers, and what is elastic beside the film, against u [N]; beside:
-                       stiffness of what neither damps nor relaxes [N/m]; source: outward force [N] */
+                       stiffness of what neither damps nor relaxes [N/m]; steady: outward force that no voltage of the film changes
+                       [N]; source: outward force [N] */
     dea_expr lever; /* of a hyperelastic spring: force against u over stress [m^2] */
 } dea_element;
 
@@ -75,8 +80,9 @@ typedef struct dea_network {
     dea_expr *tension;    /* owned; one per region and place: > 0 while taut */
     int tension_count;
     dea_expr length;    /* displacement that changes the stretch of the more strained region by its own size [m] */
-    dea_expr end;       /* distance at which a region has vanished [m], 0: there is none */
+    bool ends;          /* a region vanishes where the edge comes to the centre or the frame; else nothing ends */
     dea_expr breakdown; /* breakdown strength [V/m], > 0 */
+    dea_expr second_field, second_breakdown; /* of the second film; 0 and +inf: there is none */
     dea_expr *range;    /* owned; each must be > 0 for the point to make sense: B, 1 - B, permittivity, those of the law */
     int range_count;
     dea_kind kind;
@@ -89,7 +95,7 @@ dea_status dea_network_build(const dea_scene *scene, const dea_model *model, con
                              dea_error *error);
 /* Numbers of a scene that have a dimension and stay symbols 1, 2, ... of its network: its expressions are then the same whatever
  * the units. Symbol 0 is that of the axis. */
-enum { DEA_QUANTITIES = 4 + DEA_LAW_CONSTANTS, DEA_QUANTITY_NAME = 24 };
+enum { DEA_QUANTITIES = 2 * (7 + 2 * DEA_LAW_CONSTANTS), DEA_QUANTITY_NAME = 24 }; /* of two films */
 typedef struct dea_quantities {
     int count;
     char names[DEA_QUANTITIES + 1][DEA_QUANTITY_NAME]; /* by symbol; of symbol 0 "" */
@@ -121,13 +127,15 @@ void dea_network_demand(dea_network *network, dea_expr range);
 void dea_network_limit_area(const dea_symbols *symbols, dea_network *network);
 
 /* The stresses of the film, at most DEA_NETWORK_STRESSES; their number. Stress times lever, summed, and dea_network_tension() are
- * the restoring force without softening [N]. */
+ * the restoring force without softening [N], less what is steady. */
 int dea_network_stresses(dea_network *network, dea_network_stress *stresses);
 dea_expr dea_network_tension(dea_network *network);
 /* Stiffness that the voltage adds, negative where it softens [N/m]. */
 dea_expr dea_network_softening(dea_network *network);
-/* Sum of the elastic forces (restoring) and of the sources (outward) as expressions of u [N]. */
+/* Sum of the elastic forces (restoring), less what is steady, of what is steady (outward) and of the sources (outward) as
+ * expressions of u [N]. */
 dea_expr dea_network_elastic(dea_network *network);
+dea_expr dea_network_steady(dea_network *network);
 dea_expr dea_network_load(dea_network *network);
 
 /* Shared pieces of the models' networks. */

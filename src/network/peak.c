@@ -63,8 +63,7 @@ void dea_peak_search(dea_peak *peak, double from, double to, dea_current_at *at,
     }
 }
 
-/* The voltage jumps where a segment begins with another one than that before it ends with: 0 V before the first, unless at bias. */
-static bool jumps(const dea_scene *scene, const dea_signal *signal)
+bool dea_peak_jumps(const dea_scene *scene, const dea_signal *signal)
 {
     double before = scene->transient.from_bias ? signal->segments[0].start : 0.0;
     for (size_t i = 0; i < signal->count; i++) {
@@ -90,5 +89,5 @@ bool dea_peak_is_known(const dea_scene *scene, const dea_dynamics *dynamics, con
             return false;
         }
     }
-    return dynamics->series > 0.0 || !jumps(scene, signal);
+    return dynamics->series > 0.0 || !dea_peak_jumps(scene, signal);
 }

@@ -21,4 +21,7 @@ void dea_peak_search(dea_peak *peak, double from, double to, dea_current_at *at,
  * slow ones relax), and a series resistance limits the current where the voltage jumps. */
 bool dea_peak_is_known(const dea_scene *scene, const dea_dynamics *dynamics, const dea_signal *signal);
 
+/* True where a segment begins with another voltage than that before it ends with: 0 V before the first, unless at bias. */
+bool dea_peak_jumps(const dea_scene *scene, const dea_signal *signal);
+
 #endif

@@ -137,6 +137,29 @@ void dea_rings_slopes_of(size_t degree, dea_rings_slopes *slopes)
     }
 }
 
+static element element_of(const dea_rings *rings, bool disc)
+{
+    const double edge = rings->radii[rings->edge];
+    return disc ? (element){.to = edge} : (element){.from = edge, .to = rings->rim, .logarithmic = rings->mesh.logarithmic};
+}
+
+/* The centre has no ring: what is smooth there has the slope 0, which tells its value from the others. */
+void dea_rings_derivative(const dea_rings *rings, bool disc, double (*gradient)[DEA_RINGS_DEGREE + 1])
+{
+    const element e = element_of(rings, disc);
+    const size_t degree = disc ? rings->mesh.disc : rings->mesh.annulus, first = disc ? 1 : 0;
+    lobatto rule;
+    make_lobatto(degree, &rule);
+    for (size_t q = first; q <= degree; q++) {
+        double stretch;
+        radius_at(&e, rule.places[q], &stretch);
+        for (size_t n = first; n <= degree; n++) {
+            const double centre = disc ? rule.slopes[q][0] * rule.slopes[0][n] / rule.slopes[0][0] : 0.0;
+            gradient[q - first][n - first] = (rule.slopes[q][n] - centre) / stretch;
+        }
+    }
+}
+
 /* Values at places of an element, along R or ln R, and the weights of their polynomial in the barycentric form. */
 typedef struct samples {
     size_t count;
@@ -178,8 +201,8 @@ static double polynomial(const samples *s, double x)
     return over / under;
 }
 
-/* Largest value of the polynomial between two places, by golden sections. */
-static double largest_between(const samples *s, double low, double high)
+/* Largest value of the polynomial between two places, by golden sections, and where. */
+static double largest_between(const samples *s, double low, double high, double *place)
 {
     static const double golden = 0.6180339887498949;
     double a = high - golden * (high - low), b = low + golden * (high - low);
@@ -193,23 +216,29 @@ static double largest_between(const samples *s, double low, double high)
         *(left ? &a : &b) = fresh;
         *(left ? &at_a : &at_b) = polynomial(s, fresh);
     }
+    *place = at_a > at_b ? a : b;
     return fmax(at_a, at_b);
 }
 
-double dea_rings_largest(const dea_rings *rings, bool disc, const double *values)
+double dea_rings_largest(const dea_rings *rings, bool disc, const double *values, double *radius)
 {
     const samples s = samples_of(rings, disc, values);
     const size_t parts = 4 * s.count;
     const double first = disc ? 0.0 : s.places[0], last = s.places[s.count - 1];
     double largest = polynomial(&s, first);
-    double place = first;
+    double place = first, between = first;
     for (size_t i = 1; i <= parts; i++) {
         const double x = i == parts ? last : first + (last - first) * (double)i / (double)parts, value = polynomial(&s, x);
         place = value > largest ? x : place;
         largest = fmax(largest, value);
     }
     const double width = (last - first) / (double)parts;
-    return s.count < 3 ? largest : fmax(largest, largest_between(&s, fmax(first, place - width), fmin(last, place + width)));
+    const double peak = s.count < 3 ? largest : largest_between(&s, fmax(first, place - width), fmin(last, place + width), &between);
+    place = peak > largest + 1e-12 * fabs(largest) ? between : place; /* at an end of the element it is that end */
+    if (radius) {
+        *radius = disc || !rings->mesh.logarithmic ? place : exp(place);
+    }
+    return fmax(largest, peak);
 }
 
 /* Lagrange polynomial number @p n of a degree at x. */
@@ -259,41 +288,50 @@ void dea_rings_move(const double *matrix, size_t from_count, const double *u, si
     }
 }
 
-/* Value and slope over x of the polynomial with those values at the nodes of a rule. */
-static double interpolate(const lobatto *rule, const double *values, double x, double *slope)
+dea_rings_spot dea_rings_spot_at(const dea_rings *rings, double radius, bool outside)
 {
-    double sum = 0.0, slopes = 0.0;
-    for (size_t n = 0; n <= rule->degree; n++) {
-        double at = 0.0; /* polynomials of degree p are exact at the nodes, and so are their slopes */
-        for (size_t q = 0; q <= rule->degree; q++) {
-            at += rule->slopes[n][q] * values[q];
-        }
-        const double weight = lagrange(rule->places, rule->degree, n, x);
-        sum += weight * values[n];
-        slopes += weight * at;
+    const double edge = rings->radii[rings->edge];
+    dea_rings_spot spot = {.radius = radius, .disc = radius < edge || (radius <= edge && !outside)};
+    const element e = element_of(rings, spot.disc);
+    const double x = e.logarithmic ? 2.0 * log(radius / e.from) / log(e.to / e.from) - 1.0 : 2.0 * (radius - e.from) / (e.to - e.from) - 1.0;
+    double stretch, weights[DEA_RINGS_DEGREE + 1];
+    lobatto rule;
+    spot.degree = spot.disc ? rings->mesh.disc : rings->mesh.annulus;
+    make_lobatto(spot.degree, &rule);
+    radius_at(&e, fmin(x, 1.0), &stretch);
+    for (size_t n = 0; n <= spot.degree; n++) {
+        weights[n] = lagrange(rule.places, spot.degree, n, fmin(x, 1.0));
     }
-    *slope = slopes;
+    for (size_t q = 0; q <= spot.degree; q++) {
+        spot.value[q] = weights[q];
+        for (size_t n = 0; n <= spot.degree; n++) { /* slopes of polynomials of that degree are exact at the nodes */
+            spot.slope[q] += weights[n] * rule.slopes[n][q] / stretch;
+        }
+        spot.even[q] = weights[q] - (spot.disc ? weights[0] * rule.slopes[0][q] / rule.slopes[0][0] : 0.0);
+    }
+    return spot;
+}
+
+double dea_rings_displacement(const dea_rings *rings, const dea_rings_spot *spot, const double *u, double *slope)
+{
+    const size_t first = spot->disc ? 0 : rings->mesh.disc;
+    double sum = 0.0;
+    *slope = 0.0;
+    for (size_t q = 0; q <= spot->degree; q++) {
+        const size_t node = first + q;
+        const double at = node == 0 || node > rings->node_count ? 0.0 : u[node - 1];
+        sum += spot->value[q] * at;
+        *slope += spot->slope[q] * at;
+    }
     return sum;
 }
 
-double dea_rings_displacement(const dea_rings *rings, const double *u, double radius, bool outside, double *slope)
+double dea_rings_value(const dea_rings *rings, const dea_rings_spot *spot, const double *values, size_t stride)
 {
-    const double edge = rings->radii[rings->edge];
-    const bool disc = radius < edge || (radius <= edge && !outside);
-    const element e = disc ? (element){.to = edge} : (element){.from = edge, .to = rings->rim, .logarithmic = rings->mesh.logarithmic};
-    const size_t degree = disc ? rings->mesh.disc : rings->mesh.annulus, first = disc ? 0 : rings->mesh.disc;
-    double values[DEA_RINGS_DEGREE + 1], stretch, over;
-    lobatto rule;
-    make_lobatto(degree, &rule);
-    for (size_t i = 0; i <= degree; i++) {
-        const size_t node = first + i;
-        values[i] = node == 0 || node > rings->node_count ? 0.0 : u[node - 1];
+    const size_t centre = spot->disc ? 1 : 0; /* it has no ring */
+    double sum = 0.0;
+    for (size_t q = centre; q <= spot->degree; q++) {
+        sum += spot->even[q] * values[stride * (spot->disc ? q - 1 : rings->mesh.disc + q)];
     }
-    const double x = e.logarithmic ? 2.0 * log(radius / e.from) / log(e.to / e.from) - 1.0 : 2.0 * (radius - e.from) / (e.to - e.from) - 1.0;
-    const double value = interpolate(&rule, values, fmin(x, 1.0), &over);
-    radius_at(&e, fmin(x, 1.0), &stretch);
-    if (slope) {
-        *slope = over / stretch;
-    }
-    return value;
+    return sum;
 }

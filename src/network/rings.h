@@ -55,17 +55,35 @@ typedef struct dea_rings_slopes {
 } dea_rings_slopes;
 void dea_rings_slopes_of(size_t degree, dea_rings_slopes *slopes);
 
+/* Derivatives d/dR [1/m] at the rings of the disc, or of the annulus, by values at its rings, from the centre out; of what is smooth
+ * at the centre. */
+void dea_rings_derivative(const dea_rings *rings, bool disc, double (*gradient)[DEA_RINGS_DEGREE + 1]);
+
 /* Largest value over the disc, or over the annulus, of what has these values at the rings (ring_count of them, those of the other
- * element are not looked at): of the polynomial through them, since it may lie between two places. */
-double dea_rings_largest(const dea_rings *rings, bool disc, const double *values);
+ * element are not looked at): of the polynomial through them, since it may lie between two places. *@p radius becomes where, in the
+ * reference film [m], unless it is NULL. */
+double dea_rings_largest(const dea_rings *rings, bool disc, const double *values, double *radius);
 
 /* The matrix (rows: moving nodes of @p to, columns: those of @p from) that takes displacements of one mesh to the nodes of
  * another by the polynomials of its elements; both even in R or in ln R. And its product with displacements. */
 void dea_rings_transfer(dea_rings_mesh from, dea_rings_mesh to, double *matrix);
 void dea_rings_move(const double *matrix, size_t from_count, const double *u, size_t to_count, double *v);
 
-/* Displacement at reference radius R, 0 ... F, of displacements of the nodes [m]; *@p slope becomes du/dR [1] unless it is NULL,
- * at the edge that of the annulus where @p outside. */
-double dea_rings_displacement(const dea_rings *rings, const double *u, double radius, bool outside, double *slope);
+/* One reference radius, and what polynomials of its element have there by their values at the places of the element. */
+typedef struct dea_rings_spot {
+    double radius; /* R [m] */
+    bool disc;
+    size_t degree;
+    double value[DEA_RINGS_DEGREE + 1]; /* of each place [1] */
+    double slope[DEA_RINGS_DEGREE + 1]; /* d/dR [1/m] */
+    double even[DEA_RINGS_DEGREE + 1];  /* as value, of what is known at rings alone: at the centre its slope is 0 */
+} dea_rings_spot;
+
+/* At R, 0 ... F, at the edge that of the annulus where @p outside. */
+dea_rings_spot dea_rings_spot_at(const dea_rings *rings, double radius, bool outside);
+/* Displacement there of displacements of the nodes [m]; *@p slope becomes du/dR [1]. */
+double dea_rings_displacement(const dea_rings *rings, const dea_rings_spot *spot, const double *u, double *slope);
+/* What is smooth over the element and has these values at the rings, @p stride apart: its value there. */
+double dea_rings_value(const dea_rings *rings, const dea_rings_spot *spot, const double *values, size_t stride);
 
 #endif

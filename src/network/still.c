@@ -1,5 +1,6 @@
 #include "network/still.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -143,6 +144,12 @@ static double size_of(size_t n, const double *u)
     return most;
 }
 
+/* What is lost of displacements [m] where a stiff load holds the edge: the stresses of the film beside it are as large as ever. */
+static double rounding(const dea_still *still)
+{
+    return still->point->load > 0.0 ? 4.0 * DBL_EPSILON * still->point->frame_radius : 0.0;
+}
+
 /* Newton from @p u under a share of the load; false where it does not settle within @p reach or on something stable. */
 static bool settle(const dea_still *still, double share, double reach, double *u)
 {
@@ -160,7 +167,7 @@ static bool settle(const dea_still *still, double share, double reach, double *u
         for (size_t m = 0; m < n; m++) {
             u[m] += step[m];
         }
-        if (size <= 1e-15 * size_of(n, u) || (size >= 0.5 * last && size <= 1e-11 * size_of(n, u))) {
+        if (size <= 1e-15 * size_of(n, u) || (size >= 0.5 * last && size <= fmax(1e-11 * size_of(n, u), rounding(still)))) {
             return true;
         }
         last = size;
@@ -312,14 +319,14 @@ void dea_still_fill(const dea_still *still, const double *u, dea_row *row)
         area[q] = film->square * (1.0 + e[q].e1) * (1.0 + e[q].e2);
     }
     const dea_rings *rings = &still->rings;
-    const double slack = fmax(radial[0], fmax(dea_rings_largest(rings, false, radial), dea_rings_largest(rings, false, hoop)));
+    const double slack = fmax(radial[0], fmax(dea_rings_largest(rings, false, radial, NULL), dea_rings_largest(rings, false, hoop, NULL)));
     const strains *edge = &e[electrode_edge(&still->rings)];
     const double pull = film->square * (1.0 + edge->e1) * (1.0 + edge->e2) * (1.0 + edge->e2); /* lambda_1 lambda_2^2/lambda_pre */
     const double force = 2.0 * DEA_PI * point->film_thickness * still->pressure * pull * dea_point_divide(point);
     dea_row_fill(row, point,
                  (dea_found){.strain = strain,
                              .force = dea_point_sign(point) * force,
-                             .stretch = point->kind == DEA_DOT ? area[0] : dea_rings_largest(rings, false, area),
+                             .stretch = point->kind == DEA_DOT ? area[0] : dea_rings_largest(rings, false, area, NULL),
                              .capacitance = capacitance(still, u),
                              .taut = film->tension > slack}); /* the disc is uniform */
 }
@@ -341,8 +348,9 @@ double dea_still_apart(const dea_still *coarse, const double *u, const dea_still
     }
     dea_still_fill(coarse, u, row);
     dea_still_fill(fine, better, &other);
-    return fmax(fmax(relative(row->strain, other.strain), relative(row->force, other.force)),
-                fmax(relative(row->field, other.field), relative(row->capacitance, other.capacitance)));
+    const double apart = fmax(fmax(relative(row->strain, other.strain), relative(row->force, other.force)),
+                              fmax(relative(row->field, other.field), relative(row->capacitance, other.capacitance)));
+    return fmax(apart, rounding(coarse) / fmax(fabs(row->displacement), DBL_MIN));
 }
 
 /* A row may be off by several times what the strain is: the mesh is chosen by the strain, and by this share of the row. */

@@ -42,7 +42,7 @@ static film film_at(dea_dynamics *d, double u, double voltage)
     const dea_edge e = dea_dynamics_edge(d, u);
     const double viscous = dea_edge_viscous(d, &e);
     const double transduction = d->series > 0.0 ? 2.0 * e.push * voltage : 0.0;
-    film f = {.mass = d->mass, .resistance = d->retardation * viscous};
+    film f = {.mass = d->mass, .resistance = dea_edge_resistance(d, &e)};
     f.stiffness = dea_dynamics_stiffness(d, u, voltage, true);
     for (size_t i = 0; i < d->branch_count; i++) {
         f.poles[f.count++] = (relaxation){viscous * d->branches[i].share, d->branches[i].tau};
@@ -136,7 +136,7 @@ dea_swing dea_swing_free(const dea_scene *scene, const dea_model *model)
         return dea_dynamics_settle(&full, model, &dynamics, NULL) == DEA_OK ? swing_of_membrane(&full, &dynamics) : swing;
     }
     if (dea_dynamics_open(&full, model, &dynamics, NULL) == DEA_OK) {
-        swing = dea_swing_of(&dynamics, 0.0, 0.0);
+        swing = dea_swing_of(&dynamics, dynamics.rest, 0.0);
     }
     dea_dynamics_close(&dynamics);
     return swing;

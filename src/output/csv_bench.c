@@ -47,7 +47,7 @@ static void put_words(line *row, const char *words)
 static const char header[] = "model,engine,accuracy_loosest,accuracy,outcome,runs,time_s,time_fastest_s,time_lower_quartile_s,"
                              "time_upper_quartile_s,time_slowest_s,start_s,unit,time_per_unit_s,error,reference,"
                              "reference_accuracy,promise,dominated,states_differ,rows_failed,model_error_median,"
-                             "model_error_worst,model_error_points,reason\n";
+                             "model_error_worst,model_error_points,reason,model_error_rms,delivered_over_asked\n";
 
 static void put_times(line *row, const dea_bench *bench, const dea_bench_setting *setting)
 {
@@ -86,6 +86,8 @@ static void put_setting(line *row, const dea_bench *bench, const dea_bench_setti
     put_number(row, model->error_worst);
     put_count(row, model->error_points);
     put_words(row, setting->reason);
+    put_number(row, model->error_rms);
+    put_number(row, judged ? setting->error / setting->accuracy : none);
     put(row, "\n");
 }
 

@@ -11,6 +11,7 @@
 #include "study/study.h"
 #include "support/digest.h"
 #include "support/number.h"
+#include "support/memory_text.h"
 #include "support/text.h"
 
 #ifndef DEA_VERSION
@@ -91,6 +92,18 @@ static void put_lists(FILE *out, const dea_scene *scene)
         fprintf(out, "material.law=%s\n", material->law->name);
         put_numbers(out, "material.constants", material->constants, material->entry_count * material->law->constant_count);
     }
+    const dea_antagonist *other = &scene->antagonist;
+    if (other->there) {
+        fprintf(out, "antagonist.kind=%d\nantagonist.material.law=%s\n", (int)other->kind, other->own_material ? other->material.law->name : "");
+        put_numbers(out, "antagonist.material.constants", other->material.constants, other->own_material ? DEA_LAW_CONSTANTS : 0);
+        put_number(out, "antagonist.material.permittivity", other->material.permittivity);
+        put_number(out, "antagonist.material.permittivity.per_stretch", other->material.permittivity_per_stretch);
+        put_number(out, "antagonist.material.density", other->material.density);
+        put_number(out, "antagonist.material.modulus", other->material.modulus);
+        put_number(out, "antagonist.material.breakdown", other->material.breakdown);
+        put_numbers(out, "antagonist.material.prony", &other->material.prony[0].g, 2 * other->material.prony_count);
+        fprintf(out, "antagonist.material.moduli=%s\n", other->material.instantaneous ? "instantaneous" : "long-term");
+    }
     put_numbers(out, "material.prony", &material->prony[0].g, 2 * material->prony_count);
     put_numbers(out, "material.stretches", material->stretches, 2);
     fprintf(out, "material.moduli=%s\n", material->instantaneous ? "instantaneous" : "long-term");
@@ -163,23 +176,19 @@ static void put_engines(FILE *out, const dea_scene *scene, const dea_engine *eng
 
 dea_status dea_identity_write(const dea_scene *scene, const dea_engine *engine, char **text, dea_error *error)
 {
-    size_t length;
-    *text = NULL;
-    FILE *out = open_memstream(text, &length);
-    if (!out) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+    dea_memory_text memory;
+    dea_status status = dea_memory_text_begin(&memory, error);
+    FILE *out = memory.out;
+    if (status == DEA_OK) {
+        fprintf(out, "program version=%s\n", DEA_VERSION);
+        put_engines(out, scene, engine);
+        put_study(out, scene);
+        put_scalars(out, scene);
+        put_lists(out, scene);
     }
-    fprintf(out, "program version=%s\n", DEA_VERSION);
-    put_engines(out, scene, engine);
-    put_study(out, scene);
-    put_scalars(out, scene);
-    put_lists(out, scene);
-    if (!dea_text_close(out)) {
-        free(*text);
-        *text = NULL;
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
-    }
-    return DEA_OK;
+    status = dea_memory_text_end(&memory, status, error);
+    *text = memory.text;
+    return status;
 }
 
 /* Value of a line, fit for a message: the text is a stranger's. */

@@ -1,7 +1,7 @@
 #include "output/legend.h"
 
 #include "output/gnuplot.h"
-#include "output/picture.h"
+#include "output/panel.h"
 
 static const double sample = 34.0;   /* length of a line */
 static const double apart = 8.0;     /* from the line to its text */

@@ -609,10 +609,24 @@ static void put_averages(grid *file, const char *summary, size_t count)
     }
 }
 
-/* What the rows of @p count points tell over the radius, the points side by side at each. */
-static void put_spread(grid *file, const char *point, size_t count)
+/* What one row of @p count points tells at some radii, the points side by side at each. */
+static void put_entries(grid *file, const char *point, size_t count, const size_t *start, const size_t *edge)
 {
     const dea_layout *layout = &file->layout;
+    for (size_t i = 0; i < layout->spread_count; i++) {
+        for (size_t k = 0; k < edge[1]; k++) {
+            for (size_t j = 0; j < count; j++) {
+                file->values[k * count + j] = dea_layout_entry(layout, point + j * layout->point_size, start[0], start[1] + k)[i];
+            }
+        }
+        grid_keep(file, file->nc.nc_put_vara_double(file->file, file->spread[i], start, edge, file->values));
+    }
+}
+
+/* What the rows of @p count points tell over the radius, as many radii at a time as there is room for. */
+static void put_spread(grid *file, const char *point, size_t count)
+{
+    const size_t points = file->layout.spread_points, most = SLAB_VALUES / count;
     size_t *start = calloc(2 * (file->point_rank + 2), sizeof *start), *edge = start + file->point_rank + 2;
     if (!start) {
         grid_keep(file, NC_ENOMEM);
@@ -620,15 +634,11 @@ static void put_spread(grid *file, const char *point, size_t count)
     }
     memcpy(start + 2, &file->start[file->lead], file->point_rank * sizeof *start);
     memcpy(edge + 2, &file->edge[file->lead], file->point_rank * sizeof *edge);
-    edge[0] = edge[1] = 1;
-    for (size_t k = 0; k < layout->rows * layout->spread_points && !file->failed; k++) {
-        start[0] = k / layout->spread_points;
-        start[1] = k % layout->spread_points;
-        for (size_t i = 0; i < layout->spread_count; i++) {
-            for (size_t j = 0; j < count; j++) {
-                file->values[j] = dea_layout_entry(layout, point + j * layout->point_size, start[0], start[1])[i];
-            }
-            grid_keep(file, file->nc.nc_put_vara_double(file->file, file->spread[i], start, edge, file->values));
+    edge[0] = 1;
+    for (start[0] = 0; start[0] < file->layout.rows && !file->failed; start[0]++) {
+        for (start[1] = 0; start[1] < points; start[1] += most) {
+            edge[1] = points - start[1] < most ? points - start[1] : most;
+            put_entries(file, point, count, start, edge);
         }
     }
     free(start);

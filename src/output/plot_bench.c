@@ -1,4 +1,4 @@
-/* Work-precision diagram: error over time, a curve for each engine and model, and beside it, in statics, what the models
+/* Work-precision diagram: error over time, a curve for each engine and model, and beside it what the models
  * themselves are off by. Colour and dash tell the model, the symbol the engine; a hollow symbol is dominated. */
 #include <math.h>
 #include <stdio.h>
@@ -32,7 +32,7 @@ typedef struct sheet {
     const dea_bench *bench;
     panel work, models;
     double floor; /* where references are drawn, as an error */
-    bool references, statics;
+    bool references, models_shown;
     dea_box words[WORDS]; /* where marks and labels stand */
     size_t word_count;
     dea_canvas canvas;
@@ -117,7 +117,7 @@ static void measure_models(sheet *page)
     for (size_t i = 0; i < bench->model_count; i++) {
         const dea_bench_model *model = &bench->models[i];
         if (isfinite(fastest(bench, i)) && model->error_worst > 0.0) {
-            page->statics = true;
+            page->models_shown = true;
             dea_span_take(&page->models.y, median_of(model));
             dea_span_take(&page->models.y, model->error_worst);
         }
@@ -296,7 +296,7 @@ static void write_work(sheet *page, FILE *script)
     const dea_bench *bench = page->bench;
     const panel *part = &page->work;
     dea_span errors = part->y;
-    write_panel(page, script, part, dea_study_of(bench->scene)->unit_label, error_label(bench), page->statics ? "(a)" : "");
+    write_panel(page, script, part, dea_study_of(bench->scene)->unit_label, error_label(bench), page->models_shown ? "(a)" : "");
     dea_span_write(script, "y", &part->y, part->box.height, dea_name_power);
     if (page->references) {
         errors.low = 3.0 * page->floor;
@@ -343,7 +343,8 @@ static void write_model(sheet *page, FILE *script, size_t number)
 static void write_models(sheet *page, FILE *script)
 {
     const panel *part = &page->models;
-    write_panel(page, script, part, "Wall time per point, fastest setting", "Error of the model’s strain against field", "(b)");
+    const bool moves = dea_study_of(page->bench->scene)->along;
+    write_panel(page, script, part, "The same, fastest setting", moves ? "Displacement off from field" : "Strain off from field", "(b)");
     dea_span_write(script, "y", &part->y, part->box.height, percent_text);
     for (size_t i = 0; i < page->bench->model_count; i++) {
         write_model(page, script, i);
@@ -422,12 +423,12 @@ static int make_legend(const sheet *page, dea_legend *legend)
 static bool place_panels(sheet *page, int legend)
 {
     const double top = dea_plot_top(page->bench->scene->title), width = page->canvas.width;
-    const double first = page->statics ? share * width : width;
+    const double first = page->models_shown ? share * width : width;
     page->height = page->canvas.height > 0 ? page->canvas.height : (int)top + PANEL + LABELS + legend;
     const double height = page->height - top - LABELS - legend;
     page->work.box = (dea_box){LEFT, top, first - LEFT - RIGHT, height};
     page->models.box = (dea_box){first + LEFT, top, width - first - LEFT - RIGHT, height};
-    return height >= LEAST && page->work.box.width >= LEAST && (!page->statics || page->models.box.width >= LEAST);
+    return height >= LEAST && page->work.box.width >= LEAST && (!page->models_shown || page->models.box.width >= LEAST);
 }
 
 dea_status dea_bench_picture(const dea_bench *bench, dea_gnuplot *picture, dea_error *error)
@@ -452,7 +453,7 @@ dea_status dea_bench_picture(const dea_bench *bench, dea_gnuplot *picture, dea_e
     dea_plot_style(picture->script);
     dea_plot_title(picture->script, bench->scene->title, page.canvas.width, page.height);
     write_work(&page, picture->script);
-    if (page.statics) {
+    if (page.models_shown) {
         write_models(&page, picture->script);
     }
     dea_legend_draw(&legend, picture->script, page.canvas.width, page.height);

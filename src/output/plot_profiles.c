@@ -1,7 +1,8 @@
-/* Profiles over the radius: displacement, stretches, true stresses and field; a colour for each run, along the radius solid, along the
+/* Forces over the displacement, a colour for each run; and profiles over the radius: displacement, stretches, true stresses and field; a colour for each run, along the radius solid, along the
  * hoop dashed. */
-#include "engine/line.h"
+#include "scene/line.h"
 #include "output/strips.h"
+#include "study/study.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -38,19 +39,19 @@ static double edge_of(const dea_scene *scene, size_t run)
 static void add_curve(const dea_plot *plot, dea_strips *strips, size_t strip, size_t run, size_t offset, size_t dash, const dea_scale scales[2])
 {
     const dea_layout layout = dea_layout_of(plot->scene);
-    const dea_station *rows = (const dea_station *)(const void *)(plot->kept + run * layout.point_size);
     const double edge = edge_of(plot->scene, run) * (1.0 + 1e-12);
-    const bool jumps = offset != offsetof(dea_station, displacement) && offset != offsetof(dea_station, stretch[1]);
+    const bool jumps = dea_study_of(plot->scene)->stations && offset != offsetof(dea_station, displacement) && offset != offsetof(dea_station, stretch[1]);
     char colour[8];
     dea_plot_gradient(run_count(plot) > 1 ? last_colour * (double)run / (double)(run_count(plot) - 1) : 0.25, colour);
     dea_strip_curve *curve = dea_strips_add(strips, strip, colour, dash);
     for (size_t i = 0; i < layout.rows; i++) {
         double y;
-        memcpy(&y, (const char *)&rows[i] + offset, sizeof y);
-        if (i > 0 && rows[i - 1].radius <= edge && rows[i].radius > edge && jumps) {
-            dea_strip_point(strips, curve, scales[0].factor * rows[i].radius, (double)NAN);
+        const double x = dea_layout_place(plot->scene, i);
+        memcpy(&y, plot->kept + run * layout.point_size + i * layout.row_size + offset, sizeof y);
+        if (i > 0 && dea_layout_place(plot->scene, i - 1) <= edge && x > edge && jumps) {
+            dea_strip_point(strips, curve, scales[0].factor * x, (double)NAN);
         }
-        dea_strip_point(strips, curve, scales[0].factor * rows[i].radius, scales[1].factor * y);
+        dea_strip_point(strips, curve, scales[0].factor * x, scales[1].factor * y);
     }
 }
 
@@ -82,7 +83,7 @@ static void add_strip(const dea_plot *plot, dea_strips *strips, const char *word
     }
 }
 
-static void list(const dea_plot *plot, dea_legend *legend, size_t kinds[3])
+static void list_runs(const dea_plot *plot, dea_legend *legend)
 {
     const size_t count = run_count(plot);
     for (size_t run = 0; count > 1 && run < count; run++) {
@@ -91,6 +92,11 @@ static void list(const dea_plot *plot, dea_legend *legend, size_t kinds[3])
         dea_plot_gradient(last_colour * (double)run / (double)(count - 1), entry->colour);
         dea_strips_name(plot->scene, SIZE_MAX, run, entry->label, sizeof entry->label);
     }
+}
+
+static void list(const dea_plot *plot, dea_legend *legend, size_t kinds[3])
+{
+    list_runs(plot, legend);
     kinds[1] = legend->count;
     for (size_t dash = RADIAL; dash <= HOOP; dash++) {
         dea_legend_entry *entry = dea_legend_add(legend);
@@ -120,4 +126,23 @@ static dea_status profiles_draw(dea_plot *plot, dea_error *error)
     return status;
 }
 
+static dea_status forces_draw(dea_plot *plot, dea_error *error)
+{
+    const dea_force_study *force = &plot->scene->force;
+    const dea_scale x = dea_scale_choose(fmax(fabs(force->from), fabs(force->to)), "m");
+    dea_strips strips;
+    dea_status status = dea_strips_open(&strips, run_count(plot), force->points, error);
+    if (status == DEA_OK) {
+        snprintf(strips.label, sizeof strips.label, "Displacement of the edge [%s]", x.unit);
+        strips.logarithmic = plot->picture.log_x;
+        add_strip(plot, &strips, "Force", "N", offsetof(dea_row, force), false, x);
+        list_runs(plot, &strips.legend);
+        strips.kinds[1] = strips.kinds[2] = strips.legend.count;
+        status = dea_strips_draw(&strips, plot, error);
+    }
+    dea_strips_close(&strips);
+    return status;
+}
+
+const dea_drawer dea_drawer_forces = {profiles_open, dea_plot_take, forces_draw};
 const dea_drawer dea_drawer_profiles = {profiles_open, dea_plot_take, profiles_draw};

@@ -1,6 +1,6 @@
 #include "output/series.h"
 
-#include "output/picture.h"
+#include "output/panel.h"
 
 #include <math.h>
 #include <stdint.h>

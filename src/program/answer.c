@@ -244,22 +244,23 @@ static void print_states(const dea_answer *answer, const dea_scene *scene)
     }
 }
 
-/* A deviation in percent, its sign told: two digits, or what is left below a hundredth of a percent. */
-static const char *deviation_text(char *text, double deviation)
+/* A deviation in percent, its sign told: two digits, or what is left below a hundredth of a percent; or no digit behind the point. */
+static const char *deviation_text(char *text, double deviation, bool whole)
 {
     char number[DEA_NUMBER_LENGTH];
-    const bool tiny = fabs(deviation) < 1e-4;
-    snprintf(text, DEA_NUMBER_LENGTH, "%s%s %%", tiny || deviation < 0.0 ? "" : "+",
-             tiny ? "0.00" : dea_number_text(number, 100.0 * deviation, 2));
+    const double percent = whole ? round(100.0 * deviation) : 100.0 * deviation;
+    const bool tiny = fabs(percent) < 1e-2;
+    snprintf(text, DEA_NUMBER_LENGTH, "%s%s %%", tiny || percent < 0.0 ? "" : "+",
+             tiny ? (whole ? "0" : "0.00") : dea_number_text(number, percent, whole ? 4 : 2));
     return text;
 }
 
 /* " WHAT off by LOW to HIGH", one number where both print alike. */
-static void print_deviation(const char *what, double least, double largest)
+static void print_deviation(const char *what, double least, double largest, bool whole)
 {
     char low[DEA_NUMBER_LENGTH], high[DEA_NUMBER_LENGTH];
-    fprintf(stderr, " %s off by %s", what, deviation_text(low, least));
-    if (strcmp(low, deviation_text(high, largest)) != 0) {
+    fprintf(stderr, " %s off by %s", what, deviation_text(low, least, whole));
+    if (strcmp(low, deviation_text(high, largest, whole)) != 0) {
         fprintf(stderr, " to %s", high);
     }
 }
@@ -274,14 +275,18 @@ static void print_nearness(const dea_scene *scene, const dea_model *model)
     }
     fprintf(stderr, "  against the membrane (field)%s:", dea_study_of(scene)->at);
     if (near.compared > 0) {
-        print_deviation("strain", near.low, near.high);
+        print_deviation("strain", near.low, near.high, false);
     }
     if (near.unlike > 0) {
         fprintf(stderr, "%s pull-in of one alone at %zu", near.compared > 0 ? "," : "", near.unlike);
     }
     if (!isnan(near.slow)) {
         fputs(near.compared + near.unlike > 0 ? "," : "", stderr);
-        print_deviation("first resonance", near.slow, near.fast);
+        print_deviation("first resonance", near.slow, near.fast, false);
+    }
+    if (!isnan(near.least_peak)) {
+        fputc(',', stderr);
+        print_deviation("first peak", near.least_peak, near.largest_peak, true);
     }
     if (!near.whole) {
         fprintf(stderr, ", %zu of %zu points compared", near.compared + near.unlike, dea_scene_point_count(scene));

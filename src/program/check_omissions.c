@@ -6,6 +6,7 @@
 
 #include "deaspice/needs.h"
 #include "program/omissions.h"
+#include "result/compare.h"
 #include "study/study.h"
 
 static const double choice_fine = 0.05; /* of a model error's bound: accuracy of the runs that measure it */
@@ -113,18 +114,16 @@ static dea_status take_points(void *user, size_t first, const void *points, size
     return dea_comparison_take(user, first, points, count, error);
 }
 
-/* The first engine that can do a model, at that accuracy or at the tightest above it that it promises; NULL: none. */
-static const dea_engine *find_judge(dea_scene *scene, const dea_model *model, double wanted)
+/* Sets that accuracy, or the tightest above it that an engine promises for a model; false where none does. */
+static bool find_judges(dea_scene *scene, const dea_model *model, double wanted)
 {
     const double loosest = scene->accuracy;
-    for (size_t i = 0; i < dea_engine_count(); i++) {
-        for (scene->accuracy = fmin(wanted, loosest); scene->accuracy <= loosest; scene->accuracy *= 10.0) {
-            if (!dea_engine_refuses(dea_engine_at(i), scene, model)) {
-                return dea_engine_at(i);
-            }
+    for (scene->accuracy = fmin(wanted, loosest); scene->accuracy <= loosest; scene->accuracy *= 10.0) {
+        if (dea_crew_of(scene, NULL, model).count > 0) {
+            return true;
         }
     }
-    return NULL;
+    return false;
 }
 
 /* Runs a model finer than what is judged; by how much it may be off, NAN where nobody ran it. */
@@ -133,11 +132,11 @@ static double run_model(const dea_arguments *arguments, const dea_scene *scene, 
 {
     dea_scene here = *scene;
     here.models[0] = model;
+    here.engine_count = 0; /* whoever can */
     here.full = true;
     const dea_run_options options = {
         .jobs = arguments->jobs ? arguments->jobs : 1, .points = take_points, .stop = dea_signals_stop, .user = comparison};
-    const dea_engine *engine = find_judge(&here, model, wanted);
-    const bool done = engine && dea_study_run(&here, engine, &options, NULL) == DEA_OK && comparison->failed == 0;
+    const bool done = find_judges(&here, model, wanted) && dea_study_run(&here, NULL, &options, NULL) == DEA_OK && comparison->failed == 0;
     return done ? fmax(here.accuracy, isnan(comparison->error) ? 0.0 : comparison->error) : (double)NAN;
 }
 

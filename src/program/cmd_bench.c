@@ -52,13 +52,14 @@ static void print_limits(const dea_bench_model *model)
     }
 }
 
-static void print_model_error(const dea_bench_model *model)
+static void print_model_error(const dea_study *study, const dea_bench_model *model)
 {
     if (isnan(model->error_median)) {
         return;
     }
-    printf("  error of the model: strain off from field by %.3g %% in the median, %.3g %% at worst, over %zu points",
-           100.0 * model->error_median, 100.0 * model->error_worst, model->error_points);
+    printf("  error of the model: %s off from field by %.3g %% in the median, %.3g %% rms, %.3g %% at worst%s, over %zu %s",
+           study->along ? "displacement" : "strain", 100.0 * model->error_median, 100.0 * model->error_rms, 100.0 * model->error_worst,
+           study->timed ? " of its peak" : "", model->error_points, study->rows[model->error_points != 1]);
     if (model->error_left_out > 0) {
         printf(" (%zu not ok in one of the two)", model->error_left_out);
     }
@@ -71,8 +72,8 @@ static void print_heading(const char *path, const dea_bench *bench, const dea_be
            dea_study_of(bench->scene)->rows[1]);
     print_reference(model);
     print_limits(model);
-    print_model_error(model);
-    printf("  %-8s %-12s %8s %9s %9s %9s %5s %9s %9s  %s\n", "engine", "accuracy", "error", "time_ms", "25_%", "75_%", "runs",
+    print_model_error(dea_study_of(bench->scene), model);
+    printf("  %-8s %-12s %8s %8s %9s %9s %9s %5s %9s %9s  %s\n", "engine", "accuracy", "error", "of_asked", "time_ms", "25_%", "75_%", "runs",
            "start_ms", dea_study_of(bench->scene)->unit_head, "verdict");
 }
 
@@ -88,12 +89,13 @@ static const char *accuracy_text(const dea_bench_setting *setting, char text[CEL
     return text;
 }
 
-static const char *error_text(const dea_bench_setting *setting, char text[CELL])
+/* The error over @p unit. */
+static const char *error_text(const dea_bench_setting *setting, double unit, char text[CELL])
 {
     if (setting->reference || isnan(setting->error)) {
         snprintf(text, CELL, "-");
     } else {
-        snprintf(text, CELL, "%.1e", setting->error);
+        snprintf(text, CELL, "%.1e", setting->error / unit);
     }
     return text;
 }
@@ -129,7 +131,7 @@ static void print_setting(const dea_bench *bench, const dea_bench_setting *setti
 {
     static const char *const words[] = {
         [DEA_BENCH_REFUSED] = "cannot", [DEA_BENCH_SKIPPED] = "skipped", [DEA_BENCH_FAILED] = "FAILED"};
-    char accuracy[CELL], error[CELL];
+    char accuracy[CELL], error[CELL], share[CELL];
     const double scale = dea_study_of(bench->scene)->unit_scale;
     if (setting->state != DEA_BENCH_MEASURED) {
         printf("  %-8s %-12s %s: %s\n", setting->engine->name,
@@ -137,8 +139,8 @@ static void print_setting(const dea_bench *bench, const dea_bench_setting *setti
                setting->reason);
         return;
     }
-    printf("  %-8s %-12s %8s %9.3g %9.3g %9.3g %5zu %9.2g %9.3g", setting->engine->name, accuracy_text(setting, accuracy),
-           error_text(setting, error), 1e3 * setting->seconds, 1e3 * setting->lower, 1e3 * setting->upper, setting->runs,
+    printf("  %-8s %-12s %8s %8s %9.3g %9.3g %9.3g %5zu %9.2g %9.3g", setting->engine->name, accuracy_text(setting, accuracy),
+           error_text(setting, 1.0, error), error_text(setting, setting->accuracy, share), 1e3 * setting->seconds, 1e3 * setting->lower, 1e3 * setting->upper, setting->runs,
            1e3 * setting->start, scale * setting->seconds / bench->units);
     print_verdict(setting);
 }
@@ -260,9 +262,11 @@ const dea_command dea_command_bench = {
             "check compares: those of a sweep, relative to themselves; those of a transient,\n"
             "relative to the peak of the run; magnitudes and phases (in radian) of an ac study.\n"
             "The reference is the engine that promises most, at its tightest.\n"
+            "of_asked is that error over the accuracy, of a row of several over the tightest.\n"
             "PROMISE BROKEN: the error is above the accuracy that was asked for. dominated:\n"
             "another setting of the model is at least as fast and as accurate, and better in\n"
-            "one. In statics, the error of the model is that of its strain against field.\n"
+            "one. The error of the model is that of its strain against field, over time that of\n"
+            "its displacement over the peak, over frequency that of its displacement per volt.\n"
             "\n"
             "  -o, --output FILE     write a row a setting to FILE as CSV, - is standard output\n"
             "      --plot FILE       draw error over time, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)\n"

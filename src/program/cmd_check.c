@@ -5,6 +5,7 @@
 
 #include "program/check_omissions.h"
 #include "program/program.h"
+#include "result/compare.h"
 #include "study/study.h"
 
 /* Rows of all runs that a check keeps as its reference. */

@@ -6,6 +6,7 @@
 #include "netlist/symbol.h"
 #include "output/atomic.h"
 #include "program/program.h"
+#include "support/memory_text.h"
 
 enum { MOST_NAMES = 8, PATH_ROOM = 4096 };
 
@@ -82,34 +83,30 @@ const char *dea_export_word(size_t index, char room[DEA_NAME_LENGTH])
 /* A file in memory on its way to its target. */
 typedef struct sheet {
     dea_atomic file;
-    char *text; /* owned */
-    size_t length;
+    dea_memory_text memory;
 } sheet;
 
 /* Fills a sheet by @p write and puts it beside its target. */
 static dea_status fill_sheet(sheet *s, dea_status (*write)(dea_export *, const char *, dea_error *), dea_export *export,
                              const char *path, const char *library, dea_error *error)
 {
-    export->out = open_memstream(&s->text, &s->length);
-    if (!export->out) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
+    dea_status status = dea_memory_text_begin(&s->memory, error);
+    export->out = s->memory.out;
+    if (status == DEA_OK) {
+        status = write(export, library, error);
     }
-    dea_status status = write(export, library, error);
-    const bool sound = !ferror(export->out);
-    if ((fclose(export->out) != 0 || !sound) && status == DEA_OK) {
-        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
-    }
+    status = dea_memory_text_end(&s->memory, status, error);
     if (status == DEA_OK) {
         status = dea_atomic_open(&s->file, path, error);
     }
-    return status == DEA_OK ? dea_atomic_write(&s->file, s->text, s->length, error) : status;
+    return status == DEA_OK ? dea_atomic_write(&s->file, s->memory.text, s->memory.length, error) : status;
 }
 
 static dea_status close_sheet(sheet *s, dea_status status, dea_error *error)
 {
     const dea_status closed =
         s->file.target ? dea_atomic_close(&s->file, status == DEA_OK, status == DEA_OK ? error : NULL) : DEA_OK;
-    free(s->text);
+    free(s->memory.text);
     return status == DEA_OK ? closed : status;
 }
 
@@ -137,8 +134,8 @@ static dea_status library_path(const kind *as, const char *path, char library[PA
 static dea_status write_symbol(const kind *as, dea_export *export, const char *path, bool force, dea_error *error)
 {
     char library[PATH_ROOM];
-    sheet symbol = {.text = NULL};
-    sheet part = {.text = NULL};
+    sheet symbol = {.memory = {.text = NULL}};
+    sheet part = {.memory = {.text = NULL}};
     dea_status status = library_path(as, path, library, error);
     if (status == DEA_OK) {
         status = dea_files_target(export->scene->files, library, force, error);
@@ -157,7 +154,7 @@ static dea_status write_symbol(const kind *as, dea_export *export, const char *p
 
 static dea_status write_one(const kind *as, dea_export *export, const char *path, dea_error *error)
 {
-    sheet s = {.text = NULL};
+    sheet s = {.memory = {.text = NULL}};
     const dea_status status = fill_sheet(&s, as->write, export, path ? path : "-", NULL, error);
     return close_sheet(&s, status, error);
 }

@@ -9,6 +9,7 @@
 #include "deaspice/plot.h"
 #include "output/atomic.h"
 #include "program/program.h"
+#include "support/memory_text.h"
 
 /* Data and fits of one call. */
 typedef struct work {
@@ -110,20 +111,16 @@ static dea_status write_fit(const work *w, const dea_arguments *arguments, const
     film.permittivity = arguments->permittivity;
     film.density = arguments->density;
     film.breakdown = arguments->breakdown;
-    char *text = NULL;
-    size_t length = 0;
-    FILE *stream = open_memstream(&text, &length);
-    if (!stream) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
-    }
-    dea_status status = dea_fit_print(w->law_given, w->prony_given, &film, stream, error);
-    if (fclose(stream) != 0 && status == DEA_OK) {
-        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
-    }
+    dea_memory_text text;
+    dea_status status = dea_memory_text_begin(&text, error);
     if (status == DEA_OK) {
-        status = dea_atomic_put(path, text, length, error);
+        status = dea_fit_print(w->law_given, w->prony_given, &film, text.out, error);
     }
-    free(text);
+    status = dea_memory_text_end(&text, status, error);
+    if (status == DEA_OK) {
+        status = dea_atomic_put(path, text.text, text.length, error);
+    }
+    free(text.text);
     return status;
 }
 

@@ -106,6 +106,17 @@ static const start starts[] = {
      "  profile:\n"
      "    points: 101\n"
      "    # over: {voltage: [2 kV, 4 kV]}   # a run each\n"},
+    {"force", "force of a dot actuator over the displacement at which its edge is held",
+     "# What the actuator exerts on something that holds its edge, outward: from the blocked force to where it rests.\n"
+     "#   deaspice run force.yaml -o force.csv --plot force.svg\n"
+     "title: force over displacement\n" ACTUATOR("dot                  # or lens", "electrode_radius") MATERIAL
+     "drive:\n"
+     "  voltage: 4.5 kV\n"
+     "model: field                 # or ring, lame, coverage, lumped; or a list of them\n"
+     "study:\n"
+     "  force:\n"
+     "    displacement: {from: 0 mm, to: 0.6 mm, points: 61}\n"
+     "    over: {voltage: [3 kV, 4.5 kV]}   # a curve each\n"},
     {"sweep", "a map of a dot actuator over coverage and pre-stretch, models compared",
      "# Any scalar of the scene can be an axis; every combination is one point.\n"
      "#   deaspice run sweep.yaml -o sweep.csv --plot sweep.svg      (or -o sweep.nc, which opens in xarray)\n"
@@ -188,7 +199,7 @@ const dea_command dea_command_init = {
     .help = "Usage: deaspice init [OPTION]... [KIND]\n"
             "\n"
             "Writes a commented scene that runs as it is: dot, lens, transient, ac, modes,\n"
-            "profile or sweep. Without KIND, lists them.\n"
+            "profile, force or sweep. Without KIND, lists them.\n"
             "\n"
             "  -o, --output FILE     write it to FILE, - is standard output (default)\n"
             "      --force           overwrite FILE where it is there\n"

@@ -85,6 +85,26 @@ static void print_averages(const dea_findings *findings, size_t number, const de
     }
 }
 
+/* The weakest places of a run that tells them. */
+static void take_weakest(dea_findings *findings, const dea_sample *samples)
+{
+    dea_weakest *weakest = &findings->weakest;
+    *weakest = (dea_weakest){.field = -INFINITY, .tension = INFINITY};
+    for (size_t i = 0; i < findings->layout.rows; i++) {
+        const dea_weakest *here = &samples[i].weakest;
+        if (here->field > weakest->field) {
+            weakest->field = here->field;
+            weakest->field_radius = here->field_radius;
+            findings->weakest_times[0] = samples[i].time;
+        }
+        if (here->tension < weakest->tension) {
+            weakest->tension = here->tension;
+            weakest->tension_radius = here->tension_radius;
+            findings->weakest_times[1] = samples[i].time;
+        }
+    }
+}
+
 static void take_transient(dea_findings *findings, size_t number, const void *point)
 {
     const dea_layout *layout = &findings->layout;
@@ -106,6 +126,9 @@ static void take_transient(dea_findings *findings, size_t number, const void *po
             findings->pull_in = fmin(findings->pull_in, samples[i].time);
             break;
         }
+    }
+    if (layout->spread_count > 0) {
+        take_weakest(findings, samples);
     }
     print_averages(findings, number, &placed.transient);
 }
@@ -342,6 +365,30 @@ static void print_errors(const dea_findings *findings)
 }
 
 /* What films did in time. */
+/* Where a film is nearest to its limits, and in time when: of a uniform film there is no place, and in statics no time. */
+static void print_where(double radius, const double *time)
+{
+    if (!isnan(radius)) {
+        fputs(" at radius ", stderr);
+        print_quantity(radius, "m");
+    }
+    if (time) {
+        fputs(" at ", stderr);
+        print_quantity(*time, "s");
+    }
+}
+
+static void print_weakest(const dea_weakest *weakest, const double *times)
+{
+    fputs("largest true field ", stderr);
+    print_quantity(weakest->field, "V/m");
+    print_where(weakest->field_radius, times);
+    fputs(", least tension ", stderr);
+    print_quantity(weakest->tension, "Pa");
+    print_where(weakest->tension_radius, times ? times + 1 : NULL);
+    fputc('\n', stderr);
+}
+
 static void print_motions(const dea_findings *findings)
 {
     if (findings->points == 1 && !isnan(findings->summary.resonance)) {
@@ -360,6 +407,9 @@ static void print_motions(const dea_findings *findings)
     if (findings->points == 1) {
         print_aliases(findings);
         print_edges(findings);
+    }
+    if (findings->points == 1 && findings->layout.spread_count > 0 && isfinite(findings->weakest.tension)) {
+        print_weakest(&findings->weakest, findings->weakest_times);
     }
     if (findings->pulled > 0) {
         fputs("pull_in from t = ", stderr);
@@ -391,20 +441,6 @@ static void print_responses(const dea_findings *findings)
     }
 }
 
-/* Where a film is nearest to its limits. */
-static void print_weakest(const dea_weakest *weakest)
-{
-    fputs("largest true field ", stderr);
-    print_quantity(weakest->field, "V/m");
-    fputs(" at radius ", stderr);
-    print_quantity(weakest->field_radius, "m");
-    fputs(", least tension ", stderr);
-    print_quantity(weakest->tension, "Pa");
-    fputs(" at radius ", stderr);
-    print_quantity(weakest->tension_radius, "m");
-    fputc('\n', stderr);
-}
-
 void dea_findings_print(const dea_findings *findings, double seconds)
 {
     const dea_study *study = dea_study_of(findings->scene);
@@ -416,7 +452,7 @@ void dea_findings_print(const dea_findings *findings, double seconds)
     } else if (study->phasors || study->resonance > 0) {
         print_responses(findings);
     } else if (study->stations && findings->points == 1 && isfinite(findings->weakest.tension)) {
-        print_weakest(&findings->weakest);
+        print_weakest(&findings->weakest, NULL);
     }
     print_amount(findings);
     fprintf(stderr, " in %.3g s", seconds);

@@ -35,7 +35,8 @@ typedef struct dea_findings {
     dea_answer answers[DEA_SCENE_MODELS]; /**< of each model */
     dea_covered covered; /**< of stretches, against the data of the material */
     dea_band band; /**< of the last frequency response */
-    dea_weakest weakest; /**< of the last profile */
+    dea_weakest weakest; /**< of the last profile, or of all samples of the last transient */
+    double weakest_times[2]; /**< in time, of the largest field and of the least tension [s] */
 } dea_findings;
 
 /** Findings of a study that has not begun; prints the head of the averages. The scene and the stream must outlive them. */

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/line.h"
+#include "scene/line.h"
 #include "output/label.h"
 #include "support/number.h"
 

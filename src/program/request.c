@@ -145,7 +145,10 @@ bool dea_model_settle(dea_scene *scene, const dea_engine *engine, bool quiet, do
     scene->models[0] = choice.model;
     scene->automatic = false;
     *bound = choice.bound;
-    if (!quiet && choice.model == choice.truth) {
+    if (!quiet && choice.model == choice.truth && choice.unsolved) {
+        fprintf(stderr, "model auto: %s, which was not solved at once, so that nothing cheaper could be held against it\n",
+                choice.model->name);
+    } else if (!quiet && choice.model == choice.truth) {
         fprintf(stderr, "model auto: %s, nothing cheaper is good enough\n", choice.model->name);
     } else if (!quiet) {
         fprintf(stderr, "model auto: %s, within %s of %s\n", choice.model->name, dea_bound_text(choice.bound, text),

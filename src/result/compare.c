@@ -1,11 +1,13 @@
 #include "result/compare.h"
 
+#include <float.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "drive/signal.h"
-#include "engine/line.h"
+#include "scene/line.h"
 #include "network/dynamics.h"
 #include "result/scales.h"
 #include "result/state.h"
@@ -120,18 +122,54 @@ static bool is_failed(const dea_comparison *comparison, const char *row)
 }
 
 /* Samples whose states are right for their own numbers: a limit lies between these, which are compared as all others. */
-static bool are_at_limit(const dea_comparison *comparison, size_t number, const char *row, const char *wanted, double peak)
+static bool follow_numbers(const dea_comparison *comparison, const dea_scene *placed, const char *row, const char *wanted, double peak)
 {
     dea_sample samples[2];
-    dea_scene placed = *comparison->scene;
-    if (!dea_study_of(&placed)->timed) {
-        return false;
-    }
     memcpy(&samples[0], row, sizeof *samples);
     memcpy(&samples[1], wanted, sizeof *samples);
+    return dea_state_follows(placed, &samples[0], comparison->at_limit * peak) &&
+           dea_state_follows(placed, &samples[1], comparison->at_limit * peak);
+}
+
+/* A film of many nodes passes its limit a moment before a sample in the one, behind it in the other: the sample before or after it has
+ * that state in one of both. */
+static bool pass_beside(const dea_comparison *comparison, size_t index, const char *row, const char *wanted)
+{
+    const dea_layout *layout = &comparison->layout;
+    const dea_state one = dea_layout_state(layout, row), other = dea_layout_state(layout, wanted);
+    bool passes = false;
+    for (int side = -1; side <= 1; side += 2) {
+        if (side < 0 ? index > 0 : index + 1 < layout->rows) {
+            const ptrdiff_t step = side * (ptrdiff_t)layout->row_size;
+            passes = passes || dea_layout_state(layout, row + step) == other || dea_layout_state(layout, wanted + step) == one;
+        }
+    }
+    return passes;
+}
+
+/* What the voltage of a limit may be off by, over what the first compared column of two answers is: a stress that vanishes inside the
+ * film errs more than the displacement of its edge. */
+static const double inside = 10.0;
+
+/* Whether two states of a row that has numbers in both are those on the two sides of a limit. */
+static bool are_at_limit(const dea_comparison *comparison, size_t number, size_t index, const char *row, const char *wanted, double peak)
+{
+    const dea_study *study = dea_study_of(comparison->scene);
+    const double one = value_of(comparison, row, 0), other = value_of(comparison, wanted, 0);
+    dea_scene placed = *comparison->scene;
     dea_axes_place(&placed, number);
-    return dea_state_follows(&placed, &samples[0], comparison->at_limit * peak) &&
-           dea_state_follows(&placed, &samples[1], comparison->at_limit * peak);
+    if (isnan(one) || isnan(other)) {
+        return false;
+    }
+    if (study->timed) {
+        return placed.models[0]->membrane ? pass_beside(comparison, index, row, wanted)
+                                          : follow_numbers(comparison, &placed, row, wanted, peak);
+    }
+    const bool rests = !study->along || study->rest;
+    const double share = comparison->at_limit + inside * fabs(one - other) / fmax(fabs(other), DBL_MIN);
+    return rests && (!study->rest || study->rest(&placed, NULL) == DEA_OK) &&
+           dea_state_between(&placed, fmin(share, 0.5), dea_layout_state(&comparison->layout, row),
+                             dea_layout_state(&comparison->layout, wanted));
 }
 
 /* Rows that one of the two did not solve are counted elsewhere: they are no disagreement. */
@@ -145,7 +183,7 @@ static void compare_rows(dea_comparison *comparison, size_t number, const char *
             continue;
         }
         if (dea_layout_state(layout, row) != dea_layout_state(layout, wanted) &&
-            !are_at_limit(comparison, number, row, wanted, peaks[0])) {
+            !are_at_limit(comparison, number, i, row, wanted, peaks[0])) {
             comparison->states++;
             continue;
         }

@@ -3,16 +3,9 @@
 #define DEASPICE_RESULT_COMPARE_H
 
 #include "deaspice/result.h"
-#include "deaspice/scene.h"
+#include "study/study.h"
 
 enum { DEA_COMPARED_COLUMNS = 10 };
-
-/* How the difference of two numbers counts. */
-typedef enum dea_measure {
-    DEA_OVER_ITSELF, /* relative to the reference's own number */
-    DEA_OVER_PEAK,   /* relative to the scale of its column over the run (result/scales.h) */
-    DEA_OVER_RADIAN  /* an angle in degrees: absolute, in radian, whole turns taken off */
-} dea_measure;
 
 /* One compared column: where it lies in a row, and how. */
 typedef struct dea_compared {

@@ -22,9 +22,10 @@ const dea_column dea_row_columns[DEA_ROW_COLUMNS] = {
     {"area_strain", "relative change of the electroded area", "1", offsetof(dea_row, area_strain)},
     {"focal_length_m", "focal length of the lens", "m", offsetof(dea_row, focal_length)},
     {"energy_J", "energy of the electric field in the film", "J", offsetof(dea_row, energy)},
+    {"antagonist_field_V_per_m", "largest true electric field in the second film", "V/m", offsetof(dea_row, second_field)},
 };
 
 dea_row dea_row_failed(void)
 {
-    return (dea_row){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, DEA_STATE_FAILED};
+    return (dea_row){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, DEA_STATE_FAILED};
 }

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "network/membrane.h"
+#include "network/rings_mesh.h"
 
 static const double missed = 0.01;  /* share of what the largest voltage does at rest below which a peak counts as that */
 static const double promised = 10.0; /* accuracies, of what follows from displacement and charge */
@@ -20,23 +20,26 @@ typedef struct rest {
     double capacitance; /* [F] */
     double motional;    /* C' U_max [A s/m] */
     double swing;       /* sqrt(m/K), the branches held [s], 0 without mass */
+    double drag;        /* r/K of a load [s] */
 } rest;
 
 static rest rest_of_edge(dea_dynamics *d, double largest)
 {
-    const dea_edge e = dea_dynamics_edge(d, 0.0);
-    const double held = dea_dynamics_stiffness(d, 0.0, 0.0, false);
+    const double still = isnan(d->rest) ? 0.0 : d->rest;
+    const dea_edge e = dea_dynamics_edge(d, still);
+    const double held = dea_dynamics_stiffness(d, still, 0.0, false);
     return (rest){.length = dea_dynamics_scale(d, largest),
                   .force = fabs(e.push) * largest * largest,
                   .capacitance = e.capacitance,
                   .motional = fabs(e.capacitance_slope) * largest,
-                  .swing = d->mass > 0.0 && held > 0.0 ? sqrt(d->mass / held) : 0.0};
+                  .swing = d->mass > 0.0 && held > 0.0 ? sqrt(d->mass / held) : 0.0,
+                  .drag = held > 0.0 ? d->damping / held : 0.0};
 }
 
 /* Time in which the film answers a jump; *creep: only by its branches, of those that are not held [s]. */
 static double answer_time(const dea_dynamics *d, const rest *film, bool *creep)
 {
-    const double time = fmax(fmax(d->series * film->capacitance, film->swing), d->retardation);
+    const double time = fmax(fmax(d->series * film->capacitance, film->swing), d->retardation + film->drag);
     *creep = !(time > 0.0);
     if (*creep) {
         double rate = 0.0;
@@ -104,12 +107,12 @@ static dea_status look_at_film(const dea_scene *scene, const dea_model *model, d
     if (model->membrane) {
         dea_membrane membrane;
         dea_membrane_rest at;
-        const dea_status status = dea_membrane_open(scene, model, dea_membrane_usual_mesh(scene), &membrane, NULL);
+        const dea_status status = dea_membrane_open(scene, model, dea_rings_usual_mesh(scene), &membrane, NULL);
         *d = membrane.film;
         if (status == DEA_OK && dea_membrane_at_rest(&membrane, &at)) {
             const double longest = fmin(d->radius, d->point.frame_radius - d->radius);
             *film = (rest){fmin(longest, at.compliance * largest * largest), at.force * largest * largest, at.capacitance,
-                           at.capacitance_slope * largest, at.slowest > 0.0 ? 1.0 / at.slowest : 0.0};
+                           at.capacitance_slope * largest, at.slowest > 0.0 ? 1.0 / at.slowest : 0.0, 0.0};
         }
         return status;
     }

@@ -27,3 +27,23 @@ bool dea_state_follows(const dea_scene *scene, const dea_sample *sample, double 
     dea_dynamics_close(&dynamics);
     return follows;
 }
+
+static dea_state still_state(const dea_scene *scene, double voltage)
+{
+    dea_point point;
+    dea_row row = dea_row_failed();
+    dea_film_prepare(scene, &point.film);
+    dea_point_place(scene, &point);
+    point.voltage = voltage;
+    if (dea_point_valid(&point)) {
+        scene->models[0]->solve(&point, scene->accuracy, &row);
+    }
+    return row.state;
+}
+
+bool dea_state_between(const dea_scene *scene, double share, dea_state one, dea_state other)
+{
+    const dea_state below = still_state(scene, scene->drive.voltage * (1.0 - share));
+    const dea_state above = still_state(scene, scene->drive.voltage * (1.0 + share));
+    return (below == one && above == other) || (below == other && above == one);
+}

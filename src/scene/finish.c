@@ -96,17 +96,22 @@ static dea_status law_check(dea_reader *reader, const dea_holder *holder)
     return dea_place_fail(dea_reader_place(reader, first, holder->name), reader->error, path, "%s", fault);
 }
 
-/* One resistance stands for the sheets of a film whose electrode moves as one. */
+/* One resistance stands for the sheets of a film whose electrode moves as one; of a membrane the potential is told along them in time
+ * alone. There charges rest under a bias only where none leak away. */
 static dea_status sheet_check(dea_reader *reader)
 {
     const dea_scene *scene = reader->scene;
     const dea_study *study = dea_study_of(scene);
     const size_t sheet = offsetof(dea_scene, electrode.sheet_resistance);
-    const bool currents = study->along && !study->stations; /* not in statics */
+    const bool currents = study->along && !study->still;
+    const bool leaks = scene->transient.from_bias && !isnan(scene->drive.leakage_resistance);
     for (size_t i = 0; i < scene->model_count && currents; i++) {
-        if (scene->models[i]->membrane) {
+        if (scene->models[i]->membrane && (!study->timed || leaks)) {
             return dea_place_fail(dea_reader_place(reader, sheet, "electrode"), reader->error, "electrode.sheet_resistance",
-                                  "is one resistance, which the model %s has no place for; accepted: models of one node, e.g. ring",
+                                  study->timed ? "beside a leakage, from a bias, is more than the model %s can do; accepted: start: rest, "
+                                                 "no leakage_resistance, or models of one node, e.g. ring"
+                                               : "is one resistance, which the model %s has no place for; accepted: models of one node, "
+                                                 "e.g. ring, or a transient",
                                   scene->models[i]->name);
         }
     }
@@ -170,8 +175,8 @@ static dea_status load_check(dea_reader *reader)
 {
     const dea_scene *scene = reader->scene;
     const dea_node *load = dea_tree_child(reader->root, "load");
-    if (load && isnan(scene->load.mass) && isnan(scene->load.stiffness)) {
-        return dea_place_fail(&load->place, reader->error, "load", "without a number; accepted: mass and stiffness, e.g. {stiffness: 20 N/m}");
+    if (load && isnan(scene->load.mass) && isnan(scene->load.stiffness) && isnan(scene->load.damping) && isnan(scene->load.force)) {
+        return dea_place_fail(&load->place, reader->error, "load", "without a number; accepted: mass, stiffness, damping and force, e.g. {stiffness: 20 N/m}");
     }
     if (isnan(scene->load.mass) || !isnan(scene->material.density)) {
         return DEA_OK;
@@ -294,12 +299,17 @@ static dea_status optics_check(dea_reader *reader)
                           "%s is missing; accepted: both keys together", length ? "refractive_index" : "focal_length");
 }
 
+dea_status dea_law_finish(dea_reader *reader)
+{
+    const dea_key film = {.within = NULL};
+    const dea_holder holder = dea_reader_holder(reader, &film);
+    return law_check(reader, &holder);
+}
+
 dea_status dea_reader_finish(dea_reader *reader)
 {
     dea_status status = needs_check(reader);
-    const dea_key film = {.within = NULL};
-    const dea_holder holder = dea_reader_holder(reader, &film);
-    status = status ? status : law_check(reader, &holder);
+    status = status ? status : dea_law_finish(reader);
     status = status ? status : electrode_check(reader);
     status = status ? status : load_check(reader);
     status = status ? status : limit_check(reader);
@@ -310,6 +320,7 @@ dea_status dea_reader_finish(dea_reader *reader)
     status = status ? status : dea_material_finish(reader);
     status = status ? status : optics_check(reader);
     status = status ? status : dea_models_finish(reader);
+    status = status ? status : dea_antagonist_finish(reader);
     status = status ? status : dea_waveform_finish(reader);
     return status ? status : dea_study_finish(reader);
 }

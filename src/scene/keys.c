@@ -84,9 +84,34 @@ static const dea_key keys_behind[] = {
          "a density > 0, e.g. 1010 kg/m^3"),
     PART("electrode.sheet_resistance", electrode.sheet_resistance, "ohm", "_Ohm", 0, INFINITY, true, 2, "electrode",
          "a resistance per square > 0, e.g. 10 kOhm"),
-    OTHER("load", dea_read_mapping, "a mapping with mass and stiffness, e.g. {mass: 2 g, stiffness: 20 N/m}"),
+    OTHER("load", dea_read_mapping, "a mapping with mass, stiffness, damping and force, e.g. {mass: 2 g, stiffness: 20 N/m}"),
     PART("load.mass", load.mass, "kg", "_kg", 0, INFINITY, true, 2, "load", "a mass > 0, e.g. 2 g"),
     PART("load.stiffness", load.stiffness, "N/m", "_N_per_m", 0, INFINITY, true, 2, "load", "a stiffness > 0, e.g. 20 N/m"),
+    PART("load.damping", load.damping, "N s/m", "_N_s_per_m", 0, INFINITY, true, 2, "load", "a mechanical resistance > 0, e.g. 1e-3 N s/m"),
+    PART("load.force", load.force, "N", "_N", -INFINITY, INFINITY, true, 2, "load", "a force, outward positive, e.g. 50 mN"),
+    OTHER("antagonist", dea_read_antagonist, "a mapping with actuator, material and drive, e.g. {actuator: {kind: lens}, drive: {voltage: 3 kV}}"),
+    OTHER("antagonist.actuator", dea_read_mapping, "a mapping with kind, film_thickness, layers and prestretch, e.g. {kind: lens}"),
+    OTHER("antagonist.actuator.kind", dea_read_antagonist_kind, "dot, lens"),
+    PART("antagonist.actuator.frame_radius", antagonist.frame_radius, "m", "_m", 0, INFINITY, true, 0, "antagonist", "that of the first film"),
+    PART("antagonist.actuator.coverage", antagonist.coverage, "1", "", 0, 1, true, 0, "antagonist", "that of the first film"),
+    PART("antagonist.actuator.film_thickness", antagonist.film_thickness, "m", "_m", 0, INFINITY, true, 3, "antagonist",
+         "a length > 0, e.g. 100 um"),
+    {.path = "antagonist.actuator.layers",
+     .read = dea_read_scalar,
+     .offset = AT(antagonist.layers),
+     .unit = "1",
+     .suffix = "",
+     .low = 1,
+     .high = 1e6,
+     .whole = true,
+     .kinds = DEA_KEY_BOTH,
+     .words = 3,
+     .within = "antagonist",
+     .accepted = "a whole number >= 1, e.g. 5"},
+    PART("antagonist.actuator.prestretch", antagonist.prestretch, "1", "", 1, INFINITY, false, 3, "antagonist", "a stretch >= 1, e.g. 1.2"),
+    OTHER("antagonist.material", dea_read_antagonist_material, "a built-in name, the path of a material file, or a mapping"),
+    OTHER("antagonist.drive", dea_read_mapping, "a mapping with voltage, e.g. {voltage: 3 kV}"),
+    PART("antagonist.drive.voltage", antagonist.voltage, "V", "_V", -INFINITY, INFINITY, true, 3, "antagonist", "a voltage, e.g. 3 kV"),
     OTHER("drive", dea_read_mapping, "a mapping with voltage or waveform, ..."),
     {.path = "drive.voltage",
      .read = dea_read_scalar,
@@ -323,9 +348,18 @@ bool dea_key_find(const char *path, dea_ref *ref)
     return false;
 }
 
-/* True where @p name is the end of @p path, whole components, and holds the index of a path that has one. */
+static bool is_of_second(const char *path)
+{
+    return strncmp(path, "antagonist.", 11) == 0;
+}
+
+/* True where @p name is the end of @p path, whole components, and holds the index of a path that has one. No short name means the
+ * second film, whose keys have the names of the first. */
 static bool ends_with(const char *path, const char *name)
 {
+    if (is_of_second(path)) {
+        return false;
+    }
     const size_t whole = strlen(path);
     const size_t part = strlen(name);
     const bool indexed = !strchr(path, '#') || strchr(name, '#');
@@ -441,7 +475,7 @@ static size_t depth_of(const char *path)
     return depth;
 }
 
-/* The key whose last component is @p name, the least deep of several, one of an electrode only where no other is; false where there
+/* The key whose last component is @p name, the least deep of several, one of an electrode or a second film only where no other is; false where there
  * is none, or that is not one alone. */
 static bool namesake(const char *name, dea_key *found)
 {
@@ -449,7 +483,7 @@ static bool namesake(const char *name, dea_key *found)
     size_t least = SIZE_MAX;
     size_t count = 0;
     for (size_t i = 0; dea_key_at(i, &key); i++) {
-        const size_t depth = depth_of(key.path) + (strncmp(key.path, "electrode.", 10) == 0 ? DEA_TREE_DEPTH : 0);
+        const size_t depth = depth_of(key.path) + (strncmp(key.path, "electrode.", 10) == 0 || is_of_second(key.path) ? DEA_TREE_DEPTH : 0);
         if (is_anywhere(&key, NULL) && depth <= least && strcmp(last_component(key.path), name) == 0) {
             count = depth < least ? 1 : count + 1;
             least = depth;

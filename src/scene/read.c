@@ -225,15 +225,19 @@ dea_status dea_reader_word(dea_reader *reader, const dea_ref *ref, const dea_nod
     return dea_reader_refuse(reader, ref, node, node->text[0] ? what : "has no value");
 }
 
-dea_status dea_read_kind(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+dea_status dea_reader_kind(dea_reader *reader, const dea_ref *ref, const dea_node *node, dea_kind *kind)
 {
     static const char *const words[] = {"dot", "lens", NULL};
     size_t index = 0;
     const dea_status status = dea_reader_word(reader, ref, node, words, &index);
-    if (!status) {
-        reader->scene->actuator.kind = index == 0 ? DEA_DOT : DEA_LENS;
-        reader->kind_known = true;
-    }
+    *kind = index == 0 ? DEA_DOT : DEA_LENS;
+    return status;
+}
+
+dea_status dea_read_kind(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    const dea_status status = dea_reader_kind(reader, ref, node, &reader->scene->actuator.kind);
+    reader->kind_known = reader->kind_known || !status;
     return status;
 }
 
@@ -338,9 +342,11 @@ dea_status dea_models_finish(dea_reader *reader)
     if (scene->automatic) {
         scene->models[0] = dea_needs_truth(scene->study);
     }
-    for (size_t i = 0; i < scene->model_count && dea_tree_child(reader->root, "load"); i++) {
+    const bool loaded = dea_tree_child(reader->root, "load") || scene->antagonist.there;
+    for (size_t i = 0; i < scene->model_count && loaded; i++) {
         if (!scene->models[i]->edge) {
-            return model_fail(reader, reader->model_names[i], "has no edge that a load acts on",
+            return model_fail(reader, reader->model_names[i],
+                              scene->antagonist.there ? "has no edge that a second film acts on" : "has no edge that a load acts on",
                               (ability){.lens = scene->actuator.kind == DEA_LENS, .study = study, .edge = true});
         }
     }

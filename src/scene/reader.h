@@ -73,10 +73,18 @@ typedef struct dea_holder {
 
 dea_holder dea_reader_holder(dea_reader *reader, const dea_key *key);
 
+/* Reads dot or lens. */
+dea_status dea_reader_kind(dea_reader *reader, const dea_ref *ref, const dea_node *node, dea_kind *kind);
+/* What only the whole scene shows of a second film: unlike frames, studies that have none. */
+dea_status dea_antagonist_finish(dea_reader *reader);
+
 /* Kinds of keys, for the table. */
 dea_status dea_read_scalar(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_mapping(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_kind(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_antagonist(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_antagonist_kind(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_antagonist_material(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_title(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_model(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_engine(dea_reader *reader, const dea_ref *ref, const dea_node *node);
@@ -131,6 +139,8 @@ dea_status dea_reader_frame(dea_reader *reader, const char *path);
 dea_status dea_reader_bias(dea_reader *reader, double *bias);
 /* Refuses models that cannot do the scene's study. */
 dea_status dea_models_finish(dea_reader *reader);
+/* What only the whole law of the film shows: constants that are missing or do not fit together. */
+dea_status dea_law_finish(dea_reader *reader);
 /* What only the whole material shows: shares that leave no long-term modulus. */
 dea_status dea_material_finish(dea_reader *reader);
 /* What only the whole scene shows: missing keys, contradictions. */

@@ -96,6 +96,7 @@ const dea_study dea_study_profile = {
     .points = {"run", "runs"},
     .rows = {"radius", "radii"},
     .along = true,
+    .still = true,
     .stations = true,
     .sign = "radius",
     .model_fails = "has no profile, its annulus has not two stretches",

@@ -4,12 +4,18 @@
 #define DEA_STUDY_H
 
 #include "deaspice/engine.h"
-#include "result/compare.h"
 
 struct dea_drawer;
 struct dea_export;
 struct dea_key;
 struct dea_reader;
+
+/* How the difference of two numbers counts. */
+typedef enum dea_measure {
+    DEA_OVER_ITSELF, /* relative to the reference's own number */
+    DEA_OVER_PEAK,   /* relative to the scale of its column over the run (result/scales.h) */
+    DEA_OVER_RADIAN  /* an angle in degrees: absolute, in radian, whole turns taken off */
+} dea_measure;
 
 /* A column that engines must agree on. */
 typedef struct dea_study_column {
@@ -32,6 +38,7 @@ typedef struct dea_study {
     bool along;    /* rows of a point lie along a coordinate, their first column; else a point is one row, a dea_row */
     bool timed;    /* rows are dea_sample, and a dea_summary stands behind them */
     bool phasors;  /* rows are dea_response, and a dea_band stands behind them */
+    bool still;    /* the film rests: no current flows */
     bool stations; /* rows are dea_station, and a dea_weakest stands behind them */
     bool waveform; /* takes a waveform instead of drive.voltage */
     const char *bias;      /* key of the voltage that it has instead of drive.voltage, NULL: none */
@@ -58,6 +65,7 @@ typedef struct dea_study {
 
     size_t resonance; /* column that is a resonance in the first row, 0: none */
     const struct dea_drawer *drawer; /* of its pictures */
+    const struct dea_drawer *spread_drawer; /* of those of rows that tell something over the radius; NULL: the same */
 
     /* True where it can be asked of a model; NULL: of all. */
     bool (*takes)(const dea_model *model);

@@ -20,12 +20,16 @@ static const dea_study_column compared[] = {
     {offsetof(dea_row, area_strain), DEA_OVER_ITSELF, "area_strain"},
     {offsetof(dea_row, focal_length), DEA_OVER_ITSELF, "focal_length"},
     {offsetof(dea_row, energy), DEA_OVER_ITSELF, "energy"},
+    {offsetof(dea_row, second_field), DEA_OVER_ITSELF, "antagonist"},
 };
 
 static void lay(const dea_scene *scene, dea_layout *layout)
 {
     for (size_t i = 0; i < DEA_ROW_COLUMNS; i++) {
-        if (dea_row_columns[i].offset != offsetof(dea_row, focal_length) || !isnan(scene->actuator.focal_length)) {
+        const size_t offset = dea_row_columns[i].offset;
+        const bool absent = (offset == offsetof(dea_row, focal_length) && isnan(scene->actuator.focal_length)) ||
+                            (offset == offsetof(dea_row, second_field) && !scene->antagonist.there);
+        if (!absent) {
             dea_layout_add(layout, dea_row_columns[i]);
         }
     }

@@ -16,6 +16,10 @@
 #define TRANSIENT "study.transient"
 #define AVERAGE TRANSIENT ".average"
 #define SAMPLES TRANSIENT ".samples"
+#define PROFILE TRANSIENT ".profile"
+
+/* Most samples times radii of a run. */
+enum { ENTRIES_MOST = 1000000 };
 
 /* ---- reading */
 
@@ -62,6 +66,17 @@ static dea_status read_start(dea_reader *reader, const dea_ref *ref, const dea_n
     return status;
 }
 
+static dea_status read_profile(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    reader->scene->transient.points = 101;
+    return dea_read_mapping(reader, ref, node);
+}
+
+static dea_status read_points(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    return dea_reader_radii(reader, ref, node, &reader->scene->transient.points);
+}
+
 static dea_status read_samples(dea_reader *reader, const dea_ref *ref, const dea_node *node)
 {
     static const char *const words[] = {"even", "log", NULL};
@@ -78,7 +93,7 @@ static dea_status read_points_per_decade(dea_reader *reader, const dea_ref *ref,
 
 static const dea_key keys[] = {
     OTHER(TRANSIENT, dea_read_mapping,
-          "a mapping with until, every, samples, from, points_per_decade, average, start and over, e.g. {until: 25 s, every: 10 ms}"),
+          "a mapping with until, every, samples, from, points_per_decade, average, start, profile and over, e.g. {until: 25 s, every: 10 ms}"),
     PART(TRANSIENT ".until", transient.until, "s", "_s", 0, INFINITY, true, 0, TRANSIENT, "a time > 0, e.g. 25 s"),
     PART(TRANSIENT ".every", transient.every, "s", "_s", 0, INFINITY, true, 0, TRANSIENT, "a time > 0, e.g. 10 ms"),
     OTHER(SAMPLES, read_samples, "even, log"),
@@ -91,6 +106,8 @@ static const dea_key keys[] = {
     ENTRY(AVERAGE ".#.from", transient.averages, from, "s", "_s", 0, INFINITY, false, 0, "a time >= 0, e.g. 6 s"),
     ENTRY(AVERAGE ".#.to", transient.averages, to, "s", "_s", 0, INFINITY, true, 0, "a time > from, e.g. 8 s"),
     OTHER(TRANSIENT ".start", read_start, "rest, bias"),
+    OTHER(PROFILE, read_profile, "a mapping with points, e.g. {points: 51}"),
+    OTHER(PROFILE ".points", read_points, "a whole number of radii, 2 ... 10001, at which each sample tells the film, e.g. 51"),
     OVER(TRANSIENT ".over"),
 };
 
@@ -137,6 +154,36 @@ static double rows_of(const dea_transient *transient)
     return ceil(decades * (double)transient->points_per_decade * (1.0 - 1e-12)) + 2.0;
 }
 
+/* The film along its radius, of a model that moves along it. */
+static dea_status profile_finish(dea_reader *reader)
+{
+    const dea_scene *scene = reader->scene;
+    const size_t points = scene->transient.points;
+    const double samples = rows_of(&scene->transient);
+    if (points == 0) {
+        return DEA_OK;
+    }
+    const dea_place *place = &dea_tree_find(reader->root, PROFILE)->place;
+    for (size_t i = 0; i < scene->model_count; i++) {
+        if (!scene->models[i]->membrane || scene->automatic) {
+            return dea_place_fail(place, reader->error, PROFILE, "is not told of the model %s, which %s in one shape; accepted: beside the model field alone",
+                                  scene->automatic ? "auto" : scene->models[i]->name, scene->automatic ? "may move" : "moves");
+        }
+    }
+    if ((double)points * samples > ENTRIES_MOST) {
+        return dea_place_fail(place, reader->error, PROFILE, "too many (%zu radii of %.0f samples); accepted: at most %d entries of a run",
+                              points, samples, ENTRIES_MOST);
+    }
+    return dea_reader_frame(reader, PROFILE);
+}
+
+/* What stands beside the samples. */
+static dea_status further_finish(dea_reader *reader)
+{
+    const dea_status status = windows_finish(reader);
+    return status ? status : profile_finish(reader);
+}
+
 /* Where the keys of one kind of samples stand beside the other. */
 static dea_status samples_apart(dea_reader *reader)
 {
@@ -166,7 +213,7 @@ static dea_status logarithmic_finish(dea_reader *reader)
         return fail_value(reader, first, TRANSIENT, TRANSIENT ".from", "out of range", transient->first, "a time > 0 and < until");
     }
     transient->every = fmax(transient->first, transient->until * (1.0 - 1.0 / ratio_of(transient)));
-    return rows_of(transient) <= DEA_SAMPLES_MAX ? windows_finish(reader)
+    return rows_of(transient) <= DEA_SAMPLES_MAX ? further_finish(reader)
                                                  : fail_value(reader, first, TRANSIENT, TRANSIENT ".from", "too many samples",
                                                               transient->first, "at most 4000000 samples up to until");
 }
@@ -191,7 +238,7 @@ static dea_status finish(dea_reader *reader)
     }
     double whole;
     transient->grid = dea_number_power(transient->every, &whole);
-    return windows_finish(reader);
+    return further_finish(reader);
 }
 
 /* At the largest voltage of the run. */
@@ -212,12 +259,34 @@ static void identify(FILE *out, const dea_scene *scene)
         fprintf(out, "%s%.17g,%.17g", i > 0 ? "," : "", transient->averages[i].from, transient->averages[i].to);
     }
     fprintf(out, "\n" TRANSIENT ".start=%s\n", transient->from_bias ? "bias" : "rest");
+    if (transient->points > 0) {
+        fprintf(out, PROFILE ".points=%zu\n", transient->points);
+    }
     if (transient->logarithmic) {
         fprintf(out, TRANSIENT ".points_per_decade=%zu\n", transient->points_per_decade);
     }
 }
 
 /* ---- rows */
+
+/* Numbers of an entry: dea_along_tell(). */
+static const dea_column spread[DEA_SPREAD_COLUMNS] = {
+    {"profile_displacement_m", "radial displacement of the film from its place at rest and 0 V", "m", 0},
+    {"profile_velocity_m_per_s", "radial velocity of the film", "m/s", 0},
+    {"stretch_radial", "stretch along the radius, pre-stretch included", "1", 0},
+    {"stretch_hoop", "stretch along the hoop, pre-stretch included", "1", 0},
+    {"thickness_m", "thickness of each layer of the deformed film", "m", 0},
+    {"stress_radial_Pa", "true radial stress of film and voltage together", "Pa", 0},
+    {"stress_hoop_Pa", "true hoop stress of film and voltage together", "Pa", 0},
+    {"field_V_per_m", "true electric field, 0 without electrode", "V/m", 0},
+};
+
+static const dea_column weakest[] = {
+    {"largest_field_V_per_m", "largest true electric field", "V/m", offsetof(dea_sample, weakest.field)},
+    {"largest_field_radius_m", "radius of the largest field, at rest and 0 V", "m", offsetof(dea_sample, weakest.field_radius)},
+    {"least_tension_Pa", "smallest true stress in the plane of the film", "Pa", offsetof(dea_sample, weakest.tension)},
+    {"least_tension_radius_m", "radius of the smallest stress, at rest and 0 V", "m", offsetof(dea_sample, weakest.tension_radius)},
+};
 
 static void lay(const dea_scene *scene, dea_layout *layout)
 {
@@ -246,6 +315,12 @@ static void lay(const dea_scene *scene, dea_layout *layout)
     layout->row_size = sizeof(dea_sample);
     layout->state_offset = offsetof(dea_sample, state);
     layout->point_size = layout->rows * sizeof(dea_sample) + sizeof(dea_summary);
+    if (scene->transient.points > 0) {
+        for (size_t i = 0; i < sizeof weakest / sizeof *weakest; i++) {
+            dea_layout_add(layout, weakest[i]);
+        }
+        dea_layout_spread(layout, spread, DEA_SPREAD_COLUMNS, scene->transient.points);
+    }
 }
 
 static double place(const dea_scene *scene, size_t index)
@@ -413,6 +488,7 @@ const dea_study dea_study_transient = {
     .figures = figures,
     .figure_count = sizeof figures / sizeof *figures,
     .drawer = &dea_drawer_runs,
+    .spread_drawer = &dea_drawer_waves,
     .drawn = drawn,
     .drawn_count = sizeof drawn / sizeof *drawn,
     .takes = dea_study_moves,

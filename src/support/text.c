@@ -95,12 +95,6 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-bool dea_text_close(FILE *stream)
-{
-    const bool lost = !stream || ferror(stream) != 0;
-    return stream && fclose(stream) == 0 && !lost;
-}
-
 size_t dea_text_distance(const char *a, const char *b)
 {
     const size_t na = strlen(a);

@@ -4,7 +4,6 @@
 
 #include <stdbool.h>
 #include <stddef.h>
-#include <stdio.h>
 
 /* Room for dea_text_clip() of DEA_TEXT_SHOWN characters. */
 enum { DEA_TEXT_SHOWN = 60, DEA_TEXT_ROOM = 10 * DEA_TEXT_SHOWN + 8 };
@@ -22,8 +21,6 @@ char *dea_text_clip(const char *text, size_t shown, char *out, size_t room);
 const char *dea_text_line(const char *text, size_t length, int number, const char **stop);
 /* Column of @p at in the line that starts at @p line: characters before it and 1. */
 int dea_text_column(const char *line, const char *at);
-/* Closes a stream, whatever it lost; true where it lost nothing. NULL: false. */
-bool dea_text_close(FILE *stream);
 /* Edits between two words (insert, delete, replace, swap neighbours), case ignored; a large number where one is longer than 63
  * bytes. */
 size_t dea_text_distance(const char *a, const char *b);

@@ -10,7 +10,7 @@
 #include <time.h>
 
 #include "../promises/truths.h"
-#include "engine/line.h"
+#include "scene/line.h"
 
 /* What an engine must do with a scene. */
 typedef enum hard_demand {

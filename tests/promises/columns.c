@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "engine/line.h"
+#include "scene/line.h"
 #include "promises.h"
 #include "result/scales.h"
 

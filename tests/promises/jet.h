@@ -47,7 +47,8 @@ static inline jet inverse(jet a)
 static inline jet power(jet a, long double p)
 {
     const long double rest = a.value - a.change, before = powl(rest, p), change = before * expm1l(p * log1pl(a.change / rest));
-    const long double v = before + change, first = p * v / a.value, second = (p - 1.0L) * first / a.value;
+    const long double v = change > -0.5L * before ? before + change : powl(a.value, p); /* no small difference of the two */
+    const long double first = p * v / a.value, second = (p - 1.0L) * first / a.value;
     return (jet){v, first * a.slope, first * a.curve + second * a.slope * a.slope, change};
 }
 

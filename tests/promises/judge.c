@@ -6,7 +6,7 @@
 #include <string.h>
 #include <sys/resource.h>
 
-#include "engine/line.h"
+#include "scene/line.h"
 #include "promises.h"
 
 enum { COLUMNS = 9 };

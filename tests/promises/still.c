@@ -81,17 +81,22 @@ static long double top(branch *b, share_function *share, long double low, long d
     return f > g ? f : g;
 }
 
-/* First place from rest that holds the full load, in steps of @p step towards @p end; NAN behind a fold. */
-static long double first_place(branch *b, share_function *share, long double step, long double end)
+/* A strain that no film reaches; below it some do without a fold (Ogden's films whose largest exponent is just above 4). */
+static const long double far = 1e9L;
+
+/* First place from rest that holds the full load, on the way to @p end in steps that grow with the film, of which @p size is the
+ * length at rest; NAN behind a fold. */
+static long double first_place(branch *b, share_function *share, long double size, long double end)
 {
-    long double before = 0.0L, last = 0.0L, held = 0.0L;
-    const long double shortest = 1e-6L * fabsl(step);
-    while (fabsl(last) < fabsl(end) && fabsl(step) > shortest) {
-        long double here = last + step;
+    const long double longest = fabsl(end) / 8000.0L;
+    long double before = 0.0L, last = 0.0L, held = 0.0L, part = 1.0L;
+    while (fabsl(last) < fabsl(end) && part > 1e-6L) {
+        const long double step = part * fminl(longest, (size + fabsl(last)) / 400.0L);
+        long double here = last + copysignl(step, end);
         here = fabsl(here) < fabsl(end) ? here : end;
         const long double now = share(b, here);
         if (isnan(now)) {
-            step *= 0.5L;
+            part *= 0.5L;
             continue;
         }
         if (now >= 1.0L) {
@@ -125,8 +130,8 @@ static long double balance(const true_film *f, long double ratio, long double vo
     if (!(film_cauchy(f, f->prestretch).slope > 0.0L)) {
         return none;
     }
-    const long double end = ratio > 0.05L ? 1.0L / ratio : 20.0L;
-    return first_place(&b, balance_share, end / 8000.0L, end * (1.0L - 1e-9L));
+    const long double end = ratio > 0.0L ? 1.0L / ratio : far;
+    return first_place(&b, balance_share, 1.0L, end * (1.0L - 1e-9L));
 }
 
 /* ---- all models */
@@ -170,7 +175,7 @@ long double still_displacement(const true_film *f, long double voltage)
         if (b.load == 0.0L || !(edge_relaxed(&e).slope > 0.0L)) {
             return b.load == 0.0L ? 0.0L : none;
         }
-        return first_place(&b, ring_share, end / 8000.0L, end * (1.0L - 1e-9L));
+        return first_place(&b, ring_share, f->divide, end * (1.0L - 1e-9L));
     }
     const long double square = voltage * voltage, net = e.stress[0].slope - e.push.slope * square;
     return net > 0.0L || square == 0.0L ? e.push.value * square / net : none;

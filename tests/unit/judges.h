@@ -299,4 +299,46 @@ static inline judgement judge_balance(const judged_balance *b, int steps)
     return found;
 }
 
+/* Eqs. 19-23 of a film without electrodes' mass and skin behind a step at 0, m u'' = F(t) - K (u + tau u'), with Rayleigh's mass of
+ * Lame's shape (physics: section 5) and the modulus Y. */
+typedef struct lumped_state {
+    double u, v;
+} lumped_state;
+
+static inline double lumped_acceleration(const dea_scene *scene, double y_modulus, double time, lumped_state at)
+{
+    const dea_actuator *actuator = &scene->actuator;
+    const dea_step *step = &scene->drive.waveform.step;
+    const double r = actuator->frame_radius, ra = actuator->coverage * r, pre = actuator->prestretch, pi = 3.14159265358979323846;
+    const double a = ra / pre, f = r / pre, wide = f * f - a * a;
+    const double ring = f * f * f * f * log(f / a) - f * f * wide + (f * f * f * f - a * a * a * a) / 4.0;
+    const double mass = pi * scene->material.density * actuator->film_thickness * a * a * (0.5 + 2.0 * ring / (wide * wide));
+    const double area = 2.0 * pi * ra * actuator->film_thickness / (pre * pre);
+    const double stiffness = y_modulus * area * (1.0 / ra + 1.0 / (r - ra));
+    const double field = step->voltage * fmin(1.0, time / step->rise) / actuator->film_thickness;
+    const double sign = actuator->kind == DEA_LENS ? -1.0 : 1.0;
+    const double force = sign * 8.8541878128e-12 * scene->material.permittivity * pow(pre, 4.0) * field * field * area;
+    return (force - stiffness * (at.u + scene->material.retardation * at.v)) / mass;
+}
+
+/* From one time to another, by the classical Runge-Kutta method in ten steps. */
+static inline lumped_state lumped_move(const dea_scene *scene, double y_modulus, double from, double to, lumped_state at)
+{
+    const double h = (to - from) / 10.0;
+    for (int i = 0; i < 10; i++) {
+        static const double places[] = {0.0, 0.5, 0.5, 1.0}, shares[] = {1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
+        lumped_state rate = {0.0, 0.0}, sum = {0.0, 0.0};
+        for (int k = 0; k < 4; k++) {
+            const lumped_state here = {at.u + places[k] * h * rate.u, at.v + places[k] * h * rate.v};
+            rate.u = here.v;
+            rate.v = lumped_acceleration(scene, y_modulus, from + (i + places[k]) * h, here);
+            sum.u += shares[k] * rate.u;
+            sum.v += shares[k] * rate.v;
+        }
+        at.u += h * sum.u;
+        at.v += h * sum.v;
+    }
+    return at;
+}
+
 #endif

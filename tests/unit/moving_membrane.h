@@ -28,6 +28,7 @@ typedef struct fe_film {
     double series, leak; /* [Ohm] and [S]; series 0: none */
     bool dot;
     double voltage, rise;
+    const double *potential; /* across each place of an electrode that has not one voltage [V]; NULL: it has */
     double radius[FE_PLACES], weight[FE_PLACES];     /* R, dR */
     double shape[DEA_GAUSS_POINTS][FE_DEGREE + 1];   /* of every element */
     double slope[FE_PLACES][FE_DEGREE + 1];          /* over R */
@@ -185,7 +186,8 @@ static inline void fe_rates(const fe_film *f, double time, const fe_state *s, fe
     const double voltage = fe_voltage(f, time, s), field = voltage / f->thickness;
     for (size_t p = 0; p < FE_PLACES; p++) {
         const size_t e = p / DEA_GAUSS_POINTS * FE_DEGREE, g = p % DEA_GAUSS_POINTS;
-        const double k = fe_electroded(f, p) ? f->permittivity * field * field : 0.0;
+        const double own = f->potential ? f->potential[p] / f->thickness : field;
+        const double k = fe_electroded(f, p) ? f->permittivity * own * own : 0.0;
         double l[2], stress[2];
         fe_stretches(f, p, s->u, f->prestretch, l);
         fe_stress(f, p, s, l, d->z[p], stress);

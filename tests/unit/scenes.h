@@ -60,7 +60,7 @@ static inline dea_row solve_direct(const dea_scene *scene, const char *name)
     dea_film_prepare(scene, &point.film);
     dea_point_place(scene, &point);
     if (dea_point_valid(&point)) {
-        model->solve(&point, scene->accuracy, &row);
+        dea_model_solve(model, &point, scene->accuracy, &row);
     }
     return row;
 }

@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-#include "engine/line.h"
+#include "scene/line.h"
 
 enum { SCENES = 84, POINTS = 6, MOST_ROWS = 64 };
 

@@ -1,26 +1,10 @@
 /* Every law in networks: engines that share no formula agree in statics, time and frequency, and tiny strains keep their digits.
  */
-#include "scenes.h"
+#include "films.h"
 
 #include <stdlib.h>
 
 #include "network/balance.h"
-
-typedef struct film {
-    const char *law;
-    double constants[DEA_LAW_CONSTANTS];
-    size_t entries;
-} film;
-
-static const film films[] = {
-    {"yeoh", {178426.0, -6023.0, 4234.0}, 1},
-    {"neo_hookean", {44e3}, 1},
-    {"mooney_rivlin", {16e3, 7.3e3}, 1},
-    {"gent", {45e3, 120.0}, 1},
-    {"ogden", {43.4e3, 1.445, 84.2, 4.248, -2.4e3, -1.5}, 3},
-    {"arruda_boyce", {40e3, 5.99}, 1},
-};
-enum { FILMS = sizeof films / sizeof *films };
 
 static const char *const models[] = {"lumped", "lame", "coverage", "ring", "constant_force"};
 enum { MODELS = 5, MOVING = 4 };
@@ -28,10 +12,7 @@ enum { MODELS = 5, MOVING = 4 };
 static dea_scene scene_of(const film *f, dea_kind kind, const char *model, double prestretch, double coverage)
 {
     dea_scene scene = paper_scene(kind, prestretch, coverage, 0.0);
-    scene.material.law = dea_law_find(f->law);
-    assert_non_null(scene.material.law);
-    memcpy(scene.material.constants, f->constants, sizeof f->constants);
-    scene.material.entry_count = f->entries;
+    set_law(&scene, f);
     scene.material.permittivity = 4.7;
     scene.actuator.film_thickness = 250e-6;
     scene.models[0] = dea_model_find(model);

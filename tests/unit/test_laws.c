@@ -242,6 +242,29 @@ static void changes_keep_twelve_digits_at_any_strain(void **state)
     }
 }
 
+/* A stretch that is a small difference of the pre-stretch and its change: the power of it, not of that difference, counts. */
+static void a_film_squeezed_to_a_tenth_keeps_its_digits(void **state)
+{
+    (void)state;
+    static const double strains[] = {-0.5, -0.8, -0.88, -0.95};
+    size_t compared = 0;
+    for (size_t i = 0; i < LAWS; i++) {
+        const double *c = laws[i].constants, l = 2.6;
+        const dea_film film = dea_law_film(dea_law_at(i), c, l);
+        for (size_t n = 0; n < 4; n++) {
+            const long double there = l * (1.0L + strains[n]);
+            dea_change change;
+            dea_law_at(i)->change(&film, 1, &strains[n], &change);
+            if (-strains[n] < film.shrinks) {
+                const long double plain = there * plain_stress(i, c, there, there) - l * plain_stress(i, c, l, l);
+                assert_relative(change.value, (double)plain, 2e-14);
+                compared++;
+            }
+        }
+    }
+    assert_true(compared > 4 * LAWS - 4);
+}
+
 /* Of a small equi-biaxial strain e: sigma = 6 mu e, W = 6 mu e^2, W11 = 4 mu at rest. */
 static void energies_keep_their_digits_near_rest(void **state)
 {
@@ -389,6 +412,7 @@ int main(void)
         cmocka_unit_test(field_strains_to_all_printed_digits),
         cmocka_unit_test(stresses_are_slopes_of_the_plain_energies),
         cmocka_unit_test(changes_keep_twelve_digits_at_any_strain),
+        cmocka_unit_test(a_film_squeezed_to_a_tenth_keeps_its_digits),
         cmocka_unit_test(energies_keep_their_digits_near_rest),
         cmocka_unit_test(models_keep_twelve_digits_at_tiny_strains),
         cmocka_unit_test(gent_ends_in_a_state_and_never_in_nan),

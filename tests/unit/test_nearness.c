@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "moving_membrane.h"
 #include "needs/nearness.h"
 #include "network/membrane.h"
 
@@ -148,6 +149,70 @@ static void a_film_of_one_node_swings_too_fast(void **state)
     assert_true(isnan(nearness_of(FILM STATIC "study: {sweep: {}}\n", "lumped").slow));
 }
 
+/* Step of 4.5 kV within 0.1 ms (physics: section 7): what the models of one node are off by at the first peak, in percent. */
+static void the_first_peak_is_off_as_its_table_says(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lumped", "lame", "coverage"};
+    static const double coverages[] = {0.25, 0.50, 0.75}, off[3][3] = {{22, 21, 28}, {-6, 9, -12}, {1, 33, -15}};
+    for (size_t i = 0; i < 9; i++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 "actuator: {kind: dot, frame_radius: 30 mm, film_thickness: 100 um, prestretch: 1.2, coverage: %g}\n"
+                 "material: {base: elastosil-2030, density: 1080 kg/m^3, retardation: 50 us}\nmodel: lumped\n"
+                 "drive: {waveform: {step: {on: 5 ms, voltage: 4500 V, rise: 0.1 ms}}}\n"
+                 "study: {transient: {until: 13 ms, every: 1 ms}}\n", coverages[i / 3]);
+        const dea_nearness near = nearness_of(text, models[i % 3]);
+        assert_true(near.least_peak == near.largest_peak);
+        assert_true(fabs(100.0 * near.least_peak - off[i / 3][i % 3]) < 0.75);
+    }
+}
+
+/* Of a lens: Eqs. 19-23 against finite elements of the membrane, which know no rings. */
+static void the_first_peak_of_a_lens_is_off_as_finite_elements_say(void **state)
+{
+    (void)state;
+    static fe_film film;
+    static fe_state at;
+    dea_scene scene = moving_scene("kind: lens, coverage: 0.5, prestretch: 1.2");
+    dea_nearness near;
+    scene.material.prony_count = 0;
+    scene.material.retardation = 5e-5;
+    scene.drive.waveform.step.on = 0.0;
+    scene.drive.waveform.step.rise = 1e-4;
+    assert_int_equal(dea_nearness_measure(&scene, dea_model_find("lumped"), &near, NULL), DEA_OK);
+    fe_open(&scene, &film);
+    fe_rest(&film, &at);
+    double peak = 0.0;
+    for (int i = 0; i < 8000; i++) {
+        fe_step(&film, 2e-7 * i, 2e-7, &at);
+        peak = fmax(peak, fabs(at.u[fe_edge(&film)]));
+    }
+    double own = 0.0;
+    lumped_state move = {0};
+    for (int i = 0; i < 1600; i++) {
+        move = lumped_move(&scene, 1391085.27, 1e-6 * i, 1e-6 * (i + 1), move); /* Y at 1.2: physics, section 2 */
+        own = fmax(own, fabs(move.u));
+    }
+    assert_true(isfinite(peak) && peak > 1e-5);
+    assert_true(fabs(near.least_peak - (own / peak - 1.0)) < 0.006);
+    dea_scene_free(&scene);
+}
+
+/* Nothing that swings, no edge, or an end before the peak: no first peak. */
+static void a_run_without_a_first_peak_tells_none(void **state)
+{
+    (void)state;
+    static const char *const drives[] = {"step: {on: 0 s, voltage: 4 kV, rise: 0.1 ms, off: 0.5 ms}", "sine: {amplitude: 4 kV, frequency: 600 Hz}",
+                                         "points: [[0 s, 0 V], [1 ms, 2 kV], [2 ms, 4 kV]]"};
+    char text[1024];
+    for (size_t i = 0; i < 3; i++) {
+        snprintf(text, sizeof text, FILM "drive: {waveform: {%s}}\nstudy: {transient: {until: 8 ms, every: 1 ms}}\n", drives[i]);
+        const dea_nearness near = nearness_of(text, "lumped");
+        assert_true(near.compared == 1 && isnan(near.least_peak) && isnan(near.largest_peak));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -157,6 +222,9 @@ int main(void)
         cmocka_unit_test(pull_in_of_one_alone_is_counted),
         cmocka_unit_test(the_first_resonance_is_that_of_the_exact_film),
         cmocka_unit_test(a_film_of_one_node_swings_too_fast),
+        cmocka_unit_test(the_first_peak_is_off_as_its_table_says),
+        cmocka_unit_test(the_first_peak_of_a_lens_is_off_as_finite_elements_say),
+        cmocka_unit_test(a_run_without_a_first_peak_tells_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -391,25 +391,105 @@ static dea_model_choice choice_in_time(const char *const *settings, size_t count
     return choice;
 }
 
-/* Within 2 % in statics, and off by 0.998, 0.38 and 0.098 of the peak in time: the swing of a linear film gets out of step. */
+/* Within 2 % in statics, where nothing swings, and off by a third of the peak behind an edge: a film of one node swings 13 % too
+ * fast. Without a damper nobody runs the membrane behind a steep edge, and nothing is held against it. */
 static void a_swing_decides_which_model_is_chosen(void **state)
 {
     (void)state;
     static const char *const damped[] = {"material.retardation=2 us"};
     static const char *const lens[] = {"kind=lens",       "frame_radius=15.608 mm", "coverage=0.57915", "film_thickness=68.44 um",
-                                       "prestretch=1.02", "voltage=1600 V",         "every=57 us"};
-    static const char *const weak[] = {"voltage=30 V"};
+                                       "prestretch=1.02", "voltage=1600 V",         "every=57 us",      "material.retardation=5 us"};
+    static const char *const slow[] = {"voltage=300 V", "rise=20 ms", "material.retardation=20 us"};
     dea_scene scene;
-    assert_string_equal(choice_in_time(NULL, 0, &scene).model->name, "ring");
+    const dea_model_choice undamped = choice_in_time(NULL, 0, &scene);
+    assert_string_equal(undamped.model->name, "field");
+    assert_true(undamped.unsolved);
     dea_scene_free(&scene);
-    assert_string_equal(choice_in_time(damped, 1, &scene).model->name, "ring");
+    assert_string_equal(choice_in_time(damped, 1, &scene).model->name, "field");
     dea_scene_free(&scene);
-    assert_string_equal(choice_in_time(lens, 7, &scene).model->name, "ring");
+    assert_string_equal(choice_in_time(lens, 8, &scene).model->name, "field");
     dea_scene_free(&scene);
-    const dea_model_choice choice = choice_in_time(weak, 1, &scene);
+    const dea_model_choice choice = choice_in_time(slow, 3, &scene);
     assert_string_equal(choice.model->name, "lame");
-    assert_true(choice.bound > 0.0 && choice.bound <= 0.05);
+    assert_true(choice.bound > 0.0 && choice.bound <= 0.05 && !choice.unsolved);
     dea_scene_free(&scene);
+}
+
+/* Step of 4.5 kV within 0.1 ms (physics: section 7): peak of the membrane, and its strain at 1, 2, 4 and 8 ms. */
+static void a_chosen_model_follows_the_membrane_behind_an_edge(void **state)
+{
+    (void)state;
+    static const struct {
+        double coverage, peak, strains[4];
+    } steps[] = {{0.25, 0.0756050, {0.0741705, 0.0518654, 0.0610839, 0.0613304}},
+                 {0.50, 0.0678036, {0.0674155, 0.0333990, 0.0443810, 0.0456962}},
+                 {0.75, 0.0305977, {0.0290929, 0.0200565, 0.0239188, 0.0234764}}};
+    static const size_t rows[] = {50, 100, 200, 400};
+    static const double wanted[] = {0.02, 0.15, 0.5};
+    int cheaper = 0;
+    for (size_t i = 0; i < 9; i++) {
+        static struct {
+            dea_sample samples[401];
+            dea_summary summary;
+        } run;
+        const double most = wanted[i % 3];
+        dea_scene scene;
+        dea_model_choice choice;
+        void *session = NULL;
+        dea_error error = {0};
+        char coverage[64], model_error[64];
+        snprintf(coverage, sizeof coverage, "coverage=%g", steps[i / 3].coverage);
+        snprintf(model_error, sizeof model_error, "model_error=%g", most);
+        const dea_setting settings[] = {{.text = coverage}, {.text = model_error}, {.text = "prestretch=1.2"}, {.text = "voltage=4500 V"},
+                                        {.text = "on=0 s"}, {.text = "rise=0.1 ms"}, {.text = "until=8 ms"},
+                                        {.text = "every=0.02 ms"}, {.text = "material.retardation=50 us"}, {.text = "accuracy=1e-4"}};
+        if (dea_scene_parse(swinging, strlen(swinging), "needs", ".", settings, sizeof settings / sizeof *settings, NULL, &scene,
+                            &error) != DEA_OK) {
+            fail_msg("%s", error.message);
+        }
+        assert_int_equal(dea_needs_model(&scene, NULL, &choice, &error), DEA_OK);
+        cheaper += choice.model != choice.truth;
+        const dea_engine *ida = dea_engine_find("ida");
+        assert_int_equal(ida->begin(&session, NULL), DEA_OK);
+        assert_int_equal(ida->transient(session, &scene, choice.model, run.samples, &run.summary, NULL), DEA_OK);
+        ida->end(session);
+        for (size_t k = 0; k < 4; k++) {
+            assert_near(run.samples[rows[k]].strain, steps[i / 3].strains[k], most * steps[i / 3].peak);
+        }
+        dea_scene_free(&scene);
+    }
+    assert_true(cheaper >= 3);
+}
+
+/* Bias of 3 kV (physics: section 7): 1.958684830e-7 m/V at 1 Hz, where a film of one node is as good as in statics, and a resonance
+ * that it has 13 % too high. A loose accuracy of the run does not loosen the choice. */
+static void a_resonance_decides_which_model_is_chosen(void **state)
+{
+    (void)state;
+    static const char text[] = "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+                               "material: {base: elastosil-2030, density: 1080 kg/m^3, retardation: 20 us, prony: [{g: 0.0909090909, "
+                               "tau: 1 ms}]}\nmodel: auto\naccuracy: 0.2\nmodel_error: 1 %\n"
+                               "study: {ac: {from: 1 Hz, to: 1200 Hz, bias: 3 kV}}\n";
+    static const char *const ends[] = {"to=2 Hz", "to=1200 Hz"}, *const wanted[] = {"ring", "field"};
+    for (int i = 0; i < 2; i++) {
+        static dea_response rows[256];
+        const dea_setting setting = {.text = ends[i]};
+        dea_scene scene;
+        dea_model_choice choice;
+        void *session = NULL;
+        dea_error error = {0};
+        if (dea_scene_parse(text, strlen(text), "needs", ".", &setting, 1, NULL, &scene, &error) != DEA_OK) {
+            fail_msg("%s", error.message);
+        }
+        assert_int_equal(dea_needs_model(&scene, NULL, &choice, NULL), DEA_OK);
+        assert_string_equal(choice.model->name, wanted[i]);
+        const dea_engine *direct = dea_engine_find("direct");
+        assert_int_equal(direct->begin(&session, NULL), DEA_OK);
+        assert_int_equal(direct->ac(session, &scene, choice.model, rows, NULL, NULL), DEA_OK);
+        direct->end(session);
+        assert_near(rows[0].displacement, 1.958684830e-7, scene.model_error * 1.958684830e-7);
+        dea_scene_free(&scene);
+    }
 }
 
 static double displacement_gap(const dea_scene *scene, const dea_model *model, const dea_model *truth)
@@ -428,7 +508,7 @@ static double displacement_gap(const dea_scene *scene, const dea_model *model, c
     assert_int_equal(ida->begin(&session, NULL), DEA_OK);
     for (int k = 0; k < 2; k++) {
         dea_scene here = *scene;
-        here.accuracy = 1e-6;
+        here.accuracy = 1e-5;
         assert_int_equal(ida->transient(session, &here, models[k], runs[k].samples, &runs[k].summary, NULL), DEA_OK);
     }
     ida->end(session);
@@ -439,11 +519,11 @@ static double displacement_gap(const dea_scene *scene, const dea_model *model, c
     return gap / peak;
 }
 
-/* Films near a pre-stretch of 1, where a linear film is near in statics, under voltages that let some of them pass. */
+/* Films near a pre-stretch of 1, where a linear film is near in statics, under slow and weak voltages that let some of them pass. */
 static void chosen_models_keep_their_bounds_in_time(void **state)
 {
     (void)state;
-    enum { FILMS = 40 };
+    enum { FILMS = 30 };
     int cheaper = 0;
     for (int i = 0; i < FILMS; i++) {
         uint64_t seed = 5000011u * (uint64_t)(i + 1);
@@ -451,7 +531,7 @@ static void chosen_models_keep_their_bounds_in_time(void **state)
         random_transient(&seed, &scene);
         scene.actuator.prestretch = random_chance(&seed, 0.5) ? 1.0 : 1.0 + random_decades(&seed, 1e-6, 0.02);
         scene.material.density = 1080.0;
-        scene.material.retardation = random_chance(&seed, 0.5) ? (double)NAN : scene.material.retardation;
+        scene.material.retardation = random_decades(&seed, 0.1, 1.0) / (2.0 * DEA_PI * random_frequency(&scene));
         scene.transient.until = random_between(&seed, 5.0, 40.0) / random_frequency(&scene);
         scene.transient.every = scene.transient.until / 200.0;
         scene.drive.series_resistance = scene.drive.leakage_resistance = (double)NAN;
@@ -531,6 +611,8 @@ int main(void)
         cmocka_unit_test(model_error_decides_which_model_is_chosen),
         cmocka_unit_test(accuracy_does_not_decide_which_model_is_chosen),
         cmocka_unit_test(a_swing_decides_which_model_is_chosen),
+        cmocka_unit_test(a_chosen_model_follows_the_membrane_behind_an_edge),
+        cmocka_unit_test(a_resonance_decides_which_model_is_chosen),
         cmocka_unit_test(chosen_models_keep_their_bounds_in_time),
         cmocka_unit_test(a_swing_that_left_its_mark_is_no_broken_bound),
         cmocka_unit_test(a_judge_that_is_too_coarse_does_not_judge),

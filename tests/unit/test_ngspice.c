@@ -113,11 +113,25 @@ static void pass_in_child(in_child *check)
     }
 }
 
+/* One vector of a run. */
+typedef struct vector_result {
+    double *values;
+    size_t count;
+} vector_result;
+
+static dea_status run_vector(dea_ngspice *library, const char *netlist, const char *vector, vector_result *result, dea_error *error)
+{
+    dea_ngspice_table table;
+    const dea_status status = dea_ngspice_run_all(library, netlist, &vector, 1, &table, error);
+    *result = (vector_result){table.columns[0], table.count};
+    return status;
+}
+
 /* True where the divider is solved: 0.75, 1.5, 2.25 V. */
 static bool solves_divider(dea_ngspice *library, dea_error *error)
 {
-    dea_ngspice_result result;
-    const dea_status status = dea_ngspice_run(library, divider, "b", &result, error);
+    vector_result result;
+    const dea_status status = run_vector(library, divider, "b", &result, error);
     const bool right = status == DEA_OK && result.count == 3 && fabs(result.values[0] - 0.75) < 1e-9 &&
                        fabs(result.values[1] - 1.5) < 1e-9 && fabs(result.values[2] - 2.25) < 1e-9;
     free(result.values);
@@ -231,7 +245,7 @@ static void solve_under_a_comma(verdict *found, const char *folder)
 {
     dea_error error = {0};
     dea_ngspice *library;
-    dea_ngspice_result result;
+    vector_result result;
     if (!comma_locale(folder)) {
         found->line = NO_LOCALE;
         return;
@@ -239,7 +253,7 @@ static void solve_under_a_comma(verdict *found, const char *folder)
     setenv("LC_ALL", "de_DE.UTF-8", 1);
     CHECK(dea_ngspice_open(&library, &error) == DEA_OK, "%s", error.message);
     static const char *const netlist = "* comma\n.param p=2.5\nv1 a 0 1\nb1 b 0 v={p}*v(a)+0.25\n.dc v1 1 1 1\n.end\n";
-    CHECK(dea_ngspice_run(library, netlist, "b", &result, &error) == DEA_OK, "%s", error.message);
+    CHECK(run_vector(library, netlist, "b", &result, &error) == DEA_OK, "%s", error.message);
     CHECK(result.count == 1 && fabs(result.values[0] - 2.75) < 1e-12, "%zu values, %.17g", result.count,
           result.count ? result.values[0] : 0.0);
 }
@@ -306,14 +320,14 @@ static void alternate_good_and_bad(verdict *found, const char *folder)
     (void)folder;
     CHECK(dea_ngspice_open(&library, &error) == DEA_OK, "%s", error.message);
     for (size_t i = 0; i < 3 * REFUSED; i++) {
-        dea_ngspice_result result;
+        vector_result result;
         const bool solved = solves_divider(library, &error);
         if (!solved && i > 0 && error.status == DEA_ERROR_ENGINE) {
             break; /* newer releases of ngspice are lost after some of these, and say so; the engine then takes a fresh worker */
         }
         CHECK(solved, "before bad netlist %zu: %s", i, error.message);
         error = (dea_error){0};
-        const dea_status status = dea_ngspice_run(library, refused[i % REFUSED], "b", &result, &error);
+        const dea_status status = run_vector(library, refused[i % REFUSED], "b", &result, &error);
         CHECK(result.count == 0, "bad netlist %zu gave %zu values", i, result.count);
         CHECK(status == DEA_OK || error.message[0], "bad netlist %zu is refused without a word", i);
         CHECK(i % REFUSED == 4 || i % REFUSED == 5 || status == DEA_ERROR_ENGINE, "bad netlist %zu is not refused", i);
@@ -332,17 +346,17 @@ static void run_after_poison(verdict *found, const char *folder)
 {
     dea_error error = {0};
     dea_ngspice *library;
-    dea_ngspice_result result;
+    vector_result result;
     (void)folder;
     CHECK(dea_ngspice_open(&library, &error) == DEA_OK, "%s", error.message);
     CHECK(solves_divider(library, &error), "%s", error.message);
     static const char *const poison = "* poison\nv1 a 0 1\nr1 a b {nobody}\nr2 b 0 3\n.dc v1 1 3 1\n.end\n";
-    CHECK(dea_ngspice_run(library, poison, "b", &result, &error) == DEA_ERROR_ENGINE, "an undefined parameter is not refused");
+    CHECK(run_vector(library, poison, "b", &result, &error) == DEA_ERROR_ENGINE, "an undefined parameter is not refused");
     CHECK(result.count == 0, "an undefined parameter gave numbers");
     CHECK(error.message[0], "no word about it");
     for (int i = 0; i < 3; i++) {
         error = (dea_error){0};
-        const dea_status status = dea_ngspice_run(library, divider, "b", &result, &error);
+        const dea_status status = run_vector(library, divider, "b", &result, &error);
         CHECK(status == DEA_ERROR_ENGINE ? result.count == 0 : result.count == 3 && fabs(result.values[2] - 2.25) < 1e-9,
               "a poisoned library gave %zu numbers, status %d", result.count, (int)status);
     }
@@ -368,8 +382,8 @@ static void ask_for_constants(verdict *found, const char *folder)
     (void)folder;
     CHECK(dea_ngspice_open(&library, &error) == DEA_OK, "%s", error.message);
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        dea_ngspice_result result;
-        const dea_status status = dea_ngspice_run(library, divider, names[i], &result, &error);
+        vector_result result;
+        const dea_status status = run_vector(library, divider, names[i], &result, &error);
         CHECK(result.count == 0, "node %s has %zu values, the first %g (status %d)", names[i], result.count, result.values[0],
               (int)status);
         free(result.values);
@@ -395,8 +409,8 @@ static void leave_the_domain(verdict *found, const char *folder)
     (void)folder;
     CHECK(dea_ngspice_open(&library, &error) == DEA_OK, "%s", error.message);
     for (size_t i = 0; i < 2; i++) {
-        dea_ngspice_result result;
-        (void)dea_ngspice_run(library, netlists[i], "b", &result, &error);
+        vector_result result;
+        (void)run_vector(library, netlists[i], "b", &result, &error);
         CHECK(result.count == 2, "netlist %zu: %zu values", i, result.count);
         for (size_t k = 0; k < result.count; k++) {
             CHECK(isfinite(result.values[k]), "netlist %zu: value %zu is no number", i, k);
@@ -426,11 +440,11 @@ static void complain_without_end(verdict *found, const char *folder)
     }
     (void)sprintf(text + length, ".dc v1 1 2 1\n.end\n");
     CHECK(dea_ngspice_open(&library, &error) == DEA_OK, "%s", error.message);
-    dea_ngspice_result result;
-    CHECK(dea_ngspice_run(library, text, "a", &result, &error) == DEA_ERROR_ENGINE, "not refused");
+    vector_result result;
+    CHECK(run_vector(library, text, "a", &result, &error) == DEA_ERROR_ENGINE, "not refused");
     CHECK(memchr(error.message, '\0', sizeof error.message) && error.message[0], "no bounded message");
     static const char *const logarithm = "* negative\nv1 a 0 1\nb1 b 0 v=ln(v(b)-2)*v(a)\nr1 b 0 1\n.dc v1 1 200 1\n.end\n";
-    (void)dea_ngspice_run(library, logarithm, "b", &result, &error);
+    (void)run_vector(library, logarithm, "b", &result, &error);
     CHECK(result.count == 0 || isfinite(result.values[0]), "no numbers");
     CHECK(memchr(error.message, '\0', sizeof error.message), "no bounded message");
     CHECK(solves_divider(library, &error), "%s", error.message);

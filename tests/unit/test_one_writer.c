@@ -1,29 +1,27 @@
 /* The engine `ngspice` runs the very text that is exported: byte for byte from the first line of the network to its last, over
  * models, laws, ports and studies. What comes before are its numbers, in the units of each, what comes after the deck. */
-#include "scenes.h"
+#include "films.h"
 
 #include <stdlib.h>
 
+#include "engine/ngspice/bands.h"
 #include "engine/ngspice/deck.h"
 #include "engine/ngspice/moving.h"
 #include "netlist/export.h"
 #include "netlist/netlist.h"
 
-typedef struct film {
-    const char *law;
-    double constants[DEA_LAW_CONSTANTS];
-    size_t entries;
-} film;
-
-static const film films[] = {
-    {"yeoh", {178426.0, -6023.0, 4234.0}, 1},
-    {"neo_hookean", {44e3}, 1},
-    {"mooney_rivlin", {16e3, 7.3e3}, 1},
-    {"gent", {45e3, 120.0}, 1},
-    {"ogden", {43.4e3, 1.445, 84.2, 4.248, -2.4e3, -1.5}, 3},
-    {"arruda_boyce", {40e3, 5.99}, 1},
+enum {
+    MODELS = 4,
+    WITH_MASS = 1,
+    WITH_DAMPER = 2,
+    WITH_BRANCHES = 4,
+    WITH_SERIES = 8,
+    WITH_LEAK = 16,
+    WITH_SKIN = 32,
+    WITH_LAYERS = 64,
+    WITH_LOAD = 128,
+    WAYS = 256
 };
-enum { FILMS = sizeof films / sizeof *films, MODELS = 4, WITH_MASS = 1, WITH_DAMPER = 2, WITH_BRANCHES = 4, WITH_SERIES = 8, WITH_LEAK = 16, WAYS = 32 };
 
 static const char *const models[MODELS] = {"lumped", "lame", "coverage", "ring"};
 
@@ -31,10 +29,7 @@ static const char *const models[MODELS] = {"lumped", "lame", "coverage", "ring"}
 static dea_scene scene_of(const film *f, const char *model, dea_kind kind, int way)
 {
     dea_scene scene = paper_scene(kind, 1.3, 0.45, (double)NAN);
-    scene.material.law = dea_law_find(f->law);
-    assert_non_null(scene.material.law);
-    memcpy(scene.material.constants, f->constants, sizeof f->constants);
-    scene.material.entry_count = f->entries;
+    set_law(&scene, f);
     scene.models[0] = dea_model_find(model);
     scene.material.density = way & WITH_MASS ? 1080.0 : (double)NAN;
     scene.material.retardation = way & WITH_DAMPER ? 2e-4 : (double)NAN;
@@ -43,6 +38,14 @@ static dea_scene scene_of(const film *f, const char *model, dea_kind kind, int w
     scene.material.prony[1] = (dea_prony){0.05, 0.2};
     scene.drive.series_resistance = way & WITH_SERIES ? 1e5 : (double)NAN;
     scene.drive.leakage_resistance = way & WITH_LEAK ? 1e11 : (double)NAN;
+    scene.actuator.layers = way & WITH_LAYERS ? 3.0 : 1.0;
+    if (way & WITH_SKIN) {
+        scene.electrode = (dea_electrode){
+            .law = dea_law_find("neo_hookean"), .constants = {150e3}, .entry_count = 1, .thickness = 2e-6, .density = 1000.0};
+    }
+    if (way & WITH_LOAD) {
+        scene.load = (dea_edge_load){.mass = 1e-4, .stiffness = 40.0, .force = 0.01, .damping = 0.1};
+    }
     return scene;
 }
 
@@ -76,7 +79,7 @@ static void assert_one_text(char *ours, char *theirs, const char *what)
 {
     char *engine = network_in(ours), *file = network_in(theirs);
     if (strcmp(engine, file) != 0) {
-        print_error("%s\n---\n%s\n", engine, file);
+        fprintf(stderr, "%s\n---\n%s\n", engine, file);
         fail_msg("%s: the engine runs another network than is exported", what);
     }
     free(engine);
@@ -111,7 +114,7 @@ static char *transient_of(const dea_scene *scene)
 static void transients_are_one_text(void **state)
 {
     (void)state;
-    for (int n = 0; n < FILMS * MODELS * WAYS; n += n % WAYS % 3 + 1) {
+    for (int n = 0; n < FILMS * MODELS * WAYS; n += n % WAYS % 23 + 1) {
         char what[80];
         const film *f = &films[n / WAYS % FILMS];
         const char *model = models[n / WAYS / FILMS];
@@ -131,14 +134,15 @@ static char *response_of(const dea_scene *scene)
     const dea_units units = {1024.0, 4096.0, 0x1p-20, 0x1p-10, 128.0};
     dea_scene inside;
     dea_dynamics dynamics;
-    dea_mobility_bias bias = {0};
+    dea_biased_film biased = {.dynamics = &dynamics};
     char *text = NULL;
     assert_int_equal(dea_units_enter(&units, scene, &inside, NULL), DEA_OK);
     assert_int_equal(dea_dynamics_open(&inside, inside.models[0], &dynamics, NULL), DEA_OK);
-    bias.voltage = inside.ac.bias / (1.0 + dynamics.series * dynamics.conductance);
-    assert_true(dea_dynamics_equilibrium(&dynamics, bias.voltage, &bias.u));
+    biased.bias.voltage = inside.ac.bias / (1.0 + dynamics.series * dynamics.conductance);
+    assert_true(dea_dynamics_equilibrium(&dynamics, biased.bias.voltage, &biased.bias.u));
+    const dea_bands bands = dea_bands_of_film(&biased, &inside, NULL);
     const dea_mobility_band band = {.from = inside.ac.from, .to = inside.ac.to, .points_per_decade = 3};
-    assert_int_equal(dea_mobility_write_small(&dynamics, &bias, &band, &text, NULL), DEA_OK);
+    assert_int_equal(dea_bands_write(&bands, &band, &text, NULL), DEA_OK);
     dea_dynamics_close(&dynamics);
     dea_units_leave(&inside);
     return text;
@@ -147,7 +151,7 @@ static char *response_of(const dea_scene *scene)
 static void frequency_responses_are_one_text(void **state)
 {
     (void)state;
-    for (int n = 0; n < FILMS * MODELS * WAYS; n += n % WAYS % 5 + 1) {
+    for (int n = 0; n < FILMS * MODELS * WAYS; n += n % WAYS % 29 + 1) {
         char what[80];
         const film *f = &films[n / WAYS % FILMS];
         const char *model = models[n / WAYS / FILMS];
@@ -159,15 +163,38 @@ static void frequency_responses_are_one_text(void **state)
     }
 }
 
+/* A bare number is one of the scene under its name, or of the axis; all others are formulas. */
+static void assert_numbers_are_named(const char *text, const dea_scene *scene)
+{
+    static const char *const names[] = {"frame_radius", "film_thickness", "permittivity", "modulus", "voltage", "load_stiffness", "load_force"};
+    for (const char *card = strstr(text, ".param "); card; card = strstr(card + 1, ".param ")) {
+        const char *name = card + strlen(".param ");
+        const size_t length = strcspn(name, "=");
+        bool known = name[length + 1] == '{' || strncmp(name, "axis_", 5) == 0 || strncmp(name, "skin_", 5) == 0;
+        for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+            known = known || (strlen(names[i]) == length && strncmp(name, names[i], length) == 0);
+        }
+        for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
+            char own[DEA_QUANTITY_NAME];
+            dea_constant_name(scene->material.law, i, own);
+            known = known || (strlen(own) == length && strncmp(name, own, length) == 0);
+        }
+        if (!known) {
+            fail_msg("a bare number: %.40s", card);
+        }
+    }
+}
+
 static void sweeps_are_one_text(void **state)
 {
     (void)state;
     enum { POINTS = 5 };
     for (int n = 0; n < FILMS * MODELS * 3; n++) {
+        static const int ways[] = {0, WITH_SKIN, WITH_LAYERS, WITH_LOAD, WITH_SKIN | WITH_LAYERS | WITH_LOAD};
         char what[80];
         const film *f = &films[n / 3 % FILMS];
         const char *model = models[n / 3 / FILMS];
-        dea_scene scene = scene_of(f, model, n % 2 ? DEA_LENS : DEA_DOT, 0);
+        dea_scene scene = scene_of(f, model, n % 2 ? DEA_LENS : DEA_DOT, ways[n % 5]);
         double *const fields[] = {&scene.drive.voltage, &scene.actuator.coverage, &scene.actuator.prestretch};
         double values[POINTS];
         dea_axis axis;
@@ -176,14 +203,13 @@ static void sweeps_are_one_text(void **state)
             values[k] = *fields[n % 3] * (1.0 + 0.02 * k);
         }
         add_axis(&scene, &axis, fields[n % 3], values, POINTS);
-        dea_network network;
         char *text = NULL;
-        assert_int_equal(dea_network_build(&scene, scene.models[0], &axis, &network, NULL), DEA_OK);
-        const dea_netlist_study study = {.axis = &axis, .count = POINTS, .force_scale = 1.0, .length_scale = 1.0};
-        assert_int_equal(dea_netlist_write(&network, &study, &text, NULL), DEA_OK);
+        const dea_netlist_study study = {.scene = &scene, .model = scene.models[0], .axis = &axis, .count = POINTS, .force_scale = 1.0, .length_scale = 1.0};
+        assert_int_equal(dea_netlist_write(&study, &text, NULL), DEA_OK);
         snprintf(what, sizeof what, "sweep %d of %s, %s", n, f->law, model);
-        assert_one_text(text, exported(&scene), what);
-        dea_network_free(&network);
+        char *file = exported(&scene);
+        assert_numbers_are_named(file, &scene);
+        assert_one_text(text, file, what);
     }
 }
 

@@ -168,7 +168,7 @@ static void point_make(const dea_scene *scene, const dea_layout *layout, size_t 
         void *row = (char *)point + i * layout->row_size;
         if (scene->study == DEA_STUDY_TRANSIENT) {
             const double u = sample_displacement(number, at);
-            *(dea_sample *)row = (dea_sample){at, 4500.0, u, u / 0.015, 0.25, 0.5, 1e-6, 2e-6, NAN, 4400.0, 2.5e-10, DEA_STATE_OK};
+            *(dea_sample *)row = (dea_sample){at, 4500.0, u, u / 0.015, 0.25, 0.5, 1e-6, 2e-6, NAN, 4400.0, 2.5e-10, DEA_STATE_OK, {.field = 0.0}};
         } else {
             const double x = at / (100.0 * (double)(number + 1));
             *(dea_response *)row =
@@ -328,10 +328,10 @@ static void csv_of_a_transient_holds_the_run_before_every_sample(void **state)
     for (size_t number = 0; number < 4; number++) {
         dea_sample *samples = (dea_sample *)(void *)point;
         for (size_t i = 0; i < 3; i++) {
-            samples[i] = (dea_sample){0.5 * (double)i, 4500.0, 0.125, 0.25, 2.0, 0.5, 3.0, 4.0, 5.0, 6.0, 7.0, DEA_STATE_OK};
+            samples[i] = (dea_sample){0.5 * (double)i, 4500.0, 0.125, 0.25, 2.0, 0.5, 3.0, 4.0, 5.0, 6.0, 7.0, DEA_STATE_OK, {.field = 0.0}};
         }
         if (number == 3) {
-            samples[2] = (dea_sample){1.0, 4500.0, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, DEA_STATE_PULL_IN};
+            samples[2] = (dea_sample){1.0, 4500.0, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, DEA_STATE_PULL_IN, {.field = 0.0}};
         }
         assert_int_equal(dea_writer_points(writer, number, point, 1, &error), DEA_OK);
     }

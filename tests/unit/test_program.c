@@ -245,7 +245,7 @@ static void bash_completes(void **state)
         {"fit only", "only.csv"},
         {"export --as kic", "kicad"},
         {"export --dialect x", "xyce"},
-        {"init ''", "dot lens transient ac modes profile sweep"},
+        {"init ''", "dot lens transient ac modes profile force sweep"},
         {"materials vhb-4910-", "vhb-4910-neo-hookean"},
         {"completion ''", "bash zsh fish"},
         {"check --resu", ""},
@@ -271,7 +271,7 @@ static void bash_completes(void **state)
 
 static void every_scene_to_start_from_runs(void **state)
 {
-    static const char *const kinds[] = {"dot", "lens", "transient", "ac", "modes", "profile", "sweep"};
+    static const char *const kinds[] = {"dot", "lens", "transient", "ac", "modes", "profile", "force", "sweep"};
     (void)state;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         static char straight[TEXT_LENGTH];

@@ -215,6 +215,34 @@ static void a_branch_folds_at_its_critical_voltage(void **state)
     }
 }
 
+/* The roots of Eq. 13 for Ogden films whose exponent is just above 4, found at 40 digits for the doubles of the scene: no fold, however far.
+ */
+static void a_branch_without_fold_goes_as_far_as_its_film(void **state)
+{
+    (void)state;
+    const struct {
+        double alpha, voltage, strain;
+    } known[] = {
+        {4.2, 1000.0, 0.02783387678720167148}, {4.2, 4000.0, 35.10930858001150623}, {4.2, 5000.0, 335.2937081970256791},
+        {4.1, 4000.0, 1563.654559152256313},   {4.1, 5000.0, 135711.1497776831966},
+    };
+    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, 0.0);
+    scene.material.law = dea_law_find("ogden");
+    scene.material.entry_count = 1;
+    scene.material.permittivity = 3.0;
+    memset(scene.material.constants, 0, sizeof scene.material.constants);
+    scene.material.constants[0] = 20e3;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        scene.material.constants[1] = known[i].alpha;
+        scene.drive.voltage = known[i].voltage;
+        const dea_model *model = dea_model_find("constant_force");
+        dea_row row = {0};
+        assert_relative(still_truth(&scene, model, 1.0).row.strain, known[i].strain, 1e-14);
+        assert_int_equal(dea_engine_find("direct")->sweep(NULL, &scene, model, 0, 1, &row, NULL), DEA_OK);
+        assert_relative(row.strain, known[i].strain, 1e-12);
+    }
+}
+
 /* ---- the judge */
 
 static dea_status sweep_badly(void *session, const dea_scene *scene, const dea_model *model, size_t first, size_t count,
@@ -509,6 +537,7 @@ int main(void)
         cmocka_unit_test(the_truth_of_a_film_ends_with_its_energy),
         cmocka_unit_test(a_branch_without_fold_is_slack_and_not_pulled_in),
         cmocka_unit_test(a_branch_folds_at_its_critical_voltage),
+        cmocka_unit_test(a_branch_without_fold_goes_as_far_as_its_film),
         cmocka_unit_test(an_engine_that_is_off_by_three_times_the_accuracy_is_found),
         cmocka_unit_test(a_mean_that_is_off_is_found),
         cmocka_unit_test(draws_are_valid_scenes_of_all_laws),

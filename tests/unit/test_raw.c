@@ -196,11 +196,11 @@ static void point_make(const dea_scene *scene, const dea_layout *layout, size_t 
         const double at = dea_layout_place(scene, i), u = displacement_at(number, i), x = (double)number;
         void *row = (char *)point + i * layout->row_size;
         if (scene->study == DEA_STUDY_TRANSIENT) {
-            *(dea_sample *)row = (dea_sample){at, 4500.0, u, u / 0.015, 0.25, 0.5, 1e-6, 2e-6, NAN, 4400.0, 2.5e-10, DEA_STATE_OK};
+            *(dea_sample *)row = (dea_sample){at, 4500.0, u, u / 0.015, 0.25, 0.5, 1e-6, 2e-6, NAN, 4400.0, 2.5e-10, DEA_STATE_OK, {.field = 0.0}};
         } else if (scene->study == DEA_STUDY_AC) {
             *(dea_response *)row = (dea_response){at, 1e-9 * at, -15.0 * (double)i, 1e9 / at, -90.0, DEA_STATE_OK};
         } else {
-            *(dea_row *)row = (dea_row){0.001 * x, 1e-5 * x, 0.25 + x, 1e6 / (1.0 + x), 1e-10 + x, -x, 0.5 * x, NAN, 0.1 * x, DEA_STATE_OK};
+            *(dea_row *)row = (dea_row){0.001 * x, 1e-5 * x, 0.25 + x, 1e6 / (1.0 + x), 1e-10 + x, -x, 0.5 * x, NAN, 0.1 * x, 0.0, DEA_STATE_OK};
         }
     }
 }

@@ -215,7 +215,7 @@ static void prepare_part(void)
         dea_row rows[1024];
         for (size_t k = 0; k < range.count; k++) {
             const double number = (double)(range.first + k);
-            rows[k] = (dea_row){number, -number, 2.0 * number, 0.5 * number, 3.0 * number, 4.0 * number, 5.0 * number, (double)NAN, 6.0 * number, (dea_state)(k % DEA_STATE_COUNT)};
+            rows[k] = (dea_row){number, -number, 2.0 * number, 0.5 * number, 3.0 * number, 4.0 * number, 5.0 * number, (double)NAN, 6.0 * number, 0.0, (dea_state)(k % DEA_STATE_COUNT)};
         }
         assert_int_equal(dea_journal_append(journal, range.place, rows, range.count, false, &error), DEA_OK);
         assert_int_equal(dea_journal_append(journal, range.place, rows, range.count, false, &error), DEA_ERROR_USAGE);

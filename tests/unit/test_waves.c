@@ -319,6 +319,59 @@ static void records_move_the_film_as_the_closed_form_says(void **state)
     }
 }
 
+static dea_sample *move_membrane(dea_scene *scene)
+{
+    const dea_engine *ida = dea_engine_find("ida");
+    dea_error error = {0};
+    dea_summary summary;
+    void *session = NULL;
+    scene->models[0] = dea_model_find("field");
+    scene->accuracy = 1e-4;
+    scene->transient.until = 1e-2;
+    scene->transient.every = 1e-4;
+    scene->material.density = 1080.0;
+    scene->material.retardation = 1e-4;
+    dea_sample *samples = malloc(dea_layout_of(scene).point_size);
+    assert_int_equal(ida->begin(&session, &error), DEA_OK);
+    assert_int_equal(ida->transient(session, scene, scene->models[0], samples, &summary, &error), DEA_OK);
+    assert_true(summary.error <= scene->accuracy && summary.residual <= 10.0 * scene->accuracy);
+    ida->end(session);
+    return samples;
+}
+
+/* Chords of a sine of 100 Hz, 5 us long, leave it by 1e-6. */
+static void the_record_of_a_sine_moves_the_membrane_as_the_sine(void **state)
+{
+    (void)state;
+    enum { ROWS = 2001 };
+    dea_scene sine, record;
+    dea_error error;
+    double peak = 0.0;
+    assert_int_equal(parse("sine: {offset: 2 kV, amplitude: 1.5 kV, frequency: 100 Hz}", "", &sine, &error), DEA_OK);
+    assert_int_equal(parse("points: [[0 s, 0 V]]", "", &record, &error), DEA_OK);
+    free(record.drive.waveform.times);
+    free(record.drive.waveform.voltages);
+    record.drive.waveform.times = malloc(ROWS * sizeof(double));
+    record.drive.waveform.voltages = malloc(ROWS * sizeof(double));
+    record.drive.waveform.point_count = ROWS;
+    for (int i = 0; i < ROWS; i++) {
+        record.drive.waveform.times[i] = 5e-6 * i;
+        record.drive.waveform.voltages[i] = 2000.0 + 1500.0 * sin(2.0 * (double)pi * 100.0 * 5e-6 * i);
+    }
+    dea_sample *want = move_membrane(&sine), *got = move_membrane(&record);
+    for (int k = 0; k <= 100; k++) {
+        peak = fmax(peak, fabs(want[k].displacement));
+    }
+    for (int k = 0; k <= 100; k++) {
+        assert_true(fabs(want[k].displacement - got[k].displacement) <= 2e-4 * peak);
+    }
+    assert_true(peak > 1e-4);
+    free(want);
+    free(got);
+    dea_scene_free(&sine);
+    dea_scene_free(&record);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -331,6 +384,7 @@ int main(void)
         cmocka_unit_test(axes_are_checked_too),
         cmocka_unit_test(runs_of_lines_leave_the_voltage_as_it_is),
         cmocka_unit_test(records_move_the_film_as_the_closed_form_says),
+        cmocka_unit_test(the_record_of_a_sine_moves_the_membrane_as_the_sine),
     };
     return cmocka_run_group_tests(tests, set_up, NULL);
 }

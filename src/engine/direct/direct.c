@@ -1,8 +1,11 @@
 /* Engine `direct`: the models' own equations, point after point; the closed forms of the linear network over time and frequency.
  */
+#include <math.h>
+#include <stddef.h>
+
 #include "engine/direct/direct.h"
 #include "engine/engines.h"
-#include "engine/line.h"
+#include "scene/line.h"
 #include "study/study.h"
 
 typedef struct visit_state {
@@ -32,7 +35,7 @@ static dea_status begin(void **session, dea_error *error)
 static void solve_point(const dea_model *model, const dea_scene *scene, const dea_point *point, dea_row *row)
 {
     if (dea_point_valid(point)) {
-        model->solve(point, scene->accuracy, row);
+        dea_model_solve(model, point, scene->accuracy, row);
     } else {
         *row = dea_row_failed();
     }
@@ -98,7 +101,8 @@ static dea_status solve_line(void *user, const dea_scene *scene, const dea_line 
     (void)error;
     dea_scene here = *scene;
     const visit_state *state = user;
-    const bool abreast = state->model->solve_many && line->axis && !line->axis->changes_film;
+    const bool alone = !(fabs(scene->load.force) > 0.0) && !scene->antagonist.there && line->axis && line->axis->offset != offsetof(dea_scene, load.force);
+    const bool abreast = state->model->solve_many && alone && !line->axis->changes_film;
     (abreast ? solve_abreast : solve_one_by_one)(state, &here, line);
     return DEA_OK;
 }
@@ -127,12 +131,13 @@ const dea_engine dea_engine_direct = {
               [DEA_STUDY_TRANSIENT] = {[DEA_FORM_LINEAR] = 3e-4},
               [DEA_STUDY_MODES] = {[DEA_FORM_LINEAR] = 1e-5, [DEA_FORM_HYPERELASTIC] = 1e-5, [DEA_FORM_MEMBRANE] = 1e-2},
               [DEA_STUDY_PROFILE] = {[DEA_FORM_HYPERELASTIC] = 1e-5, [DEA_FORM_MEMBRANE] = 5e-3},
+              [DEA_STUDY_FORCE] = {[DEA_FORM_LINEAR] = 1e-6, [DEA_FORM_HYPERELASTIC] = 1e-5, [DEA_FORM_MEMBRANE] = 5e-3},
               [DEA_STUDY_AC] = {[DEA_FORM_LINEAR] = 1e-4, [DEA_FORM_HYPERELASTIC] = 1e-4, [DEA_FORM_MEMBRANE] = 3e-2}},
     .refuses = refuses,
     .begin = begin,
     .sweep = sweep,
     .transient = dea_direct_transient,
     .ac = dea_direct_ac,
-    .solves = {[DEA_STUDY_MODES] = dea_direct_modes, [DEA_STUDY_PROFILE] = dea_direct_profile},
+    .solves = {[DEA_STUDY_MODES] = dea_direct_modes, [DEA_STUDY_PROFILE] = dea_direct_profile, [DEA_STUDY_FORCE] = dea_direct_force},
     .end = end,
 };

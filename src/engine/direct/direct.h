@@ -14,6 +14,8 @@ dea_status dea_direct_ac(void *session, const dea_scene *scene, const dea_model 
 /* As the engine's solves[] of modes and profiles. */
 dea_status dea_direct_modes(void *session, const dea_scene *scene, const dea_model *model, const dea_layout *layout, void *point,
                             dea_error *error);
+dea_status dea_direct_force(void *session, const dea_scene *scene, const dea_model *model, const dea_layout *layout, void *point,
+                            dea_error *error);
 dea_status dea_direct_profile(void *session, const dea_scene *scene, const dea_model *model, const dea_layout *layout, void *point,
                               dea_error *error);
 

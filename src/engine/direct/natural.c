@@ -84,7 +84,7 @@ static void set_losses(film *f, const dea_membrane_look *look)
         f->charge_gain = 4.0 * f->voltage * f->voltage / look->capacitance;
         f->charge_rate = (1.0 / d->series + d->conductance) / look->capacitance;
     }
-    f->damped = d->retardation > 0.0 || d->branch_count > 0 || f->charge_gain > 0.0;
+    f->damped = dea_dynamics_is_damped(d) || d->branch_count > 0 || f->charge_gain > 0.0;
 }
 
 /* Degree of an element that takes that share of the radius: many nodes close together cost the slow modes their digits. */
@@ -146,11 +146,12 @@ static double complex viscous_share(const dea_dynamics *d, double complex s, dou
 /* One round of Newton on D(s) x = 0, x_k = 1, with V and phi phi^T grown to @p grown; the size of its step over |s| and |x|. */
 static double newton_round(const film *f, size_t k, double grown, double complex *s, double complex *x)
 {
-    const size_t n = f->count, m = n + 1;
+    const dea_dynamics *d = &f->membrane.film;
+    const size_t n = f->count, m = n + 1, edge = f->membrane.rings.edge;
     lapack_complex_double a[(DEA_RINGS_NODES + 1) * (DEA_RINGS_NODES + 1)] = {0}, b[DEA_RINGS_NODES + 1];
     lapack_int pivots[DEA_RINGS_NODES + 1];
     double complex slope;
-    const double complex share = grown * viscous_share(&f->membrane.film, *s, &slope), behind = *s + f->charge_rate;
+    const double complex share = grown * viscous_share(d, *s, &slope), behind = *s + f->charge_rate;
     const double complex gain = grown * f->charge_gain * *s / behind;
     const double complex gain_slope = grown * f->charge_gain * f->charge_rate / (behind * behind);
     for (size_t i = 0; i <= n; i++) {
@@ -158,10 +159,11 @@ static double newton_round(const film *f, size_t k, double grown, double complex
     }
     for (size_t j = 0; j < n; j++) {
         for (size_t i = 0; i < n; i++) {
-            const double complex at = share * f->viscous[j * n + i] + gain * f->push[i] * f->push[j] +
+            const double drag = grown * d->damping * f->shapes[i * n + edge] * f->shapes[j * n + edge];
+            const double complex at = share * f->viscous[j * n + i] + gain * f->push[i] * f->push[j] + drag * *s +
                                       (i == j ? *s * *s + f->w[i] * f->w[i] : 0.0);
             a[j * m + i] = at;
-            a[n * m + i] += (grown * slope * f->viscous[j * n + i] + gain_slope * f->push[i] * f->push[j] + (i == j ? 2.0 * *s : 0.0)) * x[j];
+            a[n * m + i] += (grown * slope * f->viscous[j * n + i] + gain_slope * f->push[i] * f->push[j] + drag + (i == j ? 2.0 * *s : 0.0)) * x[j];
             b[i] -= at * x[j];
         }
     }
@@ -275,7 +277,9 @@ static void fill_shapes(const film *f, const dea_scene *scene, const dea_layout 
         const double sign = shape[rings->edge] < 0.0 ? -1.0 : 1.0;
         for (size_t i = 0; i < layout->spread_points; i++) {
             const double radius = dea_layout_radius(scene, layout, i) / f->membrane.film.point.film.prestretch;
-            *dea_layout_entry(layout, point, k, i) = sign * dea_rings_displacement(rings, shape, radius, false, NULL) + 0.0; /* no -0 */
+            const dea_rings_spot spot = dea_rings_spot_at(rings, radius, false);
+            double slope;
+            *dea_layout_entry(layout, point, k, i) = sign * dea_rings_displacement(rings, &spot, shape, &slope) + 0.0; /* no -0 */
         }
     }
 }

@@ -198,7 +198,7 @@ dea_status dea_direct_profile(void *session, const dea_scene *scene, const dea_m
         char fault[DEA_FAULT_LENGTH];
         return dea_fail(error, DEA_ERROR_USAGE, "%s", dea_film_fault(&at.film, fault));
     }
-    model->solve(&at, 0.01 * scene->accuracy, &row);
+    dea_model_solve(model, &at, 0.01 * scene->accuracy, &row);
     dea_layout_fail(scene, layout, point);
     const film f = {&at, model, row.strain};
     const bool there = !isnan(row.strain) && fill_stations(&f, stations, layout->rows) && find_weakest(&f, dea_layout_weakest(layout, point));

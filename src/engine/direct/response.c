@@ -7,11 +7,11 @@
 #include "engine/direct/radial.h"
 
 /* Dynamic stiffness at an equilibrium under the film voltage U,
- *   -m w^2 + d(A S - phi U^2)/du + A S' [i w tau_KV + sum c_i i w tau_i/(1 + i w tau_i)]. */
+ *   -m w^2 + i w r + d(A S - phi U^2)/du + A S' [i w tau_KV + sum c_i i w tau_i/(1 + i w tau_i)]. */
 static double complex dynamic_stiffness(const dea_dynamics *d, const dea_edge *e, double relaxed, double omega)
 {
     const double spring = dea_edge_viscous(d, e);
-    double complex sum = relaxed - d->mass * omega * omega + I * (omega * d->retardation * spring);
+    double complex sum = relaxed - d->mass * omega * omega + I * (omega * dea_edge_resistance(d, e));
     for (size_t i = 0; i < d->branch_count; i++) {
         const double complex s = I * (omega * d->branches[i].tau);
         sum += spring * d->branches[i].share * s / (1.0 + s);

@@ -60,6 +60,9 @@ const char *dea_direct_refuses_transient(const dea_scene *scene, const dea_model
     if (!model->linear) {
         return "its springs are not linear, so that a transient has no closed form";
     }
+    if (fabs(scene->load.force) > 0.0 || scene->antagonist.there) {
+        return "a steady force beside that of the voltage has no closed form here";
+    }
     if (dea_series_resistance(scene) > 0.0 && !scene->reduction.series) {
         return "the charging of the film through a series resistance is not linear";
     }

@@ -4,7 +4,7 @@
 
 dea_chain dea_walk_chain(const dea_dynamics *d, double stiffness)
 {
-    dea_chain chain = {.mass = d->mass, .damping = d->retardation * stiffness, .stiffness = stiffness, .count = d->branch_count};
+    dea_chain chain = {.mass = d->mass, .damping = d->retardation * stiffness + d->damping, .stiffness = stiffness, .count = d->branch_count};
     for (size_t i = 0; i < d->branch_count; i++) {
         chain.spring[i] = stiffness * d->branches[i].share;
         chain.tau[i] = d->branches[i].tau;

@@ -4,8 +4,11 @@
 
 #include "engine/engines.h"
 #include "engine/ida/sundials.h"
-#include "engine/line.h"
+#include "scene/line.h"
+#include "model/loaded.h"
+#include "network/membrane.h"
 #include "network/balance.h"
+#include "study/study.h"
 
 typedef struct session_state {
     dea_sundials sundials; /* owned, as all */
@@ -24,8 +27,11 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
     if (!model->network && !model->membrane) {
         return "it is neither a network nor a membrane that IDA could solve";
     }
-    if (model->membrane && scene->drive.current_limit > 0.0) {
-        return "its rings of film take no current limit";
+    if (!model->membrane && scene->study == DEA_STUDY_FORCE) {
+        return "of a network whose edge is held no equation is left to solve";
+    }
+    if (model->membrane && dea_study_of(scene)->timed && dea_load_stalls(scene)) {
+        return dea_load_stalled;
     }
     return scene->accuracy < 1e-9 ? "its answers are good to 1e-9, the scene wants more" : NULL;
 }
@@ -118,6 +124,26 @@ static dea_status sweep(void *session, const dea_scene *scene, const dea_model *
     return dea_lines_visit(scene, first, count, solve_line, &state, error);
 }
 
+typedef struct held_edge {
+    dea_shooting *shooting;
+    double accuracy;
+} held_edge;
+
+static void hold(void *user, const dea_point *point, double displacement, dea_row *row)
+{
+    const held_edge *held = user;
+    dea_shooting_hold(held->shooting, point, displacement, held->accuracy, row);
+}
+
+static dea_status force(void *session, const dea_scene *scene, const dea_model *model, const dea_layout *layout, void *point,
+                        dea_error *error)
+{
+    const session_state *state = session;
+    held_edge held = {state->shooting, scene->accuracy};
+    (void)model, (void)layout;
+    return dea_loaded_curve(scene, hold, &held, point, error);
+}
+
 static dea_status transient(void *session, const dea_scene *scene, const dea_model *model, dea_sample *samples,
                             dea_summary *summary, dea_error *error)
 {
@@ -141,12 +167,15 @@ const dea_engine dea_engine_ida = {
     .block = 64,
     .omits =
         1u << DEA_PART_MASS | 1u << DEA_PART_BRANCH | 1u << DEA_PART_DAMPER | 1u << DEA_PART_SERIES | 1u << DEA_PART_SOFTENING,
+    .profiles = true,
     .costs = {[DEA_STUDY_SWEEP] = {0, 5e-5, 2e-4, 2e-3},
+              [DEA_STUDY_FORCE] = {[DEA_FORM_MEMBRANE] = 0.5},
               [DEA_STUDY_TRANSIENT] = {[DEA_FORM_LINEAR] = 1e-2, [DEA_FORM_HYPERELASTIC] = 2e-2, [DEA_FORM_MEMBRANE] = 0.1}},
     .library = library,
     .refuses = refuses,
     .begin = begin,
     .sweep = sweep,
     .transient = transient,
+    .solves = {[DEA_STUDY_FORCE] = force},
     .end = end,
 };

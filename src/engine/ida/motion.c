@@ -43,12 +43,13 @@ static int relaxed_end(const dea_motion *m)
 
 void dea_motion_open(dea_dynamics *d, const dea_signal *signal, dea_motion *m)
 {
-    const dea_edge rest = dea_dynamics_edge(d, 0.0);
+    const double still = isnan(d->rest) ? 0.0 : d->rest;
+    const dea_edge rest = dea_dynamics_edge(d, still);
     const double length = dea_dynamics_scale(d, signal->largest);
     const bool heavy = d->mass > 0.0;
     *m = (dea_motion){.dynamics = d, .signal = signal, .segment = signal->segments, .v = -1, .q = -1, .z = heavy ? 2 : 1};
-    m->stiffness = dea_dynamics_stiffness(d, 0.0, 0.0, false);
-    m->algebraic = !heavy && !(d->retardation > 0.0);
+    m->stiffness = dea_dynamics_stiffness(d, still, 0.0, false);
+    m->algebraic = dea_dynamics_is_free(d);
     m->pace = pace_of(d, rest.capacitance);
     m->capacitance = rest.capacitance;
     m->size[0] = length;
@@ -107,10 +108,10 @@ static bool look(const dea_motion *m, double time, const double *y, local_state 
     return isfinite(at->force) && isfinite(at->v);
 }
 
-/* Mechanical resistance tau_KV sum B_a S_a' [N s/m]. */
+/* Mechanical resistance tau_KV sum B_a S_a' + r [N s/m]. */
 static double resistance(const dea_motion *m, const local_state *at)
 {
-    return m->dynamics->retardation * at->viscous;
+    return m->dynamics->retardation * at->viscous + m->dynamics->damping;
 }
 
 bool dea_motion_rates(const dea_motion *m, double time, const double *y, double *f)
@@ -181,7 +182,7 @@ void dea_motion_jacobian(const dea_motion *m, double time, const double *y, doub
         jacobian[m->v * n] = m->size[m->v] / m->size[0];
     } else {
         fill_edge_row(m, &at, 0, (m->algebraic ? m->stiffness / m->pace : r) * m->size[0], jacobian);
-        jacobian[0] -= m->algebraic ? 0.0 : at.force * dea_edge_viscous_slope(d, &at.edge) / (at.viscous * r);
+        jacobian[0] -= m->algebraic ? 0.0 : at.force * d->retardation * dea_edge_viscous_slope(d, &at.edge) / (r * r);
     }
     for (int k = m->z; k < relaxed_end(m); k++) {
         const double tau = branch_of(m, k)->tau;
@@ -234,13 +235,9 @@ bool dea_motion_jump(const dea_motion *m, double *y)
 bool dea_motion_start(const dea_motion *m, bool from_bias, double *y)
 {
     dea_dynamics *d = m->dynamics;
-    double u = 0.0;
+    double u, voltage;
     memset(y, 0, (size_t)m->count * sizeof *y);
-    if (!from_bias || !(m->stiffness > 0.0)) {
-        return m->stiffness > 0.0;
-    }
-    const double voltage = dea_dynamics_rest(d, m->segment->start);
-    if (!dea_dynamics_equilibrium(d, voltage, &u)) {
+    if (!(m->stiffness > 0.0) || !dea_dynamics_begin(d, from_bias, m->segment->start, &u, &voltage)) {
         return false;
     }
     const dea_edge e = dea_dynamics_edge(d, u);

@@ -1,7 +1,7 @@
-/* Equilibrium of a network as an index-1 problem along its displacement: with u = x l, l the linear answer or the size of the
- * film, whichever is smaller,
+/* Equilibrium of a network as an index-1 problem along its displacement: with u = u_0 + x l, u_0 where the film rests without
+ * voltage, l the linear answer or the size of the film, whichever is smaller,
  *
- *     dx/dtau = 1,   [ R(u) - t F(u) ] / F(0) = 0,
+ *     dx/dtau = 1,   [ R(u) - t F(u) ] / F(u_0) = 0,
  *
  * IDA follows the share t of the load that holds u, from rest on. Two root functions are watched: t - 1, the answer, and the
  * stiffness (R' - t F')/K_0, whose zero is the fold where t stops growing: pull-in. Along u, unlike along the load, a fold is no
@@ -20,10 +20,16 @@ struct dea_ramp {
     dea_balance *balance; /* borrowed for one solve, as all below */
     double symbol;
     double accuracy;  /* of u, relative [1] */
-    double length;    /* l, signed as u [m] */
-    double load;      /* F(0) [N] */
-    double stiffness; /* K_0 = R'(0) [N/m] */
+    double begin;     /* u_0 [m] */
+    double length;    /* l, signed as u - u_0 [m] */
+    double load;      /* F(u_0) [N] */
+    double stiffness; /* K_0 = R'(u_0) [N/m] */
 };
+
+static dea_forces forces_at(const dea_ramp *ramp, const sunrealtype *v)
+{
+    return dea_balance_forces(ramp->balance, ramp->symbol, ramp->begin + v[PLACE] * ramp->length);
+}
 
 static int residual(sunrealtype tau, N_Vector y, N_Vector yp, N_Vector r, void *user)
 {
@@ -31,7 +37,7 @@ static int residual(sunrealtype tau, N_Vector y, N_Vector yp, N_Vector r, void *
     const sunrealtype *v = NV_DATA_S(y);
     sunrealtype *out = NV_DATA_S(r);
     (void)tau;
-    const dea_forces f = dea_balance_forces(ramp->balance, ramp->symbol, v[PLACE] * ramp->length);
+    const dea_forces f = forces_at(ramp, v);
     out[PLACE] = NV_DATA_S(yp)[PLACE] - 1.0;
     out[SHARE] = (f.elastic - v[SHARE] * f.load) / ramp->load;
     return isfinite(out[SHARE]) ? 0 : 1; /* a trial step too far: IDA takes a shorter one */
@@ -43,7 +49,7 @@ static int jacobian(sunrealtype tau, sunrealtype cj, N_Vector y, N_Vector yp, N_
     dea_ramp *ramp = user;
     const sunrealtype *v = NV_DATA_S(y);
     (void)tau, (void)yp, (void)r, (void)work1, (void)work2, (void)work3;
-    const dea_forces f = dea_balance_forces(ramp->balance, ramp->symbol, v[PLACE] * ramp->length);
+    const dea_forces f = forces_at(ramp, v);
     SM_ELEMENT_D(matrix, PLACE, PLACE) = cj;
     SM_ELEMENT_D(matrix, PLACE, SHARE) = 0.0;
     SM_ELEMENT_D(matrix, SHARE, PLACE) = (f.elastic_slope - v[SHARE] * f.load_slope) * ramp->length / ramp->load;
@@ -56,7 +62,7 @@ static int watch(sunrealtype tau, N_Vector y, N_Vector yp, sunrealtype *out, voi
     dea_ramp *ramp = user;
     const sunrealtype *v = NV_DATA_S(y);
     (void)tau, (void)yp;
-    const dea_forces f = dea_balance_forces(ramp->balance, ramp->symbol, v[PLACE] * ramp->length);
+    const dea_forces f = forces_at(ramp, v);
     out[FULL_LOAD] = v[SHARE] - 1.0;
     out[FOLD] = (f.elastic_slope - v[SHARE] * f.load_slope) / ramp->stiffness;
     return 0;
@@ -116,7 +122,7 @@ static bool follow(dea_ramp *ramp, double tolerance, double end, dea_row *row)
     int found[ROOTS] = {0, 0};
     const int code = start(ramp, tolerance, end) ? m->sun->IDASolve(m->ida, end, &tau, m->y, m->yp, IDA_NORMAL) : IDA_ILL_INPUT;
     if (code == IDA_ROOT_RETURN && m->sun->IDAGetRootInfo(m->ida, found) == IDA_SUCCESS && found[FULL_LOAD]) {
-        const double u = NV_DATA_S(m->y)[PLACE] * ramp->length;
+        const double u = ramp->begin + NV_DATA_S(m->y)[PLACE] * ramp->length;
         if (tolerance <= ramp->accuracy) {
             dea_balance_fill(ramp->balance, ramp->symbol, u, row);
         } else {
@@ -135,18 +141,20 @@ void dea_ramp_solve(dea_ramp *ramp, dea_balance *balance, double symbol, double 
     if (!dea_balance_valid(balance, symbol)) {
         return;
     }
-    const dea_forces rest = dea_balance_forces(balance, symbol, 0.0);
+    const double begin = dea_balance_rest(balance, symbol);
+    const dea_forces rest = dea_balance_forces(balance, symbol, begin);
     if (rest.load == 0.0) {
-        (void)dea_balance_accept(balance, symbol, 0.0, accuracy, row);
+        (void)dea_balance_accept(balance, symbol, begin, accuracy, row);
         return;
     }
-    if (!(rest.elastic_slope > 0.0)) {
+    if (!(rest.elastic_slope > 0.0)) { /* NAN: no rest */
         row->state = DEA_STATE_PULL_IN;
         return;
     }
     ramp->balance = balance;
     ramp->symbol = symbol;
     ramp->accuracy = accuracy;
+    ramp->begin = begin;
     ramp->load = rest.load;
     ramp->stiffness = rest.elastic_slope;
     const double linear = rest.load / rest.elastic_slope;

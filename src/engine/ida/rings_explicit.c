@@ -63,7 +63,8 @@ static int rates_of(sunrealtype time, N_Vector w, N_Vector wp, void *user)
  * runs could see. */
 static double longest_step(const dea_rings_flight *f)
 {
-    return f->scene->transient.every * pow(f->tolerance / f->loosest, 1.0 / 7.0);
+    const double sampled = f->scene->transient.every * pow(f->tolerance / f->loosest, 1.0 / 7.0), lines = f->motion.segment->step;
+    return lines > 0.0 ? fmin(sampled, lines) : sampled;
 }
 
 static bool begin(explicit_run *run)
@@ -213,6 +214,7 @@ dea_state dea_rings_explicit(dea_rings_flight *f, double to)
     run.audited = f->audit ? ENERGIES : 0;
     run.integrated = f->scene->transient.average_count > 0 ? 1 : 0;
     dea_state state = begin(&run) ? DEA_STATE_OK : DEA_STATE_FAILED;
+    f->derived = false;
     for (double time = 0.0; state == DEA_STATE_OK && time < to;) {
         state = advance(&run, to, &time);
     }

@@ -16,11 +16,11 @@ static const double small = 0.03;
 /* Share of the stiffness at rest at which a film without mass folds. */
 static const double folded = 1e-4;
 
-dea_status dea_rings_flight_open(const dea_sundials *sun, const dea_scene *scene, const dea_model *model,
-                                 const dea_signal *signal, dea_rings_mesh mesh, dea_rings_flight *f, dea_error *error)
+dea_status dea_rings_flight_prepare(const dea_scene *scene, const dea_model *model, const dea_signal *signal, dea_rings_mesh mesh,
+                                    dea_rings_flight *f, dea_error *error)
 {
-    *f = (dea_rings_flight){.sun = sun, .scene = scene, .signal = signal, .rows = dea_layout_of(scene).rows};
-    dea_status status = dea_membrane_open(scene, model, mesh, &f->membrane, error);
+    *f = (dea_rings_flight){.scene = scene, .signal = signal, .rows = dea_layout_of(scene).rows};
+    const dea_status status = dea_membrane_open(scene, model, mesh, &f->membrane, error);
     if (status != DEA_OK) {
         return status;
     }
@@ -28,6 +28,18 @@ dea_status dea_rings_flight_open(const dea_sundials *sun, const dea_scene *scene
         return dea_fail(error, DEA_ERROR_ENGINE, "the film is not stable at rest");
     }
     f->peaks = dea_peak_is_known(scene, &f->membrane.film, signal);
+    const dea_layout layout = dea_layout_of(scene);
+    return dea_along_open(&f->membrane, scene, &layout, &f->along, error);
+}
+
+dea_status dea_rings_flight_open(const dea_sundials *sun, const dea_scene *scene, const dea_model *model,
+                                 const dea_signal *signal, dea_rings_mesh mesh, dea_rings_flight *f, dea_error *error)
+{
+    const dea_status status = dea_rings_flight_prepare(scene, model, signal, mesh, f, error);
+    if (status != DEA_OK) {
+        return status;
+    }
+    f->sun = sun;
     const sunindextype count = (sunindextype)f->motion.count;
     f->y = sun->N_VNew_Serial(count, sun->context);
     f->yp = f->y ? sun->N_VClone(f->y) : NULL;
@@ -44,6 +56,7 @@ void dea_rings_flight_close(dea_rings_flight *f)
 {
     N_Vector vectors[] = {f->y, f->yp, f->between, f->slope, f->tolerances};
     dea_rings_implicit_close(f);
+    dea_along_close(&f->along);
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         if (vectors[i]) {
             f->sun->N_VDestroy(vectors[i]);
@@ -63,14 +76,27 @@ static dea_moment moment_at(dea_rings_flight *f, double time, const double *y, c
     const dea_rings_motion *m = &f->motion;
     dea_moment moment = dea_rings_moment(m, time, &f->state);
     (void)y;
-    moment.charging = m->charged && charging;
-    moment.charge_slope = moment.charging ? rates[m->q] : 0.0;
+    moment.charging = charging && m->charged;
+    moment.charge_slopes = f->derived ? rates + m->q : NULL;
+    for (size_t k = 0; k < m->charges && moment.charging; k++) {
+        moment.charge_slope += rates[m->q + k];
+    }
     return moment;
 }
 
 static const double *velocity_of(const dea_rings_flight *f, const double *y, const double *rates)
 {
     return f->motion.heavy ? y + f->motion.nodes : rates;
+}
+
+/* The film along its radius behind the sample that was just filled, at the state that was looked at. */
+static void tell_along(dea_rings_flight *f, const double *y, const double *v)
+{
+    const size_t row = f->trace->count;
+    dea_membrane_viscous(&f->membrane, &f->state.look, v, y + f->motion.z, f->state.x);
+    const dea_along_state at = {&f->state.look, f->state.voltage, (const double(*)[2])f->state.x, y, v};
+    dea_along_tell(&f->along, &f->membrane, &at, f->trace->entries + row * f->along.count * DEA_SPREAD_COLUMNS);
+    f->trace->samples[row].weakest = dea_along_weakest(&f->along, &f->membrane, &at);
 }
 
 bool dea_rings_record(dea_rings_flight *f, double time, const double *y, const double *rates, bool charging)
@@ -82,14 +108,18 @@ bool dea_rings_record(dea_rings_flight *f, double time, const double *y, const d
         return false;
     }
     dea_moment moment = moment_at(f, time, y, rates, charging);
-    const bool start = film->biased && moment.time == 0.0;
-    if (start) { /* the branches have relaxed, and the charge rests */
-        moment.charging = film->series > 0.0 || film->dropped > 0.0;
+    const bool fed = f->membrane.sheet.places > 0 && !(film->series > 0.0), start = (film->biased || fed) && moment.time == 0.0;
+    if (start) { /* the branches have relaxed, and the charge rests; into a rim at the source it comes as the root of time */
+        moment.charging = film->series > 0.0 || film->dropped > 0.0 || fed;
         moment.charge_slope = 0.0;
+        moment.slope = fed ? 0.0 : moment.slope;
     }
     const double *v = start && film->clamped ? still : velocity_of(f, y, rates);
     if (!dea_membrane_sample(&f->membrane, &f->state.look, &moment, y, v, &trace->samples[trace->count])) {
         return false;
+    }
+    if (f->along.count > 0) {
+        tell_along(f, y, v);
     }
     trace->count++;
     return true;
@@ -149,25 +179,33 @@ static void set_tolerances(dea_rings_flight *f)
     const dea_rings_motion *m = &f->motion;
     double *absolute = NV_DATA_S(f->tolerances);
     for (size_t i = 0; i < m->count; i++) {
-        absolute[i] = f->tolerance * (i < m->nodes ? m->length : i < m->z ? m->speed : i < m->q ? m->stress : m->charge);
+        const double charge = i < m->q ? 0.0 : m->charge * m->shares[i - m->q];
+        absolute[i] = f->tolerance * (i < m->nodes ? m->length : i < m->z ? m->speed : i < m->q ? m->stress : charge);
     }
 }
 
-/* Algebraic displacements at the begin of a segment. */
-static bool jump(dea_rings_flight *f)
+/* Energy of the charges at y [J]. */
+static double charge_energy(dea_rings_flight *f, const double *y)
+{
+    return dea_rings_glance(&f->motion, 0.0, y, &f->state) ? dea_sheet_energy(&f->membrane, &f->state.charges) : (double)NAN;
+}
+
+/* What a jump of a rim at the source does to the charges within is work too. */
+bool dea_rings_jump(dea_rings_flight *f, double *y)
 {
     const dea_rings_motion *m = &f->motion;
     double before[DEA_RINGS_NODES];
-    double *y = NV_DATA_S(f->y);
-    if (!dea_rings_algebraic(m) || m->charged) {
+    if (!dea_rings_algebraic(m) || f->membrane.film.series > 0.0) {
         return true;
     }
     memcpy(before, y, m->nodes * sizeof *y);
-    if (!dea_membrane_follow(&f->membrane, m->segment->start, y + m->z, y)) {
+    const double stored = m->charged ? charge_energy(f, y) : 0.0;
+    if (!(m->charged ? dea_rings_settle(m, y) : dea_membrane_follow(&f->membrane, m->segment->start, y + m->z, y))) {
         return false;
     }
     if (f->audit && memcmp(before, y, m->nodes * sizeof *y) != 0) {
         dea_membrane_audit_jump(f->audit, &f->membrane, before, y, y + m->z);
+        f->audit->work += m->charged ? charge_energy(f, y) - stored : 0.0;
     }
     return true;
 }
@@ -201,7 +239,7 @@ static dea_state fly_segment(dea_rings_flight *f)
 {
     const dea_segment *segment = f->motion.segment;
     double *y = NV_DATA_S(f->y), *rates = NV_DATA_S(f->yp);
-    if (!jump(f) || !dea_rings_rates(&f->motion, 0.0, y, rates) ||
+    if (!dea_rings_jump(f, y) || !dea_rings_rates(&f->motion, 0.0, y, rates) ||
         (f->trace->count == 0 && !dea_rings_record(f, 0.0, y, rates, false))) {
         return DEA_STATE_PULL_IN;
     }
@@ -215,19 +253,26 @@ static dea_state fly_segment(dea_rings_flight *f)
     return dea_rings_implicit(f, turning);
 }
 
-static dea_membrane_energy energy_of(dea_rings_flight *f, double time)
+dea_membrane_energy dea_rings_energy(dea_rings_flight *f, double time, const double *y)
 {
     const dea_rings_motion *m = &f->motion;
-    const double *y = NV_DATA_S(f->y);
     const bool seen = dea_rings_glance(m, time, y, &f->state);
-    return dea_membrane_energy_of(&f->membrane, seen ? f->state.voltage : (double)NAN, y, y + m->nodes, y + m->z);
+    dea_membrane_energy energy =
+        dea_membrane_energy_of(&f->membrane, seen ? f->state.voltage : (double)NAN, y, y + m->nodes, y + m->z);
+    if (seen && f->membrane.sheet.places > 0) {
+        const size_t rim = m->charges; /* the place at the source, if there is one */
+        const bool fed = rim < f->membrane.sheet.places;
+        energy.fed = fed ? 0.5 * f->state.charges.capacitances[rim] * f->state.source * f->state.source : 0.0;
+        energy.electric = energy.fed + dea_sheet_energy(&f->membrane, &f->state.charges);
+    }
+    return energy;
 }
 
 void dea_rings_flight_run(dea_rings_flight *f, double tolerance, dea_rings_trace *trace, dea_summary *summary)
 {
     dea_audit audit = {0};
     dea_rings_motion *m = &f->motion;
-    *trace = (dea_rings_trace){.samples = trace->samples};
+    *trace = (dea_rings_trace){.samples = trace->samples, .entries = trace->entries};
     f->trace = trace;
     f->audit = summary ? &audit : NULL;
     f->tolerance = tolerance;
@@ -238,13 +283,13 @@ void dea_rings_flight_run(dea_rings_flight *f, double tolerance, dea_rings_trace
         trace->end = DEA_STATE_PULL_IN;
         return;
     }
-    const dea_membrane_energy first = energy_of(f, 0.0);
+    const dea_membrane_energy first = dea_rings_energy(f, 0.0, NV_DATA_S(f->y));
     for (size_t i = 0; trace->end == DEA_STATE_OK && i < f->signal->count; i++) {
         m->segment = &f->signal->segments[i];
         trace->end = fly_segment(f);
     }
     if (summary && trace->end == DEA_STATE_OK) {
-        const dea_membrane_energy last = energy_of(f, m->segment->to - m->segment->from);
+        const dea_membrane_energy last = dea_rings_energy(f, m->segment->to - m->segment->from, NV_DATA_S(f->y));
         dea_membrane_audit_close(&audit, &f->membrane, &first, &last, summary);
     }
 }

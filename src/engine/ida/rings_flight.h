@@ -8,11 +8,13 @@
 
 #include "engine/ida/rings_motion.h"
 #include "engine/ida/sundials.h"
+#include "network/along.h"
 #include "network/peak.h"
 
 /* What a run leaves: its samples up to where it ended. */
 typedef struct dea_rings_trace {
     dea_sample *samples;           /* owned by the user: room for all rows */
+    double *entries;               /* owned by the user: of each row over the radius, NULL: not wanted */
     size_t count;                  /* in use */
     dea_state end;                 /* ok, or what all samples from count on are */
     double largest;                /* |u| at the edge on the way [m] */
@@ -27,6 +29,7 @@ typedef struct dea_rings_flight {
     dea_membrane membrane;
     dea_rings_motion motion;
     size_t rows;
+    dea_along along; /* radii that samples tell the film at */
     bool peaks;    /* the current between samples is known */
     double loosest; /* tolerance that samples alone would cut the steps of */
     dea_error why; /* what a run that failed was about, "" before */
@@ -41,6 +44,7 @@ typedef struct dea_rings_flight {
     double tolerance;
     dea_rings_trace *trace;
     dea_audit *audit; /* NULL: not wanted */
+    bool derived;     /* rates that come with a state are those of the solver */
     long steps;
 } dea_rings_flight;
 
@@ -48,6 +52,9 @@ typedef struct dea_rings_flight {
 dea_status dea_rings_flight_open(const dea_sundials *sun, const dea_scene *scene, const dea_model *model,
                                  const dea_signal *signal, dea_rings_mesh mesh, dea_rings_flight *flight, dea_error *error);
 void dea_rings_flight_close(dea_rings_flight *flight);
+/* All of it that knows no SUNDIALS: another engine keeps its samples and energies by it. */
+dea_status dea_rings_flight_prepare(const dea_scene *scene, const dea_model *model, const dea_signal *signal, dea_rings_mesh mesh,
+                                    dea_rings_flight *flight, dea_error *error);
 /* IDA with its matrix; part of opening. */
 dea_status dea_rings_implicit_open(dea_rings_flight *flight, dea_error *error);
 void dea_rings_implicit_close(dea_rings_flight *flight);
@@ -57,9 +64,14 @@ void dea_rings_flight_run(dea_rings_flight *flight, double tolerance, dea_rings_
 /* Shrinks the sizes of the unknowns to what the last run reached, where that is much less; true where it did. */
 bool dea_rings_flight_fit(dea_rings_flight *flight);
 
+/* Takes the displacements of a film without mass and damper to where the voltage at the begin of the segment wants them; false where
+ * there is no such place. */
+bool dea_rings_jump(dea_rings_flight *flight, double *y);
+/* What is stored at y. */
+dea_membrane_energy dea_rings_energy(dea_rings_flight *flight, double time, const double *y);
 /* Time of the next sample [s], infinite behind the last. */
 double dea_rings_next_sample(const dea_rings_flight *flight);
-/* Keeps y, with its derivative, as the next sample, at a time of the segment; @p charging: y' tells the current. False where the
+/* Keeps y, with its derivative, as the next sample and along the radius, at a time of the segment; @p charging: y' tells the current. False where the
  * film cannot be there. */
 bool dea_rings_record(dea_rings_flight *flight, double time, const double *y, const double *rates, bool charging);
 /* Current of the source at y [A]. */

@@ -47,8 +47,7 @@ static int jacobian(sunrealtype time, sunrealtype pace, N_Vector vy, N_Vector vy
     if (!dea_rings_look(&f->motion, time, y, speeds(f, y, yp), &f->state)) {
         return 1;
     }
-    dea_rings_schur_fill(&f->motion, &f->state, pace, &f->schur, SM_DATA_D(f->dense));
-    return 0;
+    return dea_rings_schur_fill(&f->motion, &f->state, pace, &f->schur, SM_DATA_D(f->dense)) ? 0 : 1;
 }
 
 /* ---- the matrix, which stands in the flight, as SUNDIALS wants it */
@@ -180,6 +179,18 @@ static bool charges_slowly(const dea_rings_flight *f)
            step * f->signal->largest >= f->membrane.film.series * f->motion.charge;
 }
 
+/* Velocities of an algebraic film between steps; the rates of its charges stay, and count where they tell more than small drops. */
+static bool solve_velocities(dea_rings_flight *f, double at, const double *y, double *rates)
+{
+    const dea_rings_motion *m = &f->motion;
+    double charging[DEA_SHEET_PLACES];
+    const bool derived = charges_slowly(f);
+    memcpy(charging, rates + m->q, m->charges * sizeof *rates);
+    const bool solved = dea_rings_rates(m, at, y, rates);
+    memcpy(rates + m->q, charging, m->charges * sizeof *rates);
+    return solved && derived ? dea_rings_massless(m, at, y, rates) : solved;
+}
+
 /* Samples of the segment up to a time of it. The velocity of an algebraic film is solved for. */
 static dea_state take_samples(dea_rings_flight *f, double time, bool last)
 {
@@ -193,12 +204,8 @@ static dea_state take_samples(dea_rings_flight *f, double time, bool last)
             return DEA_STATE_FAILED;
         }
         double *y = NV_DATA_S(f->between), *rates = NV_DATA_S(f->slope);
-        const double charge = f->motion.charged ? rates[f->motion.q] : 0.0;
-        if (dea_rings_algebraic(&f->motion) && !dea_rings_rates(&f->motion, at, y, rates)) {
+        if (dea_rings_algebraic(&f->motion) && !solve_velocities(f, at, y, rates)) {
             return DEA_STATE_PULL_IN;
-        }
-        if (f->motion.charged) {
-            rates[f->motion.q] = charge;
         }
         if (!dea_rings_record(f, at, y, rates, charges_slowly(f))) {
             return DEA_STATE_PULL_IN;
@@ -252,6 +259,7 @@ static bool begin(dea_rings_flight *f, double from)
     return dea_rings_rates(&f->motion, from, NV_DATA_S(f->y), NV_DATA_S(f->yp)) &&
            sun->IDAReInit(f->ida, from, f->y, f->yp) == IDA_SUCCESS &&
            sun->IDASVtolerances(f->ida, f->tolerance, f->tolerances) == IDA_SUCCESS &&
+           sun->IDASetMaxStep(f->ida, segment->step) == IDA_SUCCESS && /* 0: as long as it likes */
            sun->IDASetStopTime(f->ida, segment->to - segment->from) == IDA_SUCCESS;
 }
 
@@ -263,6 +271,7 @@ dea_state dea_rings_implicit(dea_rings_flight *f, double from)
         return DEA_STATE_PULL_IN;
     }
     double time = from;
+    f->derived = true;
     for (int code = IDA_SUCCESS; code != IDA_TSTOP_RETURN;) {
         const double before = time;
         code = f->sun->IDASolve(f->ida, width, &time, f->y, f->yp, IDA_ONE_STEP);

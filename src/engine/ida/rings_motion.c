@@ -20,6 +20,23 @@ static double dot(size_t n, const double *a, const double *b)
     return sum;
 }
 
+/* Shares and pace of the charges at rest. */
+static bool set_charges(dea_rings_motion *m)
+{
+    static const double still[DEA_RINGS_NODES] = {0.0}, none[DEA_SHEET_PLACES] = {0.0};
+    dea_membrane_look look;
+    dea_charges charges;
+    if (!dea_membrane_look_at(m->membrane, still, &look)) {
+        return false;
+    }
+    dea_sheet_look(m->membrane, &look, none, 0.0, &charges);
+    for (size_t k = 0; k < m->charges; k++) {
+        m->shares[k] = charges.capacitances[k] / look.capacitance;
+    }
+    m->charging = dea_sheet_fastest(m->membrane, &look);
+    return true;
+}
+
 /* Sizes: the displacement that the largest voltage makes in the linear film, and what goes with it. */
 static bool set_sizes(dea_rings_motion *m)
 {
@@ -37,17 +54,23 @@ static bool set_sizes(dea_rings_motion *m)
     return true;
 }
 
-bool dea_rings_motion_open(const dea_membrane *membrane, const dea_signal *signal, dea_rings_motion *m)
+void dea_rings_motion_lay(const dea_membrane *membrane, const dea_signal *signal, dea_rings_motion *m)
 {
     *m = (dea_rings_motion){.membrane = membrane, .signal = signal, .segment = signal->segments};
     m->nodes = membrane->rings.node_count;
     m->heavy = membrane->heavy;
     m->damped = membrane->film.retardation > 0.0;
-    m->charged = membrane->film.series > 0.0;
+    m->charges = membrane->sheet.charges;
+    m->charged = m->charges > 0;
     m->z = m->heavy ? 2 * m->nodes : m->nodes;
     m->q = m->z + dea_membrane_relaxed(membrane);
-    m->count = m->q + (m->charged ? 1 : 0);
-    return set_sizes(m);
+    m->count = m->q + m->charges;
+}
+
+bool dea_rings_motion_open(const dea_membrane *membrane, const dea_signal *signal, dea_rings_motion *m)
+{
+    dea_rings_motion_lay(membrane, signal, m);
+    return set_sizes(m) && set_charges(m);
 }
 
 bool dea_rings_glance(const dea_rings_motion *m, double time, const double *y, dea_rings_state *state)
@@ -56,7 +79,8 @@ bool dea_rings_glance(const dea_rings_motion *m, double time, const double *y, d
         return false;
     }
     state->source = dea_segment_voltage_since(m->signal, m->segment, time);
-    state->voltage = m->charged ? y[m->q] / state->look.capacitance : state->source;
+    dea_sheet_look(m->membrane, &state->look, y + m->q, state->source, &state->charges);
+    state->voltage = state->charges.voltage;
     return true;
 }
 
@@ -67,7 +91,9 @@ bool dea_rings_look(const dea_rings_motion *m, double time, const double *y, con
     }
     dea_membrane_viscous(m->membrane, &state->look, v, y + m->z, state->x);
     dea_membrane_force(m->membrane, &state->look, state->voltage, state->x, state->force);
-    return isfinite(state->force[m->membrane->rings.edge]);
+    const size_t edge = m->membrane->rings.edge;
+    state->force[edge] -= v ? m->membrane->film.damping * v[edge] : 0.0;
+    return isfinite(state->force[edge]);
 }
 
 void dea_rings_relaxing(const dea_rings_motion *m, const dea_rings_state *state, const double *y, double *rates)
@@ -82,30 +108,47 @@ void dea_rings_relaxing(const dea_rings_motion *m, const dea_rings_state *state,
         }
     }
     if (m->charged) {
-        rates[m->q] = (state->source - state->voltage) / d->series - state->voltage * d->conductance;
+        dea_sheet_flows(m->membrane, &state->look, &state->charges, state->source, rates + m->q);
     }
 }
 
-/* dU/du at constant charge is -(U/C) 2 phi. What a change of the charge, or of the voltage of a film without resistance, does to
- * the forces per second [N/s]. */
+/* P_k = dF/dV_k = 2 V_k (1/2) dC_k/du of charge number k [N/V]. */
+static void pull_of(const dea_rings_motion *m, const dea_rings_state *state, size_t k, double *pull)
+{
+    dea_sheet_push(m->membrane, &state->look, k, pull);
+    for (size_t n = 0; n < m->nodes; n++) {
+        pull[n] *= 2.0 * state->charges.voltages[k];
+    }
+}
+
+/* What changes of the charges, and of the voltage of a film or of a rim without resistance, do to the forces per second [N/s]. */
 static void load_rates(const dea_rings_motion *m, double time, const dea_rings_state *state, const double *rates, double *out)
 {
-    const double slope = m->charged ? rates[m->q] / state->look.capacitance
-                                    : dea_segment_slope(m->signal, m->segment, m->segment->from + time);
-    for (size_t n = 0; n < m->nodes; n++) {
-        out[n] = 2.0 * state->push[n] * state->voltage * slope;
+    const double slope = dea_segment_slope(m->signal, m->segment, m->segment->from + time);
+    const size_t places = m->membrane->sheet.places > 0 ? m->membrane->sheet.places : 1;
+    double pull[DEA_RINGS_NODES], sum[DEA_RINGS_NODES] = {0.0};
+    for (size_t k = 0; k < places; k++) {
+        const double rate = k < m->charges ? rates[m->q + k] / state->charges.capacitances[k] : slope;
+        pull_of(m, state, k, pull);
+        for (size_t n = 0; n < m->nodes; n++) {
+            sum[n] += pull[n] * rate;
+        }
     }
+    memcpy(out, sum, m->nodes * sizeof *out);
 }
 
-/* Stiffness with the branches held, at constant charge where there is a series resistance. */
+/* Stiffness with the branches held, at constant charges: dV/du at constant q is -P/C. */
 static void held_stiffness(const dea_rings_motion *m, dea_rings_state *state, double *stiffness)
 {
+    double pull[DEA_RINGS_NODES];
     dea_membrane_push(m->membrane, &state->look, state->push);
     dea_membrane_stiffness(m->membrane, &state->look, state->voltage, state->x, m->membrane->film.total_share, stiffness);
-    const double unit = m->charged ? 4.0 * state->voltage * state->voltage / state->look.capacitance : 0.0;
-    for (size_t j = 0; j < m->nodes && m->charged; j++) {
-        for (size_t i = 0; i < m->nodes; i++) {
-            stiffness[j * m->nodes + i] += unit * state->push[i] * state->push[j];
+    for (size_t k = 0; k < m->charges; k++) {
+        pull_of(m, state, k, pull);
+        for (size_t j = 0; j < m->nodes; j++) {
+            for (size_t i = 0; i < m->nodes; i++) {
+                stiffness[j * m->nodes + i] += pull[i] * pull[j] / state->charges.capacitances[k];
+            }
         }
     }
 }
@@ -132,12 +175,19 @@ static bool massless_rates(const dea_rings_motion *m, double time, dea_rings_sta
     if (m->damped) {
         memcpy(rates, state->force, m->nodes * sizeof *rates);
         dea_membrane_damping(m->membrane, &state->look, m->membrane->film.retardation, matrix);
+        matrix[m->membrane->rings.edge * (m->nodes + 1)] += m->membrane->film.damping;
     } else {
         held_stiffness(m, state, matrix);
         load_rates(m, time, state, rates, rates);
         add_relaxation(m, state, rates, rates);
     }
     return solve_definite(m->nodes, matrix, rates);
+}
+
+bool dea_rings_massless(const dea_rings_motion *m, double time, const double *y, double *rates)
+{
+    dea_rings_state state;
+    return dea_rings_look(m, time, y, NULL, &state) && massless_rates(m, time, &state, rates);
 }
 
 bool dea_rings_rates(const dea_rings_motion *m, double time, const double *y, double *rates)
@@ -157,10 +207,63 @@ bool dea_rings_rates(const dea_rings_motion *m, double time, const double *y, do
     return true;
 }
 
-/* ---- Newton's method: with y' = alpha y + ..., branch i relaxes by dz = (tau b_z + S dlambda)/(1 + alpha tau), the charge by
- * dq = (b_q + (r U/C) 2 phi du)/(alpha + r), r = (1/R_s + 1/R_p)/C in units of the charge, dv = alpha du - b_u. */
+/* ---- Newton's method: with y' = alpha y + ..., branch i relaxes by dz = (tau b_z + S dlambda)/(1 + alpha tau), dv = alpha du - b_u;
+ * charges dq = C dV + P du spread by (alpha C + Y) dV = b_q - alpha P du with the admittance Y, so that V adds P (C + Y/alpha)^-1 P to
+ * the stiffness. That of the sheets counts as constant: a Newton step more is cheaper than its change with u. */
 
-void dea_rings_schur_fill(const dea_rings_motion *m, const dea_rings_state *state, double pace, dea_rings_schur *schur,
+/* The inverse of C + Y/alpha. */
+static bool fill_charges(const dea_rings_motion *m, const dea_rings_state *state, dea_rings_schur *schur)
+{
+    const size_t count = m->charges;
+    double matrix[DEA_SHEET_PLACES * DEA_SHEET_PLACES];
+    dea_sheet_admittance(m->membrane, &state->look, matrix);
+    memset(schur->inverse, 0, count * count * sizeof *schur->inverse);
+    for (size_t k = 0; k < count; k++) {
+        schur->capacitances[k] = state->charges.capacitances[k];
+        schur->inverse[k * (count + 1)] = 1.0;
+        pull_of(m, state, k, schur->pull[k]);
+        for (size_t j = 0; j < count; j++) {
+            matrix[j * count + k] = matrix[j * count + k] / schur->pace + (j == k ? schur->capacitances[k] : 0.0);
+        }
+    }
+    const lapack_int size = (lapack_int)count;
+    return dea_lapacke_dposv(LAPACK_COL_MAJOR, 'L', size, size, matrix, size, schur->inverse, size) == 0;
+}
+
+/* Adds P (C + Y/alpha)^-1 P. */
+static void add_charges(const dea_rings_motion *m, const dea_rings_schur *schur, double *matrix)
+{
+    const size_t count = m->charges;
+    double spread[DEA_RINGS_NODES];
+    for (size_t k = 0; k < count; k++) {
+        memset(spread, 0, m->nodes * sizeof *spread);
+        for (size_t l = 0; l < count; l++) {
+            for (size_t n = 0; n < m->nodes; n++) {
+                spread[n] += schur->inverse[k * count + l] * schur->pull[l][n];
+            }
+        }
+        for (size_t j = 0; j < m->nodes; j++) {
+            for (size_t i = 0; i < m->nodes && schur->pull[k][j] != 0.0; i++) {
+                matrix[j * m->nodes + i] += schur->pull[k][j] * spread[i];
+            }
+        }
+    }
+}
+
+/* (C + Y/alpha)^-1 (b_q/alpha - P u), of the charges' right-hand sides and displacements; u NULL: 0 [V]. */
+static void spread_charges(const dea_rings_motion *m, const dea_rings_schur *schur, const double *b, const double *u, double *voltages)
+{
+    const size_t count = m->charges;
+    memset(voltages, 0, count * sizeof *voltages);
+    for (size_t k = 0; k < count; k++) {
+        const double charge = b[m->q + k] / schur->pace - (u ? dot(m->nodes, schur->pull[k], u) : 0.0);
+        for (size_t l = 0; l < count; l++) {
+            voltages[l] += schur->inverse[k * count + l] * charge;
+        }
+    }
+}
+
+bool dea_rings_schur_fill(const dea_rings_motion *m, const dea_rings_state *state, double pace, dea_rings_schur *schur,
                           double *matrix)
 {
     const dea_membrane *membrane = m->membrane;
@@ -179,21 +282,12 @@ void dea_rings_schur_fill(const dea_rings_motion *m, const dea_rings_state *stat
     for (size_t n = 0; n < m->nodes && m->heavy; n++) {
         matrix[n * m->nodes + n] += pace * pace * membrane->masses[n];
     }
-    if (!m->charged) {
-        return;
+    matrix[membrane->rings.edge * (m->nodes + 1)] += pace * d->damping;
+    if (m->charged && !fill_charges(m, state, schur)) {
+        return false;
     }
-    const double capacitance = schur->capacitance = state->look.capacitance;
-    schur->rate = (1.0 / d->series + d->conductance) / capacitance;
-    dea_membrane_push(membrane, &state->look, schur->pull);
-    for (size_t n = 0; n < m->nodes; n++) {
-        schur->pull[n] *= 2.0 * state->voltage / capacitance;
-    }
-    const double unit = capacitance * pace / (pace + schur->rate);
-    for (size_t j = 0; j < m->nodes; j++) {
-        for (size_t i = 0; i < m->nodes; i++) {
-            matrix[j * m->nodes + i] += unit * schur->pull[i] * schur->pull[j];
-        }
-    }
+    add_charges(m, schur, matrix);
+    return true;
 }
 
 /* Nominal stresses that the right-hand sides of z, and of u' = v through a damper, stand for. */
@@ -222,13 +316,19 @@ void dea_rings_schur_reduce(const dea_rings_motion *m, const dea_rings_schur *sc
     for (size_t n = 0; n < m->nodes; n++) {
         reduced[n] = m->heavy ? m->membrane->masses[n] * (b[m->nodes + n] + schur->pace * b[n]) : b[n];
     }
+    const size_t edge = m->membrane->rings.edge;
+    reduced[edge] += m->heavy ? m->membrane->film.damping * b[edge] : 0.0;
     if (m->membrane->film.branch_count > 0 || (m->heavy && m->damped)) {
         double f[DEA_RINGS_MOST][2];
         reduce_rings(m, schur, b, f);
         dea_membrane_pull(m->membrane, f, reduced);
     }
-    for (size_t n = 0; n < m->nodes && m->charged; n++) {
-        reduced[n] += schur->pull[n] * b[m->q] / (schur->pace + schur->rate);
+    double voltages[DEA_SHEET_PLACES];
+    spread_charges(m, schur, b, NULL, voltages);
+    for (size_t k = 0; k < m->charges; k++) {
+        for (size_t n = 0; n < m->nodes; n++) {
+            reduced[n] += schur->pull[k][n] * voltages[k];
+        }
     }
 }
 
@@ -258,8 +358,10 @@ void dea_rings_schur_expand(const dea_rings_motion *m, const dea_rings_schur *sc
     if (m->membrane->film.branch_count > 0) {
         expand_rings(m, schur, b, x);
     }
-    if (m->charged) {
-        x[m->q] = (b[m->q] + schur->rate * schur->capacitance * dot(m->nodes, schur->pull, x)) / (schur->pace + schur->rate);
+    double voltages[DEA_SHEET_PLACES];
+    spread_charges(m, schur, b, x, voltages);
+    for (size_t k = 0; k < m->charges; k++) {
+        x[m->q + k] = schur->capacitances[k] * voltages[k] + dot(m->nodes, schur->pull[k], x);
     }
 }
 
@@ -268,20 +370,52 @@ void dea_rings_schur_expand(const dea_rings_motion *m, const dea_rings_schur *sc
 bool dea_rings_start(const dea_rings_motion *m, bool from_bias, double *y)
 {
     const dea_dynamics *d = &m->membrane->film;
-    const double voltage = m->segment->start / (1.0 + d->series * d->conductance);
+    const double voltage = from_bias ? m->segment->start / (1.0 + d->series * d->conductance) : 0.0;
     dea_membrane_look look;
+    dea_charges charges;
     memset(y, 0, m->count * sizeof *y);
-    if (!from_bias) {
+    if (!from_bias && d->point.force == 0.0) {
         return true;
     }
     if (!dea_membrane_still(m->membrane, voltage, y) || !dea_membrane_look_at(m->membrane, y, &look)) {
         return false;
     }
     dea_membrane_relax(m->membrane, &look, y + m->z);
-    if (m->charged) {
-        y[m->q] = look.capacitance * voltage;
+    dea_sheet_look(m->membrane, &look, y + m->q, voltage, &charges);
+    for (size_t k = 0; k < m->charges; k++) { /* with a sheet resistance there is no leakage then */
+        y[m->q + k] = charges.capacitances[k] * voltage;
     }
     return true;
+}
+
+enum { MOST_ROUNDS = 30 };
+static const double longest_step = 0.1; /* of the radius of the edge, in one round */
+
+bool dea_rings_settle(const dea_rings_motion *m, double *y)
+{
+    double matrix[DEA_RINGS_NODES * DEA_RINGS_NODES], last = INFINITY;
+    dea_rings_state state;
+    for (int i = 0; i < MOST_ROUNDS && dea_rings_look(m, 0.0, y, NULL, &state); i++) {
+        double largest = 0.0, step = 0.0;
+        held_stiffness(m, &state, matrix);
+        if (!dea_membrane_elliptic(m->membrane, &state.look, state.voltage, state.x, m->membrane->film.total_share) ||
+            !solve_definite(m->nodes, matrix, state.force)) {
+            return false;
+        }
+        for (size_t n = 0; n < m->nodes; n++) {
+            step = fmax(step, fabs(state.force[n]));
+            largest = fmax(largest, fabs(y[n]));
+        }
+        const double most = longest_step * m->membrane->film.radius;
+        for (size_t n = 0; n < m->nodes; n++) {
+            y[n] += state.force[n] * fmin(1.0, most / step);
+        }
+        if (step <= 4e-16 * largest || (step < 1e-10 * most && step >= 0.5 * last)) {
+            return true;
+        }
+        last = step;
+    }
+    return last <= 1e-11 * m->membrane->film.radius;
 }
 
 double dea_rings_firmness(const dea_rings_motion *m, double time, const double *y)
@@ -312,8 +446,7 @@ double dea_rings_stiffest(const dea_rings_motion *m)
     for (size_t i = 0; i < d->branch_count; i++) {
         largest = fmax(largest, (1.0 + d->branches[i].share) / d->branches[i].tau);
     }
-    const double charging = m->charged ? (1.0 / d->series + d->conductance) * m->signal->largest / m->charge : 0.0;
-    return fmax(largest, charging);
+    return fmax(largest, m->charging);
 }
 
 double dea_rings_decay(const dea_rings_motion *m)

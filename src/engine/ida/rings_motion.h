@@ -3,7 +3,7 @@
  *   u [nodes]   displacements; with mass states, with a damper alone u' follows from them, with neither algebraic
  *   v [nodes]   velocities, with mass
  *   z           stresses that the branches have relaxed from, as the membrane numbers them
- *   q           charge of the film, with series resistance
+ *   q           charge of the film, with series resistance, or charges along electrodes with a sheet resistance
  *
  *   u' = v,  v' = F/m,  z' = (S - z)/tau,  q' = (U_s - U)/R_s - U/R_p;   without mass 0 = F, a damper's v being u'. */
 #ifndef DEA_IDA_RINGS_MOTION_H
@@ -18,8 +18,11 @@ typedef struct dea_rings_motion {
     const dea_segment *segment; /* at which times are counted from its begin */
     size_t nodes, count;        /* of u, of unknowns */
     size_t z, q;                /* where they are; v follows u where the film is heavy */
+    size_t charges;             /* of q */
+    double shares[DEA_SHEET_PLACES]; /* of each in the capacitance at rest [1] */
+    double charging;            /* fastest rate of the charges at rest, no less than it is [1/s] */
     bool heavy, damped, charged;
-    double length, speed, stress, charge; /* sizes of the unknowns [m, m/s, Pa, C] */
+    double length, speed, stress, charge; /* sizes of the unknowns, the charge that of the film [m, m/s, Pa, C] */
     dea_membrane_rest rest;
 } dea_rings_motion;
 
@@ -29,11 +32,14 @@ typedef struct dea_rings_state {
     double x[DEA_RINGS_MOST][2]; /* viscous and branch stresses */
     double push[DEA_RINGS_NODES];
     double force[DEA_RINGS_NODES];
-    double voltage; /* of the film [V] */
+    dea_charges charges;
+    double voltage; /* of the film, the mean of it where its electrode has a sheet resistance [V] */
     double source;  /* [V] */
 } dea_rings_state;
 
-/* Lays out the unknowns; false where the film is not stable at rest. */
+/* Lays out the unknowns. */
+void dea_rings_motion_lay(const dea_membrane *membrane, const dea_signal *signal, dea_rings_motion *motion);
+/* And tells their sizes from the film at rest; false where that is not stable. */
 bool dea_rings_motion_open(const dea_membrane *membrane, const dea_signal *signal, dea_rings_motion *motion);
 static inline bool dea_rings_algebraic(const dea_rings_motion *motion)
 {
@@ -48,25 +54,30 @@ bool dea_rings_look(const dea_rings_motion *motion, double time, const double *y
 void dea_rings_relaxing(const dea_rings_motion *motion, const dea_rings_state *state, const double *y, double *rates);
 /* y' at y: what stands there is replaced. False where the film cannot be or nothing holds it. */
 bool dea_rings_rates(const dea_rings_motion *motion, double time, const double *y, double *rates);
+/* Those of the displacements of a film without mass alone, from the rates of z and q that stand there. */
+bool dea_rings_massless(const dea_rings_motion *motion, double time, const double *y, double *rates);
 
 /* The matrix of Newton's method with all unknowns but u eliminated. */
 typedef struct dea_rings_schur {
     double pace;                        /* alpha: y' = alpha y + ... of the method [1/s] */
     double slope[DEA_RINGS_MOST][2][2]; /* dS_a/dlambda_b [Pa] */
     double stretch[DEA_RINGS_MOST][2];
-    double pull[DEA_RINGS_NODES]; /* dF/dq [N/C] */
-    double rate;                  /* (1/R_s + 1/R_p)/C [1/s] */
-    double capacitance;           /* [F] */
+    double pull[DEA_SHEET_PLACES][DEA_RINGS_NODES];        /* P: dF/dV_k at constant u, which is C_k dF/dq_k [N/V] */
+    double inverse[DEA_SHEET_PLACES * DEA_SHEET_PLACES];   /* of C + Y/alpha [1/F] */
+    double capacitances[DEA_SHEET_PLACES];                 /* [F] */
 } dea_rings_schur;
 
-/* Prepares it at a state and writes the symmetric matrix over u [N/m]. */
-void dea_rings_schur_fill(const dea_rings_motion *motion, const dea_rings_state *state, double pace, dea_rings_schur *schur,
+/* Prepares it at a state and writes the symmetric matrix over u [N/m]; false where LAPACK fails. */
+bool dea_rings_schur_fill(const dea_rings_motion *motion, const dea_rings_state *state, double pace, dea_rings_schur *schur,
                           double *matrix);
 /* Right-hand side over u for one over all unknowns [N]. */
 void dea_rings_schur_reduce(const dea_rings_motion *motion, const dea_rings_schur *schur, const double *b, double *reduced);
 /* All unknowns from u, which stands in x already. */
 void dea_rings_schur_expand(const dea_rings_motion *motion, const dea_rings_schur *schur, const double *b, double *x);
 
+/* Moves the displacements of a film without mass and damper to where they are held with its branches and charges as they are; false
+ * where there is no such place. */
+bool dea_rings_settle(const dea_rings_motion *motion, double *y);
 /* The state at the begin of a run; false without a stable equilibrium. */
 bool dea_rings_start(const dea_rings_motion *motion, bool from_bias, double *y);
 /* Net stiffness of a film without mass and damper against its voltage, over that at rest; 0 where it is not stable, or has lost

@@ -1,19 +1,19 @@
 /* Transients of a membrane: runs at tighter tolerances on finer meshes, until two of them show that the answer is good enough. */
-#include <float.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 
-#include "engine/ida/rings_flight.h"
-#include "result/scales.h"
+#include "drive/soften.h"
+#include "engine/rings_gap.h"
+#include "network/rings_mesh.h"
 #include "support/lapack.h"
 
 enum { MOST_RUNS = 6 };
 
 static const double first_tolerance = 0.05; /* of the accuracy */
+/* Of cheap runs ahead: first tolerance and nodes, and the difference above which one that does not fall is no matter of the tolerance. */
+static const double rough_tolerance = 1e-4, rough_nodes = 7.0, rough_gap = 5e-3;
+static const double thin_front = 64.0; /* width of a front of charge over the spacing of the nodes next to the rim */
 static const double first_share = 0.2;      /* from one tolerance to the next */
-static const double doubt = 1.5;            /* most that the error of the better of two runs is taken for, over their difference */
-static const double smooth_enough = 1.0;    /* of smoothness over the spacing of the nodes */
 static const double gains_nothing = 0.5;    /* a difference that falls by less than that stays too large */
 static const double least_tolerance = 3e-12; /* what rounding of the stiffest nodes leaves */
 static const double certain = 1e-7; /* an end of the motion counts from this tolerance on */
@@ -25,108 +25,13 @@ typedef struct search {
     const dea_model *model;
     const dea_signal *signal;
     dea_scales scales;
-    dea_rings_trace traces[2]; /* owned samples: of the run before, and of the last */
+    dea_rings_trace traces[2]; /* owned samples and entries: of the run before, and of the last */
     dea_rings_flight *flight;  /* owned: of the last */
-    size_t rows;
-    double loosest, coverage;
+    dea_layout layout;
+    size_t rows, entries; /* of the layout; numbers that a row tells over the radius */
+    double loosest;
+    double worst; /* error that the last run is left with, of the column that is worst against what it promises [1] */
 } search;
-
-/* What two runs differ by. */
-typedef struct gap {
-    double answer;         /* of the column that is worst against what it promises, times its allowance [1] */
-    double displacement;   /* of displacement and its means, over their peaks [1] */
-    dea_rate_errors rates; /* of velocity and current */
-} gap;
-
-/* The columns that are compared. */
-static const size_t columns[] = {offsetof(dea_sample, displacement), offsetof(dea_sample, velocity), offsetof(dea_sample, force),
-                                 offsetof(dea_sample, current),      offsetof(dea_sample, charge),   offsetof(dea_sample, film_voltage),
-                                 offsetof(dea_sample, focal_length), offsetof(dea_sample, capacitance)};
-
-static double at(const dea_sample *sample, size_t offset)
-{
-    return *(const double *)((const char *)sample + offset);
-}
-
-static double mean(const search *s, const dea_rings_trace *trace, size_t window)
-{
-    const dea_window *w = &s->scene->transient.averages[window];
-    return trace->integrals[window] / (w->to - w->from);
-}
-
-/* True where the film has numbers all over a window. */
-static bool covers(const search *s, const dea_rings_trace *trace, size_t window)
-{
-    const double last = trace->count > 0 ? trace->samples[trace->count - 1].time : -1.0;
-    return trace->end == DEA_STATE_OK || s->scene->transient.averages[window].to <= last;
-}
-
-/* Largest difference of a column over the samples that both have; NAN counts as none. */
-static double column_gap(const dea_rings_trace *a, const dea_rings_trace *b, size_t offset)
-{
-    const size_t count = a->count < b->count ? a->count : b->count;
-    double largest = 0.0;
-    for (size_t i = 0; i < count; i++) {
-        largest = fmax(largest, fabs(at(&a->samples[i], offset) - at(&b->samples[i], offset)));
-    }
-    return largest;
-}
-
-static gap difference(const search *s)
-{
-    const dea_rings_trace *a = &s->traces[0], *b = &s->traces[1];
-    const dea_sample scale = dea_scales_of(&s->scales, b->samples, b->count);
-    gap g = {0};
-    for (size_t c = 0; c < sizeof columns / sizeof *columns; c++) {
-        const double apart = column_gap(a, b, columns[c]);
-        const double share = apart > 0.0 ? apart / at(&scale, columns[c]) : 0.0;
-        g.answer = fmax(g.answer, share / dea_scales_allowance(columns[c]));
-    }
-    g.displacement = column_gap(a, b, offsetof(dea_sample, displacement)) / fmax(scale.displacement, DBL_MIN);
-    for (size_t i = 0; i < s->scene->transient.average_count; i++) {
-        const bool both = covers(s, a, i) && covers(s, b, i);
-        g.displacement = fmax(g.displacement, both ? fabs(mean(s, a, i) - mean(s, b, i)) / scale.displacement : 0.0);
-    }
-    g.answer = fmax(g.answer, g.displacement);
-    g.rates.velocity = column_gap(a, b, offsetof(dea_sample, velocity));
-    g.rates.current = column_gap(a, b, offsetof(dea_sample, current));
-    return g;
-}
-
-/* ---- meshes. Every kink of the voltage sends a wave out. Where damper and charging smooth it over more than the time that it takes
- * between two nodes, every node more cuts the error of the mesh by one factor; else it falls with a power of their number. */
-
-/* Coverage below which the annulus, much longer than its inner radius, has its nodes even in ln R. */
-static const double small_disc = 0.1;
-
-/* Time over which all waves are smooth, over the time that one takes from centre to frame [1]. */
-static double smoothness(const search *s)
-{
-    const dea_membrane *m = &s->flight->membrane;
-    const dea_dynamics *d = &m->film;
-    const double crossing = 3.83 / s->flight->motion.rest.slowest; /* J1(3.83) = 0 at the frame */
-    const double charging = d->series * s->flight->motion.rest.capacitance;
-    return m->heavy ? fmax(2.0 * DEA_PI * d->retardation, charging) / crossing : INFINITY;
-}
-
-/* Share of the nodes that an element takes that is so long, of two. */
-static size_t degree_of(double nodes, double length, double least)
-{
-    return (size_t)fmin(DEA_RINGS_DEGREE, fmax(least, ceil(nodes * (0.4 + 1.2 * length))));
-}
-
-static dea_rings_mesh mesh_of(const search *s, double nodes)
-{
-    const double coverage = s->coverage;
-    return (dea_rings_mesh){degree_of(nodes, coverage, 3.0), degree_of(nodes, 1.0 - coverage, 3.0), coverage < small_disc};
-}
-
-/* Nodes of an element for a first run. */
-static double first_nodes(const search *s)
-{
-    const double digits = -log10(s->scene->accuracy);
-    return 2.5 + 1.45 * digits;
-}
 
 /* One run on a mesh of its own, which takes the place of the last. */
 static dea_status run_on(search *s, dea_rings_mesh mesh, double tolerance, dea_summary *summary, dea_error *error)
@@ -147,44 +52,67 @@ static dea_status run_on(search *s, dea_rings_mesh mesh, double tolerance, dea_s
     return DEA_OK;
 }
 
-/* What the error of the better of two runs is taken for, over their difference, and by how much more nodes it has: where the film is
- * not smooth the errors of both are alike. */
-static double trust_of(const search *s, double nodes)
+/* Three cheap runs of a film that no damper smooths tell whether its error falls with the mesh at all: *@p hopeless where the waves
+ * behind fast edges are too steep for any. */
+static dea_status look_ahead(search *s, dea_summary *summary, bool *hopeless, dea_error *error)
 {
-    return smoothness(s) * nodes > smooth_enough ? 0.75 : doubt;
-}
-
-static double finer(const search *s, double nodes)
-{
-    return smoothness(s) * nodes > smooth_enough ? nodes + 2.0 : 1.5 * nodes;
+    double nodes = rough_nodes, tolerance = s->loosest = rough_tolerance, last = INFINITY;
+    *hopeless = false;
+    if (!(first_tolerance * s->scene->accuracy < 0.1 * rough_tolerance) || !dea_rings_stays_rough(s->scene, s->model)) {
+        return DEA_OK; /* the runs themselves are as cheap, or converge */
+    }
+    dea_status status = run_on(s, dea_rings_mesh_of(s->scene, nodes), tolerance, NULL, error);
+    for (int i = 0; i < 2 && status == DEA_OK; i++) {
+        nodes = dea_rings_more_nodes(&s->flight->membrane, &s->flight->motion.rest, nodes);
+        tolerance *= first_share;
+        status = run_on(s, dea_rings_mesh_of(s->scene, nodes), tolerance, NULL, error);
+        const dea_rings_gap apart = dea_rings_gap_of(s->scene, &s->scales, &s->traces[0], &s->traces[1]);
+        const bool comparable = s->traces[0].count == s->traces[1].count;
+        *hopeless = status == DEA_OK && comparable && apart.answer > rough_gap && !(apart.answer < gains_nothing * last);
+        s->worst = summary->error = apart.answer;
+        last = apart.answer;
+    }
+    *hopeless = *hopeless && s->traces[1].end == DEA_STATE_OK;
+    return status;
 }
 
 /* Leaves the better run of the last two in traces[1]; *good false where the accuracy was not reached. */
 static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates, bool *good, dea_error *error)
 {
     const double accuracy = s->scene->accuracy;
-    double tolerance = s->loosest = first_tolerance * accuracy, nodes = first_nodes(s), last = INFINITY;
+    bool steep;
+    dea_status status = look_ahead(s, summary, &steep, error);
     *good = false;
-    dea_status status = run_on(s, mesh_of(s, nodes), tolerance, NULL, error);
+    if (status != DEA_OK || steep) {
+        return status;
+    }
+    double tolerance = s->loosest = first_tolerance * accuracy, nodes = dea_rings_first_nodes(accuracy), last = INFINITY;
+    dea_rings_mesh mesh = dea_rings_mesh_of(s->scene, nodes);
+    status = run_on(s, mesh, tolerance, NULL, error);
     for (int i = 0; i < MOST_RUNS && status == DEA_OK && s->traces[1].end != DEA_STATE_FAILED; i++) {
-        const dea_rings_mesh before = mesh_of(s, nodes);
-        nodes = finer(s, nodes);
+        const dea_rings_mesh before = mesh;
+        nodes = dea_rings_more_nodes(&s->flight->membrane, &s->flight->motion.rest, nodes);
+        mesh = dea_rings_mesh_of(s->scene, nodes);
+        if ((mesh.disc == before.disc && mesh.disc > 1) || mesh.annulus == before.annulus) {
+            return status; /* what both have alike tells nothing about itself, but for a disc that is uniform */
+        }
         tolerance = fmax(first_share * tolerance, least_tolerance);
         *summary = dea_summary_failed();
-        status = run_on(s, mesh_of(s, nodes), tolerance, summary, error);
+        status = run_on(s, mesh, tolerance, summary, error);
         if (status != DEA_OK) {
             return status;
         }
-        const gap apart = difference(s);
-        const double trust = trust_of(s, nodes);
+        const dea_rings_gap apart = dea_rings_gap_of(s->scene, &s->scales, &s->traces[0], &s->traces[1]);
+        const double trust = dea_rings_mesh_trust(&s->flight->membrane, &s->flight->motion.rest, nodes);
         const bool doubtful = s->traces[1].end == DEA_STATE_PULL_IN && tolerance > certain;
         const bool comparable = s->traces[0].count == s->traces[1].count;
         summary->error = fmax(apart.displacement * trust, fmax(10.0 * tolerance, 0.1 * accuracy));
         *rates = (dea_rate_errors){apart.rates.velocity * trust, apart.rates.current * trust};
-        *good = fmax(apart.answer * trust, 10.0 * tolerance) <= accuracy && comparable && !doubtful;
-        const bool hopeless = comparable && !(apart.answer < gains_nothing * last);
-        const bool finest = mesh_of(s, nodes).disc == before.disc && mesh_of(s, nodes).annulus == before.annulus;
-        if (*good || s->traces[1].end == DEA_STATE_FAILED || hopeless || finest) {
+        s->worst = fmax(apart.answer * trust, 10.0 * tolerance);
+        *good = s->worst <= accuracy && comparable && !doubtful;
+        const bool fronts = s->flight->membrane.sheet.front * nodes * nodes < thin_front; /* they converge late, and then fast */
+        const bool hopeless = comparable && !(apart.answer < gains_nothing * last) && !fronts;
+        if (*good || s->traces[1].end == DEA_STATE_FAILED || hopeless) {
             return status;
         }
         last = comparable ? apart.answer : INFINITY;
@@ -197,6 +125,10 @@ static void fill(const search *s, const dea_rings_trace *trace, bool good, dea_s
 {
     size_t near = 0;
     for (size_t i = 0; i < s->rows; i++) {
+        double *entries = s->entries > 0 ? dea_layout_entry(&s->layout, samples, i, 0) : NULL;
+        for (size_t k = 0; k < s->entries; k++) {
+            entries[k] = good && i < trace->count ? trace->entries[i * s->entries + k] : (double)NAN;
+        }
         if (good && i < trace->count) {
             samples[i] = trace->samples[i];
             continue;
@@ -211,7 +143,7 @@ static void fill(const search *s, const dea_rings_trace *trace, bool good, dea_s
 static void tell_averages(const search *s, const dea_rings_trace *trace, dea_summary *summary)
 {
     for (size_t i = 0; i < s->scene->transient.average_count; i++) {
-        const double u = mean(s, trace, i);
+        const double u = dea_rings_mean(s->scene, trace, i);
         summary->averages[i] = (dea_average){u / s->flight->membrane.film.radius, u};
     }
 }
@@ -235,8 +167,10 @@ static void explain(const search *s, const dea_summary *summary, dea_error *erro
     } else {
         dea_fail(error, DEA_ERROR_ENGINE,
                  "%zu nodes and %ld steps of SUNDIALS at a tolerance of %.1g leave an error of %.1g, the scene wants %g: waves of a "
-                 "film without much damping get steep; a rise of the voltage and a damper (material.retardation) smooth them",
-                 f->membrane.rings.node_count, f->steps, f->tolerance, summary->error, s->scene->accuracy);
+                 "film without much damping get steep; a rise of the voltage and a damper (material.retardation) smooth them%s",
+                 f->membrane.rings.node_count, f->steps, f->tolerance, fmax(s->worst, summary->error), s->scene->accuracy,
+                 f->membrane.sheet.places > 0 ? "; charge lies close to the rim of so resistive an electrode "
+                                                "(electrode.sheet_resistance), the closer the denser the samples" : "");
     }
 }
 
@@ -244,6 +178,12 @@ static dea_status fly(search *s, dea_sample *samples, dea_summary *summary, dea_
 {
     dea_rate_errors rates = {0.0, 0.0};
     bool good;
+    if (s->scene->electrode.sheet_resistance > 0.0 && !(s->scene->drive.series_resistance > 0.0) && dea_peak_jumps(s->scene, s->signal)) {
+        dea_fail(error, DEA_ERROR_ENGINE, "behind a jump of the voltage nothing bounds the current into the rim of the electrode "
+                                          "(electrode.sheet_resistance): give the waveform a rise, or the drive a series_resistance");
+        fill(s, &s->traces[1], false, samples);
+        return DEA_OK;
+    }
     const dea_status status = refine(s, summary, &rates, &good, error);
     if (status != DEA_OK) {
         return status;
@@ -260,15 +200,17 @@ static dea_status fly(search *s, dea_sample *samples, dea_summary *summary, dea_
 
 static dea_status search_open(search *s, dea_error *error)
 {
-    const dea_actuator *actuator = &s->scene->actuator;
-    s->rows = dea_layout_of(s->scene).rows;
-    s->coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
+    s->layout = dea_layout_of(s->scene);
+    s->rows = s->layout.rows;
+    s->entries = s->layout.spread_points * s->layout.spread_count;
     s->scales = dea_scales_open(s->scene, s->model);
     s->flight = calloc(1, sizeof *s->flight);
+    bool room = s->flight && s->scales.status != DEA_ERROR_MEMORY;
     for (int i = 0; i < 2; i++) {
         s->traces[i].samples = malloc(s->rows * sizeof *s->traces[i].samples);
+        s->traces[i].entries = s->entries > 0 ? malloc(s->rows * s->entries * sizeof *s->traces[i].entries) : NULL;
+        room = room && s->traces[i].samples && (s->traces[i].entries || s->entries == 0);
     }
-    const bool room = s->flight && s->traces[0].samples && s->traces[1].samples && s->scales.status != DEA_ERROR_MEMORY;
     return room ? DEA_OK : dea_fail(error, DEA_ERROR_MEMORY, "out of memory for %zu samples", s->rows);
 }
 
@@ -278,8 +220,19 @@ static void search_close(search *s)
         dea_rings_flight_close(s->flight);
     }
     free(s->flight);
-    free(s->traces[0].samples);
-    free(s->traces[1].samples);
+    for (int i = 0; i < 2; i++) {
+        free(s->traces[i].samples);
+        free(s->traces[i].entries);
+    }
+}
+
+/* Draws lines with small corners together, but where the current C U' of a film at its source has its peaks at them. */
+static dea_status soften(const dea_scene *scene, const dea_model *model, dea_signal *signal, dea_error *error)
+{
+    dea_dynamics film;
+    const dea_status status = dea_dynamics_settle(scene, model, &film, error);
+    const bool cornered = dea_peak_is_known(scene, &film, signal) && !(scene->drive.series_resistance > 0.0);
+    return status != DEA_OK || cornered ? status : dea_signal_soften(signal, scene->accuracy, 0.0, error);
 }
 
 dea_status dea_rings_transient_solve(const dea_sundials *sun, const dea_scene *scene, const dea_model *model, dea_sample *samples,
@@ -292,6 +245,9 @@ dea_status dea_rings_transient_solve(const dea_sundials *sun, const dea_scene *s
         return status;
     }
     status = dea_signal_open(scene, &signal, error);
+    if (status == DEA_OK) {
+        status = soften(scene, model, &signal, error);
+    }
     search s = {.sun = sun, .scene = scene, .model = model, .signal = &signal};
     if (status == DEA_OK) {
         status = search_open(&s, error);

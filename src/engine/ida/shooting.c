@@ -11,12 +11,12 @@
 #include <stdlib.h>
 
 #include "engine/ida/sundials.h"
-#include "model/models.h"
+#include "model/loaded.h"
 
 enum { SIGMA, HOOP, RADIAL, UNKNOWNS };
 
-/* What KINSOL searches: the edge at a load, or the load at an edge. */
-typedef enum search { SEARCH_EDGE, SEARCH_SHARE } search;
+/* What KINSOL searches: the edge at a load, the load at an edge, or what must pull at an edge that is held. */
+typedef enum search { SEARCH_EDGE, SEARCH_SHARE, SEARCH_PULL } search;
 
 /* Steps along the radius after which a guess is taken as hopeless; a good one takes some hundreds. */
 enum { MOST_STEPS = 3000 };
@@ -51,6 +51,7 @@ struct dea_shooting {
     double pressure;        /* M at full load [Pa] */
     double disc_k;          /* Maxwell pressure in the disc at this share [Pa] */
     double annulus_k;       /* and in the annulus [Pa] */
+    double pull;            /* what pulls the edge outward beside film and load, over 2 pi R_a H [Pa] */
     double stress;          /* scale of Sigma [Pa] */
     double strain;          /* scale of d1, d2 [1] */
     double tolerance;
@@ -79,10 +80,10 @@ static double stress_change(const dea_shooting *s, region where, double d1, doub
     return is_coated(s, where) ? change + dea_point_skin_rise(s->point, d1, d2) : change;
 }
 
-/* What a load k at the edge adds to s1 of the annulus, k u/(2 pi R_a H). */
+/* What a load k at the edge adds to s1 of the annulus, k u/(2 pi R_a H), less what pulls there. */
 static double load_stress(const dea_shooting *s, double edge)
 {
-    return s->point->load * edge / (2.0 * DEA_PI * s->point->film_thickness);
+    return s->point->load * edge / (2.0 * DEA_PI * s->point->film_thickness) - s->pull;
 }
 
 static dea_stress stress_at(const dea_shooting *s, region where, double l1, double l2)
@@ -269,20 +270,31 @@ static double miss_at_frame(dea_shooting *s, double edge)
     return code == IDA_TSTOP_RETURN ? NV_DATA_S(m->y)[HOOP] : NAN;
 }
 
-/* Fixed points for KINSOL: of the edge at a load, edge - miss, or of the load at an edge, share + miss. Both slopes are near 1
- * for a small strain, and Anderson's acceleration takes care of the rest. */
+/* 2 W11/(1 - B^2) [Pa]: what disc and annulus hold together, over the strain of the edge times lambda_pre. */
+static double lame_stiffness(const dea_point *point)
+{
+    return 2.0 * point->film.w11 / (1.0 - point->coverage * point->coverage);
+}
+
+/* Fixed points for KINSOL: of the edge at a load, edge - miss, of the load at an edge, share + miss, or of the pull at an edge,
+ * pull + 2 W11/(1 - B^2) miss, as Lame's film has it. All slopes are near 1 for a small strain, and Anderson's acceleration takes
+ * care of the rest. */
 static int next_guess(N_Vector guess, N_Vector next, void *user)
 {
     dea_shooting *s = user;
     const double at = NV_DATA_S(guess)[0];
     if (s->search == SEARCH_SHARE) {
         set_load(s, at * s->share);
+    } else if (s->search == SEARCH_PULL) {
+        s->pull = at * s->stress;
     }
     const double miss = miss_at_frame(s, s->search == SEARCH_EDGE ? at * s->strain : s->held) * s->strain / s->held;
     if (isnan(miss)) {
         return -1;
     }
-    NV_DATA_S(next)[0] = s->search == SEARCH_EDGE ? at - miss * s->held / s->strain : at + miss;
+    NV_DATA_S(next)[0] = s->search == SEARCH_EDGE    ? at - miss * s->held / s->strain
+                         : s->search == SEARCH_SHARE ? at + miss
+                                                     : at + miss * s->held * lame_stiffness(s->point) / s->stress;
     return 0;
 }
 
@@ -504,16 +516,110 @@ static bool is_near_rest(dea_shooting *s, double edge)
            fabs(here.radial - rest.radial) < 0.5 * rest.radial && least_s11(s, rest, here) > nearly * film->w11;
 }
 
+/* 2 pi H R_a [m^2]. */
+static double lever_of(const dea_point *point)
+{
+    return 2.0 * DEA_PI * point->film_thickness * point->coverage * point->frame_radius / point->film.prestretch;
+}
+
+/* From what the last integration found. */
+static dea_found found_at(const dea_shooting *s, double edge)
+{
+    const dea_point *point = s->point;
+    const dea_film *film = &point->film;
+    const double b2 = point->coverage * point->coverage, sign = dea_point_sign(point), strain = edge / film->prestretch;
+    const double annulus = 2.0 * dea_point_full_capacitance(point) * b2 * s->charge / (film->square * film->square);
+    return (dea_found){.strain = strain,
+                       .force = sign * lever_of(point) * s->pressure * s->edge_force,
+                       .stretch = s->largest_area,
+                       .capacitance = sign > 0.0 ? dea_point_disc_capacitance(point, strain) : annulus,
+                       .taut = s->least_stress > 0.0};
+}
+
+/* What the film exerts on an edge that is held under a share of the load, outward [N]. At rest it is uniform. */
+static double force_on_edge(dea_shooting *s, double share, double edge)
+{
+    const double l = s->point->film.prestretch, push = dea_point_sign(s->point) * share * s->pressure * l * l * l;
+    const double pull = lame_stiffness(s->point) * edge - push;
+    s->stress = fabs(push) + s->point->film.w11 * fabs(edge);
+    s->strain = fabs(edge);
+    s->held = edge;
+    s->pull = pull;
+    set_load(s, share);
+    if (edge != 0.0) {
+        s->pull = search_from(s, SEARCH_PULL, pull / s->stress) * s->stress;
+    }
+    return -lever_of(s->point) * s->pull;
+}
+
+/* Without voltage, inward; and what the voltage adds, outward: all of it on the disc of a dot, whose annulus does not feel it. */
+static double held_at(dea_shooting *s, double edge, double *push)
+{
+    const double held = -force_on_edge(s, 0.0, edge), l = s->point->film.prestretch + edge;
+    const bool dot = s->point->kind == DEA_DOT;
+    *push = dot ? lever_of(s->point) * s->pressure * l * l * l : force_on_edge(s, 1.0, edge) + held;
+    if (dot) {
+        s->pull -= *push / lever_of(s->point);
+    }
+    return held;
+}
+
+static bool hold(void *user, const dea_point *point, double strain, dea_hold *hold)
+{
+    const double nudge = 1e-5; /* of the stretch: slopes tell folds and steer Newton's steps, no digit hangs on them */
+    dea_shooting *s = user;
+    dea_point bare = *point;
+    const double nominal = dea_point_nominal_field(point), pre = point->film.prestretch, edge = pre * strain, step = pre * nudge;
+    double above, below;
+    bare.load = 0.0;
+    s->point = &bare;
+    s->pressure = point->film.permittivity * nominal * nominal;
+    if (!(pre + edge > step)) {
+        return false;
+    }
+    const double up = held_at(s, edge + step, &above), down = held_at(s, edge - step, &below);
+    const double over = 0.5 / (step * dea_point_divide(point) / pre);
+    hold->held = held_at(s, edge, &hold->push);
+    hold->held_slope = (up - down) * over;
+    hold->push_slope = (above - below) * over;
+    set_load(s, 1.0);
+    s->strain = edge != 0.0 ? fabs(edge) : step;
+    s->stress += s->point->film.w11 * s->strain;
+    const bool there = isfinite(hold->held) && isfinite(hold->push) && !isnan(miss_at_frame(s, edge));
+    if (there) {
+        hold->found = found_at(s, edge);
+        hold->found.capacitance = edge == 0.0 ? dea_point_capacitance(point) : hold->found.capacitance; /* IDA has no steps to sum over */
+    }
+    s->pull = 0.0;
+    return there;
+}
+
+static dea_holder holder_of(dea_shooting *s, double accuracy)
+{
+    s->tolerance = fmin(1e-7, fmax(1e-6 * accuracy, finest));
+    return (dea_holder){hold, s, false, 1e3 * s->tolerance};
+}
+
+void dea_shooting_hold(dea_shooting *s, const dea_point *point, double displacement, double accuracy, dea_row *row)
+{
+    const dea_holder holder = holder_of(s, accuracy);
+    dea_loaded_hold(&holder, point, displacement, row);
+}
+
 void dea_shooting_solve(dea_shooting *s, const dea_point *point, double accuracy, dea_row *row)
 {
     const dea_film *film = &point->film;
     const double sign = point->kind == DEA_DOT ? 1.0 : -1.0;
     const double nominal = point->voltage / point->film_thickness;
     const double b2 = point->coverage * point->coverage;
+    const dea_holder holder = holder_of(s, accuracy);
     s->point = point;
     s->pressure = film->permittivity * nominal * nominal;
-    s->tolerance = fmin(1e-7, fmax(1e-6 * accuracy, finest));
     *row = dea_row_failed();
+    if (point->force != 0.0 || point->second.there) {
+        dea_loaded_solve(&holder, point, row);
+        return;
+    }
     if (s->pressure == 0.0) {
         dea_row_fill(row, point, (dea_found){.capacitance = dea_point_capacitance(point), .taut = film->tension > 0.0});
         return;
@@ -539,14 +645,5 @@ void dea_shooting_solve(dea_shooting *s, const dea_point *point, double accuracy
     if (isnan(miss_at_frame(s, edge))) {
         return;
     }
-    const double radius = point->coverage * point->frame_radius;
-    const double strain = edge / film->prestretch;
-    const double force = sign * 2.0 * DEA_PI * point->film_thickness * s->pressure * s->edge_force * radius / film->prestretch;
-    const double annulus = 2.0 * dea_point_full_capacitance(point) * b2 * s->charge / (film->square * film->square);
-    dea_row_fill(row, point,
-                 (dea_found){.strain = strain,
-                             .force = force,
-                             .stretch = s->largest_area,
-                             .capacitance = sign > 0.0 ? dea_point_disc_capacitance(point, strain) : annulus,
-                             .taut = s->least_stress > 0.0});
+    dea_row_fill(row, point, found_at(s, edge));
 }

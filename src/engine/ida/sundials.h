@@ -97,6 +97,8 @@ dea_status dea_shooting_open(const dea_sundials *sun, dea_shooting **shooting, d
 void dea_shooting_close(dea_shooting *shooting);
 /* Exact membrane: IDA along ln R, KINSOL for the condition at the frame. */
 void dea_shooting_solve(dea_shooting *shooting, const dea_point *point, double accuracy, dea_row *row);
+/* The row of a membrane whose edge is held, as dea_model_hold() has it. */
+void dea_shooting_hold(dea_shooting *shooting, const dea_point *point, double displacement, double accuracy, dea_row *row);
 
 /* One transient: fills samples and summary, `failed` or `pull_in` from where the run cannot go on. */
 dea_status dea_transient_solve(const dea_sundials *sun, const dea_scene *scene, const dea_model *model, dea_sample *samples,

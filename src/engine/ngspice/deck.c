@@ -5,12 +5,12 @@
 #include <string.h>
 
 #include "netlist/curve_cards.h"
-#include "support/text.h"
+#include "support/memory_text.h"
 
 /* The engine's text: numbers, in the analogy in which nothing but nodes is added. */
 static dea_cards_form engine_form(void)
 {
-    return (dea_cards_form){dea_dialect_find("ngspice"), dea_analogy_at(0), true};
+    return (dea_cards_form){.dialect = dea_dialect_find("ngspice"), .analogy = dea_analogy_at(0), .numbers = true};
 }
 
 typedef struct writer {
@@ -23,32 +23,28 @@ typedef struct writer {
 
 /* Corners of a segment up to its end. The library meets each, and from one to the next takes four steps at least, which it would
  * not shorten for an edge that is shorter than one: corners on its line do that. */
-static void write_ramp(const writer *w, const dea_segment *segment)
+static void write_ramp(FILE *out, const dea_mobility_piece *p, const dea_segment *segment)
 {
-    const dea_mobility_piece *p = w->piece;
     const double from = fmax(segment->from, p->from);
     const double end = fmin(segment->to, p->to);
     const bool brief = segment->start != segment->end && end - from < p->parts * p->step;
     const double parts = brief ? p->parts : 1.0;
     for (double part = 1.0; part <= parts; part++) {
         const double time = part == parts ? end : from + (end - from) * (part / parts);
-        fputc(' ', w->out);
-        dea_part_number(w->out, time - p->from);
-        fputc(' ', w->out);
-        dea_part_number(w->out, dea_segment_voltage(p->signal, segment, time));
+        fputc(' ', out);
+        dea_part_number(out, time - p->from);
+        fputc(' ', out);
+        dea_part_number(out, dea_segment_voltage(p->signal, segment, time));
     }
 }
 
-/* The voltage of the source from the begin of the piece on: its segments as breakpoints, or a sine. */
-static void write_source(const writer *w, const char *node)
+void dea_deck_source(FILE *out, const dea_mobility_piece *p, const char *node)
 {
-    const dea_mobility_piece *p = w->piece;
     const dea_segment *segment = &p->signal->segments[p->segment];
-    fputs("* voltage of the source [V]\n", w->out);
+    fputs("* voltage of the source [V]\n", out);
     if (segment->sine) {
-        const dea_curve_cards cards = {.out = w->out,
+        const dea_curve_cards cards = {.out = out,
                                        .dialect = engine_form().dialect,
-                                       .number = dea_part_number,
                                        .signal = p->signal,
                                        .first = p->segment,
                                        .count = 1,
@@ -57,13 +53,13 @@ static void write_source(const writer *w, const char *node)
         dea_curve_cards_write(&cards);
         return;
     }
-    fprintf(w->out, "VSOURCE %s 0 ", node);
-    fputs("pwl(0 ", w->out);
-    dea_part_number(w->out, dea_segment_voltage(p->signal, segment, p->from));
+    fprintf(out, "VSOURCE %s 0 ", node);
+    fputs("pwl(0 ", out);
+    dea_part_number(out, dea_segment_voltage(p->signal, segment, p->from));
     for (size_t i = p->segment; i < p->signal->count && p->signal->segments[i].from < p->to; i++) {
-        write_ramp(w, &p->signal->segments[i]);
+        write_ramp(out, p, &p->signal->segments[i]);
     }
-    fputs(")\n", w->out);
+    fputs(")\n", out);
 }
 
 static double current_tolerance(const writer *w)
@@ -139,7 +135,7 @@ static void write_piece(writer *w)
     fputs("* moving dielectric elastomer actuator, numbers in units in which they are of size 1\n", w->out);
     dea_cards_write_numbers(&w->cards, &numbers);
     dea_cards_write_network(&w->cards);
-    write_source(w, series ? "source" : "film");
+    dea_deck_source(w->out, p, series ? "source" : "film");
     write_fit(w);
     fputs(".ic", w->out);
     dea_cards_write_start(&w->cards, &numbers, dea_segment_voltage(p->signal, &p->signal->segments[p->segment], p->from));
@@ -147,30 +143,25 @@ static void write_piece(writer *w)
     write_analysis(w);
 }
 
-/* Closes the stream; on DEA_OK its text belongs to the caller. */
-static dea_status finish(FILE *out, bool ready, char **text, dea_error *error)
-{
-    const bool whole = dea_text_close(out);
-    if (!ready || !whole) {
-        free(*text);
-        *text = NULL;
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
-    }
-    return DEA_OK;
-}
-
 dea_status dea_mobility_write(const dea_mobility *mobility, const dea_mobility_piece *piece, char **text, dea_error *error)
 {
-    size_t length = 0;
-    *text = NULL;
-    writer w = {.mobility = mobility, .dynamics = mobility->dynamics, .piece = piece, .out = open_memstream(text, &length)};
     const dea_cards_form form = engine_form();
-    const bool ready = w.out && dea_cards_open(mobility, &form, w.out, &w.cards);
-    if (ready) {
+    dea_memory_text memory;
+    dea_status status = dea_memory_text_begin(&memory, error);
+    writer w = {.mobility = mobility, .dynamics = mobility->dynamics, .piece = piece, .out = memory.out};
+    if (status == DEA_OK && dea_cards_open(mobility, &form, w.out, &w.cards)) {
+        dea_cards_declare(&w.cards);
         write_piece(&w);
+    } else {
+        w.cards.text.exhausted = true;
+    }
+    if (status == DEA_OK && w.cards.text.exhausted) {
+        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
     }
     dea_cards_close(&w.cards);
-    return finish(w.out, ready, text, error);
+    status = dea_memory_text_end(&memory, status, error);
+    *text = memory.text;
+    return status;
 }
 
 static bool is_linear(const dea_mobility *mobility)
@@ -178,33 +169,22 @@ static bool is_linear(const dea_mobility *mobility)
     return !isnan(mobility->stiffness);
 }
 
-static void add_vector(dea_mobility_vectors *vectors, const char *format, size_t index)
-{
-    char *name = vectors->names[vectors->count++];
-    const char *number = strchr(format, '%');
-    snprintf(name, DEA_MOBILITY_NAME, "%.*s", (int)(number ? number - format : (ptrdiff_t)strlen(format)), format);
-    if (number) {
-        const size_t used = strlen(name);
-        snprintf(name + used, DEA_MOBILITY_NAME - used, "%zu%s", index, number + 1);
-    }
-}
-
 dea_mobility_vectors dea_mobility_vectors_of(const dea_mobility *mobility)
 {
     const bool linear = is_linear(mobility);
-    dea_mobility_vectors vectors = {.count = 0};
-    add_vector(&vectors, "time", 0);
-    add_vector(&vectors, linear ? "lspring#branch" : "disp", 0);
+    dea_mobility_vectors v = {.count = 0};
+    snprintf(v.names[v.count++], DEA_MOBILITY_NAME, "time");
+    snprintf(v.names[v.count++], DEA_MOBILITY_NAME, linear ? "lspring#branch" : "disp");
     if (!mobility->displaced) {
-        add_vector(&vectors, "edge", 0);
+        snprintf(v.names[v.count++], DEA_MOBILITY_NAME, "edge");
     }
     for (size_t i = 1; i <= dea_dynamics_states(mobility->dynamics); i++) {
-        add_vector(&vectors, linear ? "lbranch%#branch" : "z%", i);
+        snprintf(v.names[v.count++], DEA_MOBILITY_NAME, linear ? "lbranch%zu#branch" : "z%zu", i);
     }
     if (mobility->dynamics->series > 0.0) {
-        add_vector(&vectors, "charge", 0);
+        snprintf(v.names[v.count++], DEA_MOBILITY_NAME, "charge");
     }
-    return vectors;
+    return v;
 }
 
 dea_mobility_state dea_mobility_read(const dea_mobility *mobility, const double *const *columns, size_t index)
@@ -225,29 +205,48 @@ dea_mobility_state dea_mobility_read(const dea_mobility *mobility, const double 
     return state;
 }
 
-dea_status dea_mobility_write_small(dea_dynamics *dynamics, const dea_mobility_bias *bias, const dea_mobility_band *band,
-                                    char **text, dea_error *error)
+double dea_deck_parts(double fineness)
 {
-    size_t length = 0;
-    const bool series = dynamics->series > 0.0;
-    const dea_cards_form form = engine_form();
-    *text = NULL;
-    FILE *out = open_memstream(text, &length);
-    if (!out) {
-        return finish(out, false, text, error);
+    return ceil(2.0 / fineness);
+}
+
+/* The library shortens a step to an eighth where Newton's method does not settle, and goes on with that for ever where rounding
+ * alone keeps it from doing so: a netlist that takes so many times its steps and so many points more behind each corner is run
+ * again with absolute tolerances so many times as large, in which its answers move by no more than that. */
+static const double collapse = 2.0;
+static const double corner_points = 100.0;
+static const double first_points = 500.0;
+static const double loosen = 100.0;
+static const double loosest = 1e4;
+
+/* Points after which the steps of a netlist have collapsed. */
+static size_t most_points(const dea_mobility_piece *piece)
+{
+    const dea_signal *signal = piece->signal;
+    double corners = 0.0;
+    for (size_t i = piece->segment; i < signal->count && signal->segments[i].from < piece->to; i++) {
+        corners += piece->parts;
     }
-    fputs("* dielectric elastomer actuator about its bias\n", out);
-    dea_cards_write_small(dynamics, bias, &form, out);
-    fprintf(out, "VSOURCE %s 0 dc 0 ac 1\n%s.save v(disp) %s\n.ac ", series ? "source" : "film", form.dialect->ac,
-            series ? "v(film)" : "i(vsource)");
-    if (band->points_per_decade > 0) {
-        fprintf(out, "dec %zu ", band->points_per_decade);
-    } else {
-        fprintf(out, "lin %zu ", band->count > 1 ? band->count : 1);
+    return (size_t)(first_points + corner_points * corners + collapse * (piece->to - piece->from) / piece->step);
+}
+
+dea_status dea_deck_run(dea_ngspice *library, dea_mobility_piece *piece, dea_deck_writer *write, const void *user,
+                        const char *const *names, size_t count, dea_ngspice_table *table, dea_error *error)
+{
+    const size_t most = most_points(piece);
+    *table = (dea_ngspice_table){0};
+    for (;;) {
+        char *text = NULL;
+        dea_status status = write(user, piece, &text, error);
+        if (status == DEA_OK) {
+            dea_ngspice_limit(library, most);
+            status = dea_ngspice_run_all(library, text, names, count, table, error);
+        }
+        free(text);
+        if (status != DEA_OK || table->count < most || !(piece->loose < loosest)) {
+            return status;
+        }
+        dea_ngspice_table_free(table);
+        piece->loose *= loosen;
     }
-    dea_part_number(out, band->from);
-    fputc(' ', out);
-    dea_part_number(out, band->to);
-    fputs("\n.end\n", out);
-    return finish(out, true, text, error);
 }

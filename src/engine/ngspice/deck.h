@@ -3,6 +3,7 @@
 #define DEA_NGSPICE_DECK_H
 
 #include "drive/signal.h"
+#include "engine/ngspice/library.h"
 #include "netlist/mobility.h"
 
 /* One piece of a transient. */
@@ -21,30 +22,31 @@ typedef struct dea_mobility_piece {
     dea_mobility_state start;
 } dea_mobility_piece;
 
-/* Frequencies: points_per_decade of a decade from `from` on; or, where they are 0, `count` evenly, or one alone. */
-typedef struct dea_mobility_band {
-    double from, to; /* [Hz] */
-    size_t points_per_decade, count;
-} dea_mobility_band;
+/* Parts of an edge that is shorter than a time step. */
+double dea_deck_parts(double fineness);
+
+/* Writes the netlist of a piece; on DEA_OK *text is for free(). */
+typedef dea_status dea_deck_writer(const void *user, const dea_mobility_piece *piece, char **text, dea_error *error);
+/* Runs a piece and reads the vectors of its plot, again and again with larger absolute tolerances, piece->loose, where the library's
+ * steps collapse. The caller frees the table, also after a failure. */
+dea_status dea_deck_run(dea_ngspice *library, dea_mobility_piece *piece, dea_deck_writer *write, const void *user,
+                        const char *const *names, size_t count, dea_ngspice_table *table, dea_error *error);
 
 /* Most vectors of a run: time, displacement, velocity, charge, branches. */
-enum { DEA_MOBILITY_VECTORS = 4 + DEA_RELAXED_MAX, DEA_MOBILITY_NAME = 24 };
+enum { DEA_MOBILITY_VECTORS = 4 + DEA_RELAXED_MAX, DEA_MOBILITY_NAME = 40 };
 
 typedef struct dea_mobility_vectors {
     char names[DEA_MOBILITY_VECTORS][DEA_MOBILITY_NAME];
     size_t count;
 } dea_mobility_vectors;
 
+/* The voltage of the source from the begin of the piece on: its segments as breakpoints, or a sine. */
+void dea_deck_source(FILE *out, const dea_mobility_piece *piece, const char *node);
 /* Netlist of one piece of a transient; on DEA_OK the caller frees *text. */
 dea_status dea_mobility_write(const dea_mobility *mobility, const dea_mobility_piece *piece, char **text, dea_error *error);
 /* The vectors of its plot, time first. */
 dea_mobility_vectors dea_mobility_vectors_of(const dea_mobility *mobility);
 /* The states of point @p index from columns in the order of the vectors. */
 dea_mobility_state dea_mobility_read(const dea_mobility *mobility, const double *const *columns, size_t index);
-
-/* Small-signal netlist about a bias, over a band; on DEA_OK the caller frees *text. Its vectors are `disp` and, with a series
- * resistance, `film`, else `vsource#branch`; the source has 1 V. */
-dea_status dea_mobility_write_small(dea_dynamics *dynamics, const dea_mobility_bias *bias, const dea_mobility_band *band,
-                                    char **text, dea_error *error);
 
 #endif

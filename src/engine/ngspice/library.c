@@ -343,12 +343,3 @@ dea_status dea_ngspice_run_all(dea_ngspice *library, const char *netlist, const 
     }
     return copied;
 }
-
-dea_status dea_ngspice_run(dea_ngspice *library, const char *netlist, const char *vector, dea_ngspice_result *result,
-                           dea_error *error)
-{
-    dea_ngspice_table table;
-    const dea_status status = dea_ngspice_run_all(library, netlist, &vector, 1, &table, error);
-    *result = (dea_ngspice_result){table.columns[0], table.count};
-    return status;
-}

@@ -7,8 +7,8 @@
 
 typedef struct dea_ngspice dea_ngspice;
 
-/* Three stresses with the most branches, and room. */
-enum { DEA_NGSPICE_COLUMNS = 256 };
+/* A membrane of 60 nodes with six branches. */
+enum { DEA_NGSPICE_COLUMNS = 1024 };
 
 /* What came of a circuit: vectors of its plot, each with a value per point, or with real and imaginary part where it is complex.
  */
@@ -16,12 +16,6 @@ typedef struct dea_ngspice_table {
     double *columns[DEA_NGSPICE_COLUMNS]; /* owned by the caller: dea_ngspice_table_free() */
     size_t count;                         /* points that were solved, may be fewer than wanted */
 } dea_ngspice_table;
-
-/* One real vector of it. */
-typedef struct dea_ngspice_result {
-    double *values; /* owned by the caller: free() */
-    size_t count;   /* points that were solved, may be fewer than wanted */
-} dea_ngspice_result;
 
 /* Writes the file name of the library that is loaded, which tells its version ("libngspice.so.0.0.6"); in any process. */
 void dea_ngspice_name(char *text, size_t size);
@@ -37,9 +31,6 @@ void dea_ngspice_limit(dea_ngspice *library, size_t points);
  * log: the netlist was refused, or the library is lost. */
 dea_status dea_ngspice_run_all(dea_ngspice *library, const char *netlist, const char *const *names, size_t name_count,
                                dea_ngspice_table *table, dea_error *error);
-/* The same for one real vector. */
-dea_status dea_ngspice_run(dea_ngspice *library, const char *netlist, const char *vector, dea_ngspice_result *result,
-                           dea_error *error);
 /* What the library said about a failure of the last run, "" where it said nothing. */
 const char *dea_ngspice_complaint(const dea_ngspice *library);
 void dea_ngspice_table_free(dea_ngspice_table *table);

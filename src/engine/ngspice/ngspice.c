@@ -5,13 +5,14 @@
 #include <stdlib.h>
 
 #include "engine/engines.h"
-#include "engine/line.h"
+#include "scene/line.h"
 #include "engine/ngspice/library.h"
 #include "engine/ngspice/moving.h"
 #include "engine/ngspice/still.h"
 #include "engine/ngspice/stretch.h"
 #include "netlist/netlist.h"
 #include "network/balance.h"
+#include "network/membrane.h"
 #include "study/study.h"
 
 enum {
@@ -41,14 +42,21 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
     if (!model->network && !model->membrane) {
         return "it has no network form that ngspice could solve";
     }
-    if (model->membrane && (scene->load.stiffness > 0.0 || scene->load.mass > 0.0)) {
-        return "its rings of film carry no load";
+    const bool still = !dea_study_of(scene)->along || dea_study_of(scene)->still;
+    if (model->membrane && still && (fabs(scene->load.force) > 0.0 || scene->antagonist.there)) {
+        return "its membrane at rest carries a spring alone, no force and no second film";
     }
-    if (model->membrane && dea_study_of(scene)->timed) {
-        return "it does not step the membrane in time";
+    if (model->membrane && scene->study == DEA_STUDY_FORCE) {
+        return "it does not hold the edge of the membrane";
+    }
+    if (model->membrane && dea_study_of(scene)->timed && dea_load_stalls(scene)) {
+        return dea_load_stalled;
     }
     if (dea_study_of(scene)->timed && scene->accuracy < 1e-6) {
         return "its trapezoidal rule is good to 1e-6 in a transient, the scene wants more";
+    }
+    if (dea_study_of(scene)->timed && model->membrane && scene->electrode.sheet_resistance > 0.0) {
+        return "its rings have one potential, not one along a sheet resistance";
     }
     return scene->accuracy < 1e-9 ? "its answers are good to 1e-9, the scene wants more" : NULL;
 }
@@ -93,18 +101,19 @@ static bool accept(line_job *job, size_t i, double u)
 }
 
 /* Solves the network of one point with its load growing from rest in so many steps; *accepted says whether its answer passes. */
-static dea_status climb(line_job *job, size_t i, dea_network *network, size_t steps, bool *accepted, dea_error *error)
+static dea_status climb(line_job *job, size_t i, const dea_scene *here, size_t steps, bool *accepted, dea_error *error)
 {
     char *netlist = NULL;
-    dea_ngspice_result result = {0};
-    dea_netlist_study study = {.ramp = steps};
+    const char *const edge = "edge";
+    dea_ngspice_table table = {0};
+    dea_netlist_study study = {.scene = here, .model = job->state->model, .ramp = steps};
     set_scales(job, i, &study);
-    dea_status status = dea_netlist_write(network, &study, &netlist, error);
+    dea_status status = dea_netlist_write(&study, &netlist, error);
     if (status == DEA_OK) {
-        status = dea_ngspice_run(job->state->library, netlist, "edge", &result, error);
+        status = dea_ngspice_run_all(job->state->library, netlist, &edge, 1, &table, error);
     }
-    *accepted = status == DEA_OK && result.count == steps + 1 && accept(job, i, result.values[steps]);
-    free(result.values);
+    *accepted = status == DEA_OK && table.count == steps + 1 && accept(job, i, table.columns[0][steps]);
+    dea_ngspice_table_free(&table);
     free(netlist);
     return status;
 }
@@ -120,7 +129,7 @@ static dea_status solve_alone(void *user, size_t i, dea_error *error)
     if (!dea_balance_valid(&job->balance, symbol)) {
         return DEA_OK;
     }
-    if (dea_balance_forces(&job->balance, symbol, 0.0).load == 0.0 && accept(job, i, 0.0)) {
+    if (!job->balance.steady && dea_balance_forces(&job->balance, symbol, 0.0).load == 0.0 && accept(job, i, 0.0)) {
         return DEA_OK;
     }
     if (dea_balance_folds(&job->balance, symbol, &share, &fold)) {
@@ -131,25 +140,28 @@ static dea_status solve_alone(void *user, size_t i, dea_error *error)
     if (job->line->axis) {
         dea_axis_set(job->line->axis, &here, symbol);
     }
-    dea_network network;
     bool accepted = false;
-    dea_status status = dea_network_build(&here, job->state->model, NULL, &network, error);
+    dea_status status = DEA_OK;
     for (size_t steps = RAMP_STEPS; status == DEA_OK && !accepted && steps <= RAMP_STEPS_MOST; steps *= RAMP_REFINED) {
-        status = climb(job, i, &network, steps, &accepted, error);
+        status = climb(job, i, &here, steps, &accepted, error);
     }
-    dea_network_free(&network);
     return status;
 }
 
 /* One circuit for count points from number @p from of the line on. */
-static dea_status sweep_circuit(line_job *job, size_t from, size_t count, dea_ngspice_result *result, dea_error *error)
+static dea_status sweep_circuit(line_job *job, size_t from, size_t count, dea_ngspice_table *table, dea_error *error)
 {
+    const char *const edge = "edge";
     char *netlist;
-    dea_netlist_study study = {.axis = job->line->axis, .from = job->line->from + from, .count = count};
+    dea_netlist_study study = {.scene = job->scene,
+                               .model = job->state->model,
+                               .axis = job->line->axis,
+                               .from = job->line->from + from,
+                               .count = count};
     set_scales(job, from, &study);
-    dea_status status = dea_netlist_write(&job->network, &study, &netlist, error);
+    dea_status status = dea_netlist_write(&study, &netlist, error);
     if (status == DEA_OK) {
-        status = dea_ngspice_run(job->state->library, netlist, "edge", result, error);
+        status = dea_ngspice_run_all(job->state->library, netlist, &edge, 1, table, error);
         free(netlist);
     }
     return status;
@@ -160,20 +172,20 @@ static bool can_start(void *user, size_t i)
     line_job *job = user;
     double share, fold;
     const double symbol = symbol_at(job, i);
-    return dea_balance_valid(&job->balance, symbol) && dea_balance_forces(&job->balance, symbol, 0.0).load != 0.0 &&
-           !dea_balance_folds(&job->balance, symbol, &share, &fold);
+    const bool moves = job->balance.steady || dea_balance_forces(&job->balance, symbol, 0.0).load != 0.0;
+    return dea_balance_valid(&job->balance, symbol) && moves && !dea_balance_folds(&job->balance, symbol, &share, &fold);
 }
 
 static dea_status sweep_stretch(void *user, size_t from, size_t count, size_t *good, dea_error *error)
 {
     line_job *job = user;
-    dea_ngspice_result result = {0};
+    dea_ngspice_table table = {0};
     *good = 0;
-    const dea_status status = sweep_circuit(job, from, count, &result, error);
-    while (*good < result.count && accept(job, from + *good, result.values[*good])) {
+    const dea_status status = sweep_circuit(job, from, count, &table, error);
+    while (*good < table.count && accept(job, from + *good, table.columns[0][*good])) {
         ++*good;
     }
-    free(result.values);
+    dea_ngspice_table_free(&table);
     return status;
 }
 
@@ -235,7 +247,8 @@ const dea_engine dea_engine_ngspice = {
     .block = 5000,
     .omits = ~0u,
     .costs = {[DEA_STUDY_SWEEP] = {0, 4e-6, 1e-5, 1e-4},
-              [DEA_STUDY_TRANSIENT] = {[DEA_FORM_LINEAR] = 0.1, [DEA_FORM_HYPERELASTIC] = 0.2},
+              [DEA_STUDY_TRANSIENT] = {[DEA_FORM_LINEAR] = 0.1, [DEA_FORM_HYPERELASTIC] = 0.2, [DEA_FORM_MEMBRANE] = 4.0},
+              [DEA_STUDY_FORCE] = {[DEA_FORM_LINEAR] = 1e-2, [DEA_FORM_HYPERELASTIC] = 1e-2},
               [DEA_STUDY_AC] = {[DEA_FORM_LINEAR] = 1e-2, [DEA_FORM_HYPERELASTIC] = 1e-2, [DEA_FORM_MEMBRANE] = 0.1}},
     .library = dea_ngspice_name,
     .refuses = refuses,
@@ -243,5 +256,6 @@ const dea_engine dea_engine_ngspice = {
     .sweep = sweep,
     .transient = transient,
     .ac = ac,
+    .solves = {[DEA_STUDY_FORCE] = dea_ngspice_force},
     .end = end,
 };

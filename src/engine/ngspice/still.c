@@ -13,7 +13,7 @@
 #include "netlist/rings_line.h"
 #include "netlist/part_text.h"
 #include "network/still.h"
-#include "support/text.h"
+#include "support/memory_text.h"
 
 enum { LONGEST_SWEEP = 100000, LONGEST_LIST = 64, RAMP_STEPS = 32, RAMP_REFINED = 16, RAMP_MOST = RAMP_STEPS * RAMP_REFINED * RAMP_REFINED };
 
@@ -134,14 +134,13 @@ static double least_strain(line_job *job, size_t from, size_t count)
 static dea_status write_deck(const dea_rings_line *line, const line_job *job, size_t from, size_t to, double strain, char **text,
                              dea_error *error)
 {
-    size_t length = 0;
-    *text = NULL;
-    FILE *out = open_memstream(text, &length);
-    dea_status status = out ? DEA_OK : DEA_ERROR_MEMORY;
-    if (out) {
+    dea_memory_text memory;
+    dea_status status = dea_memory_text_begin(&memory, error);
+    FILE *out = memory.out;
+    if (status == DEA_OK) {
         fputs("* exact membrane as a network of rings\n", out);
         status = dea_rings_line_write(line, dea_dialect_at(0), out, error);
-        fputs("vindex k 0 0\n.options itl1=100 itl2=100 gminsteps=0 srcsteps=0 reltol=", out);
+        fputs("VINDEX k 0 0\n.options itl1=100 itl2=100 gminsteps=0 srcsteps=0 reltol=", out);
         dea_part_number(out, fmin(1e-7, job->accuracy));
         fputs(" vntol=", out);
         dea_part_number(out, 1e-11 * strain);
@@ -151,14 +150,11 @@ static dea_status write_deck(const dea_rings_line *line, const line_job *job, si
         for (size_t n = 1; n < line->mesh.disc + line->mesh.annulus; n++) {
             fprintf(out, " v(xline%zu.u%zu)", line->number, n);
         }
-        fprintf(out, "\n.dc vindex %zu %zu 1\n.end\n", from, to);
+        fprintf(out, "\n.dc VINDEX %zu %zu 1\n.end\n", from, to);
     }
-    if (!dea_text_close(out) || status != DEA_OK) {
-        free(*text);
-        *text = NULL;
-        return status == DEA_OK ? dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written") : status;
-    }
-    return DEA_OK;
+    status = dea_memory_text_end(&memory, status, error);
+    *text = memory.text;
+    return status;
 }
 
 /* Runs a circuit and reads the displacements of its nodes over r; the caller frees the table, also after a failure. */

@@ -3,7 +3,7 @@
 #define DEA_NGSPICE_STILL_H
 
 #include "deaspice/model.h"
-#include "engine/line.h"
+#include "scene/line.h"
 #include "engine/ngspice/library.h"
 
 /* Solves the points of a line; its rows are those of @p rows that the line says. */

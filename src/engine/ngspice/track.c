@@ -7,18 +7,6 @@
 /* Most time steps of one netlist: what its plot takes of memory. */
 static const double most_steps = 300000.0;
 
-/* The library shortens a step to an eighth where Newton's method does not settle, and goes on with that for ever where rounding
- * alone keeps it from doing so: a netlist that takes so many times its steps and so many points more behind each corner is run
- * again with absolute tolerances so many times as large, in which its answers move by no more than that. */
-static const double collapse = 2.0;
-static const double corner_points = 100.0;
-static const double first_points = 500.0;
-static const double loosen = 100.0;
-static const double loosest = 1e4;
-
-/* Parts of an edge that is shorter than a time step, at fineness 1. */
-static const double edge_parts = 2.0;
-
 /* Share of a step within which a film charges at once. */
 static const double at_once = 1e-2;
 
@@ -80,7 +68,7 @@ double dea_route_voltage(const dea_route *route, double source, double u, double
 /* m u'' = phi U^2 less what the film holds, its damper too. */
 static double acceleration(const dea_dynamics *d, const dea_edge *e, const node *n)
 {
-    const double held = dea_edge_held(d, e, n->state.z) + d->retardation * dea_edge_viscous(d, e) * n->moment.v;
+    const double held = dea_edge_held(d, e, n->state.z) + dea_edge_resistance(d, e) * n->moment.v;
     return (e->push * n->moment.voltage * n->moment.voltage - held) / d->mass;
 }
 
@@ -104,8 +92,8 @@ static void set_rates(const runner *r, node *n, const slopes *slope)
     }
 }
 
-/* Velocity of a film without mass, or of one whose ring has died away: what is left of that would count too much over a long
- * step. */
+/* Velocity of a film without mass, or, at a point without neighbours, of one whose ring has died away: what is left of that would
+ * count too much over a long step. */
 static void set_velocity(const runner *r, const dea_edge *e, node *n)
 {
     dea_dynamics *d = r->route->slow;
@@ -163,7 +151,7 @@ static void follow_source(const runner *r, const dea_edge *e, node *n)
 /* True where the equation of motion itself gives the velocity's slope. */
 static bool is_heavy(const runner *r)
 {
-    return r->route->dynamics->mass > 0.0 && !r->slow && !r->fast.u;
+    return r->route->dynamics->mass > 0.0 && !r->fast.u;
 }
 
 /* A state at a time inside the segment, with the slopes of what is too fast for the steps, NULL: all is resolved. The velocity of
@@ -580,14 +568,15 @@ static dea_mobility_state scaled(dea_mobility_state state, double speed)
 }
 
 /* Which rates the steps do not resolve: a branch; a film that charges, but for what follow_source() sees; the velocity of a
- * damper that bridges springs, r/K, or that a damper holds against the mass, m/r. */
+ * damper that bridges springs, r/K, or that a damper holds against the mass, m/r, or of a film whose dead ring the steps pass over:
+ * one that stiffens as it moves may be kicked into another, which its balance without mass would not show. */
 static void find_fast(runner *r)
 {
     dea_dynamics *d = r->route->dynamics;
     const dea_edge e = dea_dynamics_edge(d, r->last.moment.u);
-    const double resistance = d->retardation * dea_edge_viscous(d, &e), limit = r->step / alternating;
+    const double resistance = dea_edge_resistance(d, &e), limit = r->step / alternating;
     const double held = dea_dynamics_stiffness(d, r->last.moment.u, r->last.moment.voltage, false);
-    const double heavy = d->mass > 0.0 ? (r->rings || r->slow ? (double)INFINITY : d->mass / resistance) : resistance / held;
+    const double heavy = r->slow ? 0.0 : d->mass > 0.0 ? (r->rings ? (double)INFINITY : d->mass / resistance) : resistance / held;
     r->fast =
         (fast_rates){.u = !dea_dynamics_is_free(d) && heavy<limit, .charge = d->series> 0.0 && d->series * e.capacitance < limit && !r->rings};
     r->fast.any = r->fast.u || r->fast.charge;
@@ -676,53 +665,26 @@ static void absorb(runner *r, const dea_ngspice_table *table, double from, doubl
     r->track->end = verdict(r);
 }
 
-/* Points after which the steps of a netlist have collapsed. */
-static size_t most_points(const runner *r, const dea_mobility_piece *piece)
-{
-    const dea_signal *signal = piece->signal;
-    double corners = 0.0;
-    for (size_t i = piece->segment; i < signal->count && signal->segments[i].from < piece->to; i++) {
-        corners += r->parts;
-    }
-    return (size_t)(first_points + corner_points * corners + collapse * (piece->to - piece->from) / piece->step);
-}
-
 _Static_assert((int)DEA_MOBILITY_VECTORS <= (int)DEA_NGSPICE_COLUMNS, "a table holds all vectors of a piece");
 
-/* Runs a netlist; true in *collapsed where it was ended since its steps had collapsed. */
-static dea_status run_once(const runner *r, const dea_mobility_piece *piece, dea_ngspice_table *table, bool *collapsed,
-                           dea_error *error)
+static dea_status write_piece(const void *user, const dea_mobility_piece *piece, char **text, dea_error *error)
 {
-    const char *names[DEA_MOBILITY_VECTORS];
-    const dea_mobility_vectors vectors = dea_mobility_vectors_of(r->route->mobility);
-    const size_t most = most_points(r, piece);
-    char *netlist = NULL;
-    for (size_t i = 0; i < vectors.count; i++) {
-        names[i] = vectors.names[i];
-    }
-    dea_status status = dea_mobility_write(r->route->mobility, piece, &netlist, error);
-    if (status == DEA_OK) {
-        dea_ngspice_limit(r->route->library, most);
-        status = dea_ngspice_run_all(r->route->library, netlist, names, vectors.count, table, error);
-    }
-    *collapsed = status == DEA_OK && table->count >= most;
-    free(netlist);
-    return status;
+    return dea_mobility_write(user, piece, text, error);
 }
 
 static dea_status run_netlist(runner *r, double to, double step, dea_error *error)
 {
+    const dea_mobility *mobility = r->route->mobility;
+    const dea_mobility_vectors vectors = dea_mobility_vectors_of(mobility);
+    const char *names[DEA_MOBILITY_VECTORS];
     dea_mobility_piece piece;
-    dea_ngspice_table table = {0};
-    bool collapsed = false;
-    set_piece(r, &piece, to, step);
-    dea_status status = run_once(r, &piece, &table, &collapsed, error);
-    while (collapsed && r->loose < loosest) {
-        dea_ngspice_table_free(&table);
-        r->loose *= loosen;
-        piece.loose = r->loose;
-        status = run_once(r, &piece, &table, &collapsed, error);
+    dea_ngspice_table table;
+    for (size_t i = 0; i < vectors.count; i++) {
+        names[i] = vectors.names[i];
     }
+    set_piece(r, &piece, to, step);
+    const dea_status status = dea_deck_run(r->route->library, &piece, write_piece, mobility, names, vectors.count, &table, error);
+    r->loose = piece.loose;
     if (status == DEA_OK) {
         absorb(r, &table, piece.from, to);
     }
@@ -777,16 +739,13 @@ static bool start(runner *r)
     dea_dynamics *d = route->dynamics;
     const double source = route->signal->segments[0].start;
     dea_mobility_state state = {0};
-    double voltage = 0.0;
-    if (route->scene->transient.from_bias) {
-        voltage = d->series > 0.0 ? dea_dynamics_rest(d, source) : source;
-        if (!dea_dynamics_equilibrium(d, voltage, &state.u)) {
-            return false;
-        }
-        const dea_edge e = dea_dynamics_edge(d, state.u);
-        state.charge = e.capacitance * voltage;
-        dea_edge_relax(d, &e, state.z);
+    double voltage;
+    if (!dea_dynamics_begin(d, d->biased, source, &state.u, &voltage)) {
+        return false;
     }
+    const dea_edge e = dea_dynamics_edge(d, state.u);
+    state.charge = e.capacitance * voltage;
+    dea_edge_relax(d, &e, state.z);
     r->last = node_at(r, 0.0, &state, NULL);
     r->track->start = state;
     r->track->first = r->last.moment;
@@ -810,7 +769,7 @@ static bool is_vague(const runner *r)
 
 dea_status dea_track_run(const dea_route *route, double fineness, dea_track *track, dea_error *error)
 {
-    runner r = {.route = route, .track = track, .speed = 1.0, .loose = 1.0, .parts = ceil(edge_parts / fineness)};
+    runner r = {.route = route, .track = track, .speed = 1.0, .loose = 1.0, .parts = dea_deck_parts(fineness)};
     *track = (dea_track){.end = DEA_STATE_OK};
     track->points = malloc(route->samples * sizeof *track->points);
     if (!track->points) {

@@ -496,7 +496,7 @@ static void fill_samples(const dea_route *route, const levels *l, dea_sample *sa
 static dea_pace pace_of_run(dea_dynamics *d, const dea_signal *signal)
 {
     double u;
-    dea_pace pace = dea_pace_of(d, 0.0, 0.0);
+    dea_pace pace = dea_pace_of(d, isnan(d->rest) ? 0.0 : d->rest, 0.0);
     if (dea_dynamics_equilibrium(d, signal->largest, &u)) {
         const dea_pace other = dea_pace_of(d, u, signal->largest);
         pace.omega = fmax(pace.omega, other.omega);
@@ -521,17 +521,24 @@ static double film_voltage(dea_dynamics *d, const dea_transient *transient, cons
     return fmin(signal->largest, first + area / (d->series * dea_dynamics_edge(d, 0.0).capacitance));
 }
 
+/* r/K of damper and load at rest [s]. */
+static double damper_time(dea_dynamics *d)
+{
+    const dea_edge e = dea_dynamics_edge(d, 0.0);
+    return d->retardation + d->damping / fabs(dea_edge_held_slope(d, &e, NULL));
+}
+
 /* A displacement that is large for this run: the film may be too viscous or too heavy to follow within it [m]. */
 static double scale_of(dea_dynamics *d, const dea_transient *transient, double voltage)
 {
     const double still = dea_dynamics_scale(d, voltage);
     const double time = transient->until;
     double share = 1.0;
-    if (transient->from_bias) {
+    if (transient->from_bias || d->rest != 0.0) {
         return still;
     }
-    if (d->retardation > 0.0) {
-        share = fmin(share, time / d->retardation);
+    if (dea_dynamics_is_damped(d)) {
+        share = fmin(share, time / damper_time(d));
     }
     if (d->mass > 0.0) {
         share = fmin(share, 0.5 * time * time * dea_dynamics_stiffness(d, 0.0, 0.0, false) / d->mass);
@@ -670,6 +677,7 @@ static dea_status run_inside(dea_ngspice *library, const dea_scene *scene, const
         dea_dynamics slow = dynamics; /* borrows what the other owns */
         slow.mass = 0.0;
         slow.retardation = dynamics.mass > 0.0 ? 0.0 : dynamics.retardation;
+        slow.damping = dynamics.mass > 0.0 ? 0.0 : dynamics.damping;
         dea_route route = {.library = library,
                            .slow = &slow,
                            .scene = scene,
@@ -692,7 +700,7 @@ static double own_time(dea_dynamics *d, const dea_scene *scene)
     if (d->mass > 0.0) {
         return sqrt(d->mass / fabs(dea_dynamics_stiffness(d, 0.0, 0.0, false)));
     }
-    return d->retardation > 0.0 ? d->retardation : scene->transient.until;
+    return dea_dynamics_is_damped(d) ? damper_time(d) : scene->transient.until;
 }
 
 dea_status dea_ngspice_units(const dea_scene *scene, const dea_model *model, dea_units *units, dea_error *error)
@@ -723,14 +731,15 @@ dea_status dea_ngspice_transient(dea_ngspice *library, const dea_scene *scene, c
     dea_units units;
     dea_scene inside;
     *summary = dea_summary_failed();
-    dea_status status = dea_ngspice_units(scene, model, &units, error);
+    dea_status status = (model->membrane ? dea_ngspice_units_rings : dea_ngspice_units)(scene, model, &units, error);
     if (status == DEA_OK) {
         status = dea_units_enter(&units, scene, &inside, error);
     }
     if (status != DEA_OK) {
         return status;
     }
-    status = run_inside(library, &inside, model, units.time, samples, summary, error);
+    status = model->membrane ? dea_ngspice_transient_rings(library, &inside, model, samples, summary, error)
+                             : run_inside(library, &inside, model, units.time, samples, summary, error);
     dea_units_leave(&inside);
     if (status != DEA_OK) {
         return status;

@@ -12,19 +12,33 @@ static double unit_for(double size)
     return size > 0.0 && isfinite(size) ? ldexp(1.0, -ilogb(size)) : 1.0;
 }
 
+/* Of these units of stress and force. */
+static dea_units units_from(const dea_sizes *sizes, double stress, double force)
+{
+    const double length = unit_for(sizes->displacement);
+    return (dea_units){.length = length,
+                       .thickness = force / (stress * length),
+                       .stress = stress,
+                       .voltage = unit_for(sizes->voltage),
+                       .time = unit_for(sizes->time)};
+}
+
 /* The force is a stress on an area of length times thickness. Where the springs are linear no stress stands for itself. */
 dea_units dea_units_of(dea_dynamics *dynamics, const dea_sizes *sizes)
 {
     const dea_edge rest = dea_dynamics_edge(dynamics, 0.0);
     const double stress = fabs(rest.stress_slope[0]) * sizes->displacement;
     const double force = unit_for(dea_edge_viscous(dynamics, &rest) * sizes->displacement);
-    dea_units units = {.length = unit_for(sizes->displacement),
-                       .thickness = 1.0,
-                       .voltage = unit_for(sizes->voltage),
-                       .time = unit_for(sizes->time)};
-    units.stress = dynamics->linear ? force / units.length : unit_for(stress);
-    units.thickness = force / (units.stress * units.length);
-    return units;
+    return units_from(sizes, dynamics->linear ? force / unit_for(sizes->displacement) : unit_for(stress), force);
+}
+
+dea_units dea_units_of_rings(const dea_membrane *membrane, const dea_membrane_rest *rest, const dea_sizes *sizes)
+{
+    const dea_dynamics *d = &membrane->film;
+    const dea_film *film = &d->point.film;
+    const double stress = (1.0 + d->held) * film->square * film->w11 * sizes->displacement / d->radius;
+    const double force = fabs(rest->force) * sizes->voltage * sizes->voltage;
+    return units_from(sizes, unit_for(stress), unit_for(force));
 }
 
 /* m u'' is a force, phi U^2 too: rho H r^2 u/t^2 and eps (U/H)^2 H r. */
@@ -118,6 +132,12 @@ dea_status dea_units_enter(const dea_units *units, const dea_scene *scene, dea_s
     enter_law(units, inside->electrode.law, inside->electrode.constants);
     inside->load.mass *= units->stress * units->thickness * units->time * units->time;
     inside->load.stiffness *= units->stress * units->thickness;
+    inside->load.damping *= units->stress * units->thickness * units->time;
+    inside->load.force *= units->stress * units->thickness * units->length;
+    inside->antagonist.frame_radius *= units->length;
+    inside->antagonist.film_thickness *= units->thickness;
+    inside->antagonist.voltage *= units->voltage;
+    enter_material(units, &inside->antagonist.material);
     enter_material(units, &inside->material);
     inside->drive.series_resistance *= resistance(units);
     inside->drive.leakage_resistance *= resistance(units);

@@ -4,7 +4,7 @@
 #ifndef DEA_NGSPICE_UNITS_H
 #define DEA_NGSPICE_UNITS_H
 
-#include "network/dynamics.h"
+#include "network/membrane.h"
 
 /* What a number in SI is multiplied by. The permittivity follows from the others, so that strains stay as they are. */
 typedef struct dea_units {
@@ -24,6 +24,8 @@ typedef struct dea_sizes {
 
 /* Units in which these sizes, and the force that goes with them, are 1. */
 dea_units dea_units_of(dea_dynamics *dynamics, const dea_sizes *sizes);
+/* Units in which these sizes are 1, and so are the stresses of a membrane that goes with them and its force under the voltage. */
+dea_units dea_units_of_rings(const dea_membrane *membrane, const dea_membrane_rest *rest, const dea_sizes *sizes);
 
 /* The scene in these units. It borrows all but the points of its waveform; on DEA_OK the caller ends it with dea_units_leave().
  * DEA_ERROR_MEMORY. */

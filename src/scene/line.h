@@ -1,8 +1,8 @@
 /** @file line.h
  * A block of a sweep as straight lines of points: along a line only one axis moves, so that one network serves all of its points.
  */
-#ifndef DEA_ENGINE_LINE_H
-#define DEA_ENGINE_LINE_H
+#ifndef DEA_SCENE_LINE_H
+#define DEA_SCENE_LINE_H
 
 #include "deaspice/scene.h"
 

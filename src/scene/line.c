@@ -1,4 +1,4 @@
-#include "engine/line.h"
+#include "scene/line.h"
 
 /* Points between neighbours along axis number @p axis: product of the lengths of the faster axes. */
 static size_t stride_of(const dea_scene *scene, size_t axis)

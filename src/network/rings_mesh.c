@@ -1,0 +1,83 @@
+#include "network/rings_mesh.h"
+
+#include <math.h>
+
+/* Coverage below which the annulus, much longer than its inner radius, has its nodes even in ln R. */
+static const double small_disc = 0.1;
+
+static const double doubt = 1.5;         /* most that the error of the better of two runs is taken for, over their difference */
+static const double certainty = 0.75;    /* the same where the film is smooth */
+static const double smooth_enough = 1.0; /* of smoothness over the spacing of the nodes */
+
+static const double resolved = 0.25; /* of the root of a front's width, over the spacing of nodes that follow it */
+
+/* Time over which all waves are smooth, over the time that one takes from centre to frame [1]. */
+static double smoothness(const dea_membrane *m, const dea_membrane_rest *rest)
+{
+    const double crossing = 3.83 / rest->slowest; /* J1(3.83) = 0 at the frame */
+    const double charging = m->film.series * rest->capacitance;
+    const double waves = m->heavy ? fmax(2.0 * DEA_PI * m->film.retardation, charging) / crossing : INFINITY;
+    return fmin(resolved * sqrt(m->sheet.front), waves); /* nodes lie closer to the rim by their number squared */
+}
+
+/* Share of the nodes that an element takes that is so long, of two. */
+static size_t degree_of(double nodes, double length, double least)
+{
+    return (size_t)fmin(DEA_RINGS_DEGREE, fmax(least, ceil(nodes * (0.4 + 1.2 * length))));
+}
+
+/* Without waves the disc is uniform, and the annulus wants its nodes even in ln R (physics: section 7, the table of statics). */
+static dea_rings_mesh quiet_mesh(double nodes, double coverage)
+{
+    const double decades = log(1.0 / coverage);
+    const double degree = ceil(nodes * (0.5 + 0.1 * decades) - 1.0 + 0.4 * decades);
+    return (dea_rings_mesh){1, (size_t)fmin(DEA_RINGS_DEGREE, fmax(3.0, degree)), true};
+}
+
+/* Nothing travels through a film without mass, but for charge through the resistance of its electrodes. */
+static bool is_quiet(const dea_scene *scene, dea_point *point)
+{
+    dea_film_prepare(scene, &point->film);
+    dea_point_place(scene, point);
+    const bool heavy = !scene->reduction.mass && dea_point_mass(scene, point) > 0.0;
+    return !heavy && !(scene->electrode.sheet_resistance > 0.0);
+}
+
+dea_rings_mesh dea_rings_mesh_of(const dea_scene *scene, double nodes)
+{
+    dea_point point;
+    const bool quiet = is_quiet(scene, &point);
+    const double b = point.coverage;
+    const dea_rings_mesh mesh = {degree_of(nodes, b, 3.0), degree_of(nodes, 1.0 - b, 3.0), b < small_disc};
+    return quiet ? quiet_mesh(nodes, b) : mesh;
+}
+
+dea_rings_mesh dea_rings_usual_mesh(const dea_scene *scene)
+{
+    const dea_actuator *actuator = &scene->actuator;
+    const double coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
+    return (dea_rings_mesh){8, 16, coverage < small_disc};
+}
+
+bool dea_rings_stays_rough(const dea_scene *scene, const dea_model *model)
+{
+    dea_membrane m;
+    dea_membrane_rest rest;
+    return dea_membrane_open(scene, model, dea_rings_usual_mesh(scene), &m, NULL) == DEA_OK && dea_membrane_at_rest(&m, &rest) &&
+           !(smoothness(&m, &rest) * DEA_RINGS_DEGREE > smooth_enough);
+}
+
+double dea_rings_first_nodes(double accuracy)
+{
+    return 2.5 - 1.45 * log10(accuracy);
+}
+
+double dea_rings_more_nodes(const dea_membrane *m, const dea_membrane_rest *rest, double nodes)
+{
+    return smoothness(m, rest) * nodes > smooth_enough ? nodes + 2.0 : 1.5 * nodes;
+}
+
+double dea_rings_mesh_trust(const dea_membrane *m, const dea_membrane_rest *rest, double nodes)
+{
+    return smoothness(m, rest) * nodes > smooth_enough ? certainty : doubt;
+}

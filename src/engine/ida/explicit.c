@@ -63,7 +63,7 @@ static int rates(sunrealtype time, N_Vector w, N_Vector wp, void *user)
  * two runs could see. In a frame that does not turn, no more than a part of the ring either. */
 static double longest_step(const dea_flight *flight)
 {
-    const dea_ring *ring = flight->ring;
+    const dea_rotation *ring = flight->ring;
     const double tolerance = flight->tolerance;
     const double lines = flight->motion.segment->step;
     double sampled = flight->scene->transient.every * pow(tolerance / flight->loosest, 1.0 / 7.0);

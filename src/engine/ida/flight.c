@@ -196,7 +196,7 @@ static bool jump(dea_flight *flight)
 /* Runge-Kutta's states between steps are too coarse to cut at. */
 static bool suits(const dea_flight *flight)
 {
-    const dea_ring *ring = flight->ring;
+    const dea_rotation *ring = flight->ring;
     if (isfinite(flight->motion.dynamics->limit)) {
         return false;
     }
@@ -224,7 +224,7 @@ double dea_flight_short_line(dea_flight *flight)
  * periods are no more than a run can take and nothing else is much faster. */
 static double explicit_time(const dea_flight *flight)
 {
-    const dea_ring *ring = flight->ring;
+    const dea_rotation *ring = flight->ring;
     const dea_segment *segment = flight->motion.segment;
     const double width = segment->to - segment->from;
     if (!suits(flight)) {

@@ -25,7 +25,7 @@ typedef struct dea_flight {
     const dea_scene *scene; /* borrowed, as signal */
     const dea_signal *signal;
     dea_motion motion;
-    dea_ring *ring;            /* owned */
+    dea_rotation *ring;            /* owned */
     dea_integrator integrator; /* owned */
     N_Vector between;          /* owned: w between two steps */
     size_t rows;

@@ -79,7 +79,7 @@ static const double *unknowns_at(const dea_flight *flight, double time, int deri
 static void take_current(const dea_flight *flight, double time, dea_turn turn, const double *w, dea_moment *moment)
 {
     const dea_motion *motion = &flight->motion;
-    const dea_ring *ring = flight->ring;
+    const dea_rotation *ring = flight->ring;
     double step, rate[DEA_MOTION_MOST], y[DEA_MOTION_MOST];
     if (motion->q < 0 || flight->integrator.sun->IDAGetLastStep(flight->integrator.ida, &step) != IDA_SUCCESS ||
         step * motion->signal->largest < motion->dynamics->series * motion->size[motion->q]) {
@@ -282,7 +282,7 @@ static double current_at(void *user, double time)
 /* Sees the current over a step: in a frame that turns, radian by radian while the tolerance sees the ring. */
 static void see_current(dea_flight *flight, double before, double time)
 {
-    const dea_ring *ring = flight->ring;
+    const dea_rotation *ring = flight->ring;
     const double begin = flight->motion.segment->from;
     const double *w = NV_DATA_S(flight->integrator.y);
     const bool lives = ring->turns && hypot(w[0], w[1]) > flight->tolerance;

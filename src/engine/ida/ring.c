@@ -25,7 +25,7 @@ static void multiply(int n, const double *a, const double *x, double *out)
 }
 
 /* X from the right and left eigenvectors x, l of the pair: y = Re(x a) + what l^H leaves of the other unit vectors. */
-static void build_basis(const double *right, const double *left, dea_ring *ring)
+static void build_basis(const double *right, const double *left, dea_rotation *ring)
 {
     const int n = ring->n;
     const double *xr = right, *xi = right + n;
@@ -51,7 +51,7 @@ static void build_basis(const double *right, const double *left, dea_ring *ring)
     }
 }
 
-static bool invert(dea_ring *ring)
+static bool invert(dea_rotation *ring)
 {
     const int n = ring->n;
     lapack_int pivots[N];
@@ -61,7 +61,7 @@ static bool invert(dea_ring *ring)
 }
 
 /* X^-1 J X - Omega. */
-static void turn_jacobian(const double *jacobian, dea_ring *ring)
+static void turn_jacobian(const double *jacobian, dea_rotation *ring)
 {
     const int n = ring->n;
     double column[N];
@@ -74,7 +74,7 @@ static void turn_jacobian(const double *jacobian, dea_ring *ring)
 }
 
 /* Eigenvalues and eigenvectors of the Jacobian: the pair that turns fastest, and what else there is. */
-static int find_pair(const double *real, const double *imaginary, dea_ring *ring)
+static int find_pair(const double *real, const double *imaginary, dea_rotation *ring)
 {
     int pair = 0;
     for (int i = 1; i < ring->n; i++) {
@@ -91,7 +91,7 @@ static int find_pair(const double *real, const double *imaginary, dea_ring *ring
     return pair;
 }
 
-void dea_ring_stop(dea_ring *ring)
+void dea_ring_stop(dea_rotation *ring)
 {
     ring->turns = false;
 }
@@ -110,7 +110,7 @@ static bool find_center(const dea_motion *motion, double *center)
     return motion->q < 0 || largest < far_away || dea_motion_start(motion, false, center);
 }
 
-void dea_ring_find(const dea_motion *motion, dea_ring *ring)
+void dea_ring_find(const dea_motion *motion, dea_rotation *ring)
 {
     const dea_segment *segment = motion->segment;
     const int n = ring->n = motion->count;
@@ -136,13 +136,13 @@ void dea_ring_find(const dea_motion *motion, dea_ring *ring)
     }
 }
 
-dea_turn dea_ring_turn(const dea_ring *ring, double time, double angle)
+dea_turn dea_ring_turn(const dea_rotation *ring, double time, double angle)
 {
     const double whole = ring->omega * time + angle;
     return ring->turns ? (dea_turn){cos(whole), sin(whole)} : (dea_turn){1.0, 0.0};
 }
 
-void dea_ring_state(const dea_ring *ring, dea_turn turn, const double *w, double *y)
+void dea_ring_state(const dea_rotation *ring, dea_turn turn, const double *w, double *y)
 {
     const int n = ring->n;
     double turned[N];
@@ -166,7 +166,7 @@ static void turn_back(dea_turn turn, double *w)
     w[0] = first;
 }
 
-void dea_ring_unknowns(const dea_ring *ring, dea_turn turn, const double *y, double *w)
+void dea_ring_unknowns(const dea_rotation *ring, dea_turn turn, const double *y, double *w)
 {
     const int n = ring->n;
     double change[N];
@@ -181,7 +181,7 @@ void dea_ring_unknowns(const dea_ring *ring, dea_turn turn, const double *y, dou
     turn_back(turn, w);
 }
 
-void dea_ring_rates(const dea_ring *ring, dea_turn turn, const double *w, const double *f, double *rates)
+void dea_ring_rates(const dea_rotation *ring, dea_turn turn, const double *w, const double *f, double *rates)
 {
     const int n = ring->n;
     if (!ring->turns) {

@@ -10,7 +10,7 @@
 
 #include "engine/ida/motion.h"
 
-typedef struct dea_ring {
+typedef struct dea_rotation {
     int n;
     bool light;     /* the segment holds a lightly damped ring */
     bool turns;     /* and its voltage rests, else y = w */
@@ -21,7 +21,7 @@ typedef struct dea_ring {
     double basis[DEA_MOTION_MOST * DEA_MOTION_MOST];    /* X, column by column, as all matrices here */
     double inverse[DEA_MOTION_MOST * DEA_MOTION_MOST];  /* X^-1 */
     double jacobian[DEA_MOTION_MOST * DEA_MOTION_MOST]; /* of w' at the equilibrium */
-} dea_ring;
+} dea_rotation;
 
 /* Cosine and sine of the angle by which R turns. */
 typedef struct dea_turn {
@@ -29,14 +29,14 @@ typedef struct dea_turn {
 } dea_turn;
 
 /* Looks for the ring of the motion's segment; none is no failure. */
-void dea_ring_find(const dea_motion *motion, dea_ring *ring);
+void dea_ring_find(const dea_motion *motion, dea_rotation *ring);
 /* Makes y = w. */
-void dea_ring_stop(dea_ring *ring);
+void dea_ring_stop(dea_rotation *ring);
 /* R at a time; an angle on top turns the ring and leaves all else. */
-dea_turn dea_ring_turn(const dea_ring *ring, double time, double angle);
+dea_turn dea_ring_turn(const dea_rotation *ring, double time, double angle);
 /* w to y, y to w, and f to w'. In and out may not overlap. */
-void dea_ring_state(const dea_ring *ring, dea_turn turn, const double *w, double *y);
-void dea_ring_unknowns(const dea_ring *ring, dea_turn turn, const double *y, double *w);
-void dea_ring_rates(const dea_ring *ring, dea_turn turn, const double *w, const double *f, double *rates);
+void dea_ring_state(const dea_rotation *ring, dea_turn turn, const double *w, double *y);
+void dea_ring_unknowns(const dea_rotation *ring, dea_turn turn, const double *y, double *w);
+void dea_ring_rates(const dea_rotation *ring, dea_turn turn, const double *w, const double *f, double *rates);
 
 #endif

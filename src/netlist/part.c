@@ -785,7 +785,7 @@ dea_scene dea_part_paper(dea_kind kind)
                      .focal_length = none,
                      .refractive_index = none},
         .material = *dea_material_find("elastosil-2030"),
-        .drive = {.voltage = none, .series_resistance = none, .leakage_resistance = none},
+        .drive = {.voltage = none, .series_resistance = none, .leakage_resistance = none, .current_limit = none},
     };
     scene.material.density = none;
     return scene;

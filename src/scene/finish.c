@@ -185,6 +185,27 @@ static dea_status load_check(dea_reader *reader)
                           "moves with a film that has none; accepted: material.density beside it, e.g. 1080 kg/m^3");
 }
 
+/* A source gives less than its voltage only in time, and what it gives then needs a resistance to be told from that voltage. */
+static dea_status limit_check(dea_reader *reader)
+{
+    const dea_scene *scene = reader->scene;
+    const size_t limit = offsetof(dea_scene, drive.current_limit), series = offsetof(dea_scene, drive.series_resistance);
+    const dea_place *place = dea_reader_place(reader, limit, "drive");
+    if (isnan(scene->drive.current_limit)) {
+        return DEA_OK;
+    }
+    if (!dea_study_of(scene)->timed) {
+        return dea_place_fail(place, reader->error, "drive.current_limit",
+                              "belongs to study.transient, but the study is %s, in which the source gives what the film takes; accepted: a "
+                              "transient, or no limit",
+                              dea_study_of(scene)->name);
+    }
+    return swept(reader, series) || dea_series_resistance(scene) > 0.0
+               ? DEA_OK
+               : dea_place_fail(place, reader->error, "drive.current_limit",
+                                "of a source without resistance; accepted: drive.series_resistance > 0 beside it, e.g. 1 MOhm");
+}
+
 static dea_status radius_check(dea_reader *reader)
 {
     const dea_actuator *actuator = &reader->scene->actuator;
@@ -291,6 +312,7 @@ dea_status dea_reader_finish(dea_reader *reader)
     status = status ? status : dea_law_finish(reader);
     status = status ? status : electrode_check(reader);
     status = status ? status : load_check(reader);
+    status = status ? status : limit_check(reader);
     status = status ? status : locking_check(reader);
     status = status ? status : radius_check(reader);
     status = status ? status : thickness_check(reader);

@@ -2,6 +2,7 @@
 
 #include <ctype.h>
 
+#include "model/models.h"
 #include "netlist/export.h"
 
 /* Changes of the nominal stresses of a ring over its strains e_a from the bias [Pa]: with the voltage, and those that damper and
@@ -17,8 +18,10 @@ static moduli moduli_of(const dea_rings_small *s, size_t ring, const dea_membran
     const double field = s->voltage / film->point.film_thickness, l0 = film->point.film.prestretch;
     const double k = s->membrane->rings.rings[ring].electroded ? film->point.film.permittivity * field * field : 0.0;
     const double *l = at->stretch;
-    return (moduli){{l0 * (at->tangent[0][0] - k * l[1] * l[1]), l0 * (at->tangent[0][1] - 2.0 * k * l[0] * l[1]),
-                     l0 * (at->tangent[1][1] - k * l[0] * l[0])},
+    const dea_electric electric = dea_film_electric(&film->point.film, l[0] * l[1]);
+    const double second = k * electric.second, mixed = k * electric.first + second;
+    return (moduli){{l0 * (at->tangent[0][0] - second * l[1] * l[1]), l0 * (at->tangent[0][1] - mixed * l[0] * l[1]),
+                     l0 * (at->tangent[1][1] - second * l[0] * l[0])},
                     {l0 * at->slope[0][0] / l[0], l0 * at->slope[0][1] / l[0], l0 * at->slope[1][1] / l[1]}};
 }
 

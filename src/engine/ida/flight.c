@@ -1,5 +1,6 @@
 #include "engine/ida/flight.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -125,6 +126,7 @@ dea_state dea_flight_step(dea_flight *flight, double time, const double *w)
 
 /* Next to its limit a source counts as there: such shares of the drop at the limit are rounding. */
 static const double at_limit = 1e-9;
+enum { HALVES = 60 }; /* of a step that find the time */
 
 /* How far the drop over the resistance is past that at which the source gives its limit, over that; NAN without a state. */
 static double excess_at(const dea_flight *flight, double time, dea_flight_state *at, void *user)
@@ -147,16 +149,14 @@ double dea_flight_cut(dea_flight *flight, double before, double time, dea_flight
         return time;
     }
     double low = before, high = time;
-    while (high - low > 4e-16 * high) { /* halves end next to each other */
+    for (int i = 0; i < HALVES && high - low > DBL_EPSILON * high; i++) {
         const double middle = 0.5 * (low + high);
         *(excess_at(flight, middle, at, user) * first > 0.0 ? &low : &high) = middle;
-        if (middle <= low && middle >= high) {
-            break;
-        }
     }
-    flight->cut = high < time;
+    const double begin = flight->motion.segment->from;
+    flight->cut = high < time && begin + high > begin + before; /* late in a run a very short time is none */
     flight->cut_at = high;
-    return high;
+    return flight->cut ? high : time;
 }
 
 bool dea_flight_affords(dea_flight *flight, double steps)

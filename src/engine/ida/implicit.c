@@ -82,8 +82,9 @@ static void take_current(const dea_flight *flight, double time, dea_turn turn, c
     const dea_ring *ring = flight->ring;
     double step, rate[DEA_MOTION_MOST], y[DEA_MOTION_MOST];
     if (motion->q < 0 || flight->integrator.sun->IDAGetLastStep(flight->integrator.ida, &step) != IDA_SUCCESS ||
-        step * motion->signal->largest < motion->dynamics->series * motion->size[motion->q]) {
-        return;
+        step * motion->signal->largest < motion->dynamics->series * motion->size[motion->q] ||
+        dea_dynamics_excess(motion->dynamics, moment->source - moment->voltage) >= 0.0) {
+        return; /* at its limit the source gives that */
     }
     const double around[2] = {ring->turns ? -ring->omega * w[1] : 0.0, ring->turns ? ring->omega * w[0] : 0.0};
     const double *slope = unknowns_at(flight, time, 1);

@@ -102,7 +102,8 @@ static const dea_key keys_behind[] = {
     OTHER("load", dea_read_mapping, "a mapping with mass, stiffness, damping and force, e.g. {mass: 2 g, stiffness: 20 N/m}"),
     PART("load.mass", load.mass, "kg", "_kg", 0, INFINITY, true, 2, "load", "a mass > 0, e.g. 2 g"),
     PART("load.stiffness", load.stiffness, "N/m", "_N_per_m", 0, INFINITY, true, 2, "load", "a stiffness > 0, e.g. 20 N/m"),
-    PART("load.damping", load.damping, "N s/m", "_N_s_per_m", 0, INFINITY, true, 2, "load", "a mechanical resistance > 0, e.g. 1e-3 N s/m"),
+    PART("load.damping", load.damping, "N s/m", "_N_s_per_m", 0, 1e20, true, 2, "load",
+         "a mechanical resistance > 0 and < 1e20 N s/m, e.g. 1e-3 N s/m"),
     PART("load.force", load.force, "N", "_N", -INFINITY, INFINITY, true, 2, "load", "a force, outward positive, e.g. 50 mN"),
     OTHER("antagonist", dea_read_antagonist, "a mapping with actuator, material and drive, e.g. {actuator: {kind: lens}, drive: {voltage: 3 kV}}"),
     OTHER("antagonist.actuator", dea_read_mapping, "a mapping with kind, film_thickness, layers and prestretch, e.g. {kind: lens}"),
@@ -144,6 +145,7 @@ static const dea_key keys_behind[] = {
            "a resistance >= 0, e.g. 1 MOhm"),
     SCALAR("drive.leakage_resistance", drive.leakage_resistance, "ohm", "_Ohm", 0, INFINITY, true, DEA_KEY_BOTH, 1,
            "a resistance > 0, e.g. 100 GOhm"),
+    SCALAR("drive.current_limit", drive.current_limit, "A", "_A", 0, INFINITY, true, DEA_KEY_BOTH, 1, "a current > 0, e.g. 100 uA"),
     OTHER("drive.waveform", dea_read_waveform, "a mapping with step, points, sine, pulse, square, triangle, chirp, burst, sines or file"),
 };
 

@@ -65,7 +65,7 @@ typedef struct dea_arguments {
     const char *law;  /**< of a fit, or "auto"; NULL: yeoh */
     size_t terms;     /**< 0: not given */
     bool relative;
-    const char *relaxation; /**< NULL: not given */
+    const char *tests[DEA_TESTS]; /**< --relaxation, --dma, --creep; NULL: not given */
     double ramp;            /**< [s], NAN: not given */
     dea_specimen specimen;  /* of the fit's tables, 0: not given */
     size_t branches;        /**< 0: not given */

@@ -302,7 +302,7 @@ static void every_scene_to_start_from_runs(void **state)
     }
     RUN("init");
     assert_int_equal(last.status, 0);
-    assert_int_equal(lines_of(last.out), 7);
+    assert_int_equal(lines_of(last.out), 8);
     RUN("init", "lense");
     check_wrong("did you mean \"lens\"");
 }

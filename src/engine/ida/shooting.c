@@ -51,7 +51,8 @@ struct dea_shooting {
     double pressure;        /* M at full load [Pa] */
     double disc_k;          /* Maxwell pressure in the disc at this share [Pa] */
     double annulus_k;       /* and in the annulus [Pa] */
-    double pull;            /* what pulls the edge outward beside film and load, over 2 pi R_a H [Pa] */
+    double pull;            /* what pulls the edge outward beside film and load, over 2 pi R_a H, less what a uniform film wants [Pa] */
+    double uniform;         /* where the edge is held: annulus_k, whose part of s1 in a uniform film is no part of Sigma; else 0 [Pa] */
     double stress;          /* scale of Sigma [Pa] */
     double strain;          /* scale of d1, d2 [1] */
     double tolerance;
@@ -111,7 +112,9 @@ static int residual(sunrealtype x, N_Vector y, N_Vector yp, N_Vector r, void *us
     const double difference = (d1 - d2) * (shear + s->annulus_k * l1 * l2); /* s1 - s2 */
     out[SIGMA] = slope[SIGMA] + difference / s->stress;
     out[HOOP] = slope[HOOP] - (v[RADIAL] - v[HOOP]);
-    out[RADIAL] = (stress_change(s, ANNULUS, d1, d2) - s->annulus_k * l1 * l2 * l2) / s->stress - v[SIGMA];
+    const double pre = film->prestretch, rise = d1 * l2 * l2 + pre * d2 * (2.0 * pre + d2); /* of lambda_1 lambda_2^2 */
+    const double electric = s->annulus_k * rise + (s->annulus_k - s->uniform) * pre * pre * pre;
+    out[RADIAL] = (stress_change(s, ANNULUS, d1, d2) - electric) / s->stress - v[SIGMA];
     return 0;
 }
 
@@ -198,7 +201,7 @@ static void add_charge(dea_shooting *s, double x)
 static double jump_guess(const dea_shooting *s, double l)
 {
     const double edge = l - s->point->film.prestretch;
-    const double load = (s->disc_k - s->annulus_k) * l * l * l;
+    const double pre = s->point->film.prestretch, load = (s->disc_k - s->annulus_k) * l * l * l + s->uniform * pre * pre * pre;
     const double at_edge = stress_change(s, DISC, edge, edge) + load_stress(s, edge);
     double jump = 0.0;
     double sound = 0.0; /* last place within the energy */
@@ -539,17 +542,17 @@ static dea_found found_at(const dea_shooting *s, double edge)
 /* What the film exerts on an edge that is held under a share of the load, outward [N]. At rest it is uniform. */
 static double force_on_edge(dea_shooting *s, double share, double edge)
 {
-    const double l = s->point->film.prestretch, push = dea_point_sign(s->point) * share * s->pressure * l * l * l;
-    const double pull = lame_stiffness(s->point) * edge - push;
-    s->stress = fabs(push) + s->point->film.w11 * fabs(edge);
+    const double l = s->point->film.prestretch;
     s->strain = fabs(edge);
+    s->stress = s->point->film.w11 * s->strain;
     s->held = edge;
-    s->pull = pull;
+    s->pull = 0.0;
     set_load(s, share);
+    s->uniform = s->annulus_k;
     if (edge != 0.0) {
-        s->pull = search_from(s, SEARCH_PULL, pull / s->stress) * s->stress;
+        s->pull = search_from(s, SEARCH_PULL, lame_stiffness(s->point) * edge / s->stress) * s->stress;
     }
-    return -lever_of(s->point) * s->pull;
+    return -lever_of(s->point) * (s->pull + s->uniform * l * l * l);
 }
 
 /* Without voltage, inward; and what the voltage adds, outward: all of it on the disc of a dot, whose annulus does not feel it. */
@@ -577,20 +580,23 @@ static bool hold(void *user, const dea_point *point, double strain, dea_hold *ho
     if (!(pre + edge > step)) {
         return false;
     }
-    const double up = held_at(s, edge + step, &above), down = held_at(s, edge - step, &below);
-    const double over = 0.5 / (step * dea_point_divide(point) / pre);
-    hold->held = held_at(s, edge, &hold->push);
-    hold->held_slope = (up - down) * over;
-    hold->push_slope = (above - below) * over;
+    hold->held_slope = hold->push_slope = 0.0;
+    if (!hold->plain) {
+        const double over = 0.5 / (step * dea_point_divide(point) / pre);
+        const double up = held_at(s, edge + step, &above), down = held_at(s, edge - step, &below);
+        hold->held_slope = (up - down) * over;
+        hold->push_slope = (above - below) * over;
+    }
+    hold->held = held_at(s, edge, &hold->push); /* last: what follows goes on from it */
     set_load(s, 1.0);
     s->strain = edge != 0.0 ? fabs(edge) : step;
-    s->stress += s->point->film.w11 * s->strain;
+    s->stress = s->point->film.w11 * s->strain;
     const bool there = isfinite(hold->held) && isfinite(hold->push) && !isnan(miss_at_frame(s, edge));
     if (there) {
         hold->found = found_at(s, edge);
         hold->found.capacitance = edge == 0.0 ? dea_point_capacitance(point) : hold->found.capacitance; /* IDA has no steps to sum over */
     }
-    s->pull = 0.0;
+    s->pull = s->uniform = 0.0;
     return there;
 }
 

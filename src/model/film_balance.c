@@ -199,12 +199,6 @@ DEA_INLINE void settle_body(walkers *w)
 
 DEA_LANES_DISPATCH(settle, settle_body, (walkers *w), (w))
 
-/* True where the root of a lane is the first from rest: U grows all the way to it. */
-static bool is_first(const walkers *w, size_t l, const dea_path *path)
-{
-    return w->root[l] > 0.0 && w->fold[l] > 0.0 && (w->clear[l] > 0.0 || dea_path_grows(path, w->strain[l]));
-}
-
 static film_pair pair_of(const dea_point *point, double ratio)
 {
     const bool skinned = point->skin_share > 0.0;
@@ -217,6 +211,18 @@ static film_pair pair_of(const dea_point *point, double ratio)
                                    ? point->load * dea_point_divide(point) / dea_point_cross_section(point) * fabs(turn)
                                    : 0.0,
                        .turn = turn};
+}
+
+/* The first root from rest of a lane whose own may not be that: where U grows all the way to it, it is. False where there is none. */
+static bool trace(const dea_point *point, const walkers *w, size_t l, double *strain)
+{
+    const film_pair pair = pair_of(point, w->ratio[l]);
+    const dea_path path = {place_at, &pair, w->stiffness[l], w->end[l], 1.0 / (1.0 + w->ratio[l]), 0.0};
+    if (!(w->stiffness[l] > 0.0) || !isfinite(w->m[l])) {
+        return false;
+    }
+    const bool first = w->root[l] > 0.0 && w->fold[l] > 0.0 && (w->clear[l] > 0.0 || dea_path_grows(&path, *strain));
+    return first || dea_path_trace(&path, w->m[l], strain);
 }
 
 /* Strains of up to DEA_LANES films of as many points, each with its own ratio, under the pressures m; false where there is none. */
@@ -238,17 +244,9 @@ static void find(const dea_point *points, size_t count, const double *ratio, con
     }
     settle(&w);
     for (size_t l = 0; l < count; l++) {
-        const film_pair pair = pair_of(&points[l], ratio[l]);
-        const dea_path path = {place_at, &pair, w.stiffness[l], w.end[l], 1.0 / (1.0 + ratio[l]), 0.0};
-        strain[l] = w.strain[l];
-        if (m[l] == 0.0) {
-            strain[l] = 0.0;
-            found[l] = true;
-        } else if (!(w.stiffness[l] > 0.0) || !isfinite(m[l])) {
-            found[l] = false;
-        } else {
-            found[l] = is_first(&w, l, &path) || dea_path_trace(&path, m[l], &strain[l]);
-        }
+        strain[l] = m[l] == 0.0 ? 0.0 : w.strain[l];
+        found[l] = m[l] == 0.0 || ((w.root[l] > 0.0) & (w.fold[l] > 0.0) & (w.clear[l] > 0.0) & (w.stiffness[l] > 0.0)) ||
+                   trace(&points[l], &w, l, &strain[l]);
     }
 }
 

@@ -491,7 +491,8 @@ dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const 
         needs->resonance = swing.frequency;
         needs->decay = swing.decay;
     }
-    if (status == DEA_OK && usable) {
+    const bool linear = !isfinite(p.surrogate.dynamics.limit); /* the stand-in charges through its resistance alone */
+    if (status == DEA_OK && usable && linear) {
         p.safety = safety_of(&p.surrogate) * (p.many_nodes ? safe_membrane : 1.0);
         status = plan(&p, error);
     }

@@ -2,15 +2,16 @@
  * whose error is told by one that is two degrees finer. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "engine/ida/rings_motion.h"
 #include "engine/ngspice/units.h"
 #include "netlist/export_drive.h"
 #include "netlist/rings_motion.h"
 #include "netlist/rings_small.h"
+#include "network/rings_band.h"
 #include "network/rings_mesh.h"
 #include "support/lapack.h"
+#include "network/rings_band.h"
 #include "network/rings_mesh.h"
 #include "support/lapack.h"
 
@@ -20,34 +21,17 @@ typedef struct mark {
     double omega; /* [rad/s], 0: without mass */
 } mark;
 
-typedef struct biased {
-    dea_membrane membrane;
-    double u[DEA_RINGS_NODES];
-    double voltage; /* of the film [V] */
-    double work[DEA_RINGS_NODES * DEA_RINGS_NODES], shapes[DEA_RINGS_NODES * DEA_RINGS_NODES];
-    double frequencies[DEA_RINGS_NODES];
-} biased;
-
-static dea_status open_mesh(const dea_scene *scene, dea_rings_mesh mesh, biased *b, mark *found, dea_error *error)
+static dea_status mark_mesh(const dea_scene *scene, dea_rings_mesh mesh, dea_rings_biased *b, mark *found, dea_error *error)
 {
-    dea_membrane_look look;
-    const dea_status status = dea_membrane_open(scene, scene->models[0], mesh, &b->membrane, error);
-    if (status != DEA_OK) {
-        return status;
+    double stiffness[DEA_RINGS_NODES * DEA_RINGS_NODES], shapes[DEA_RINGS_NODES * DEA_RINGS_NODES], frequencies[DEA_RINGS_NODES];
+    const dea_status status = dea_rings_bias(scene, scene->models[0], mesh, b, error);
+    *found = (mark){(double)NAN, 0.0};
+    if (status == DEA_OK && dea_rings_stands(b)) {
+        found->edge = b->u[b->membrane.rings.edge];
+        dea_membrane_stiffness(&b->membrane, &b->look, b->voltage, NULL, 0.0, stiffness);
+        found->omega = dea_membrane_modes(&b->membrane, stiffness, frequencies, shapes) ? frequencies[0] : 0.0;
     }
-    memset(b->u, 0, sizeof b->u);
-    b->voltage = scene->ac.bias / (1.0 + b->membrane.film.series * b->membrane.film.conductance);
-    if (!dea_membrane_still(&b->membrane, b->voltage, b->u) || !dea_membrane_look_at(&b->membrane, b->u, &look)) {
-        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the film has no equilibrium under its bias, %g V", scene->ac.bias);
-    }
-    *found = (mark){b->u[b->membrane.rings.edge], 0.0};
-    if (b->membrane.heavy) {
-        dea_membrane_stiffness(&b->membrane, &look, b->voltage, NULL, 0.0, b->work);
-        if (dea_membrane_modes(&b->membrane, b->work, b->frequencies, b->shapes)) {
-            found->omega = b->frequencies[0];
-        }
-    }
-    return DEA_OK;
+    return status;
 }
 
 static double apart(const mark *coarse, const mark *fine)
@@ -56,40 +40,24 @@ static double apart(const mark *coarse, const mark *fine)
     return fmax(edge, fine->omega > 0.0 ? fabs(coarse->omega / fine->omega - 1.0) : 0.0);
 }
 
-/* The coarsest mesh that is good to the scene's accuracy, or the finest; *gap: its error. */
-static dea_status choose(const dea_scene *scene, biased *b, double *gap, dea_error *error)
-{
-    const bool wide = dea_rings_usual_mesh(scene).logarithmic;
-    mark marks[2];
-    size_t degree = 4;
-    dea_status status = open_mesh(scene, (dea_rings_mesh){degree, degree, wide}, b, &marks[0], error);
-    *gap = INFINITY;
-    while (status == DEA_OK && degree + 2 <= DEA_RINGS_DEGREE && *gap > scene->accuracy) {
-        degree += 2;
-        status = open_mesh(scene, (dea_rings_mesh){degree, degree, wide}, b, &marks[1], error);
-        *gap = apart(&marks[0], &marks[1]);
-        marks[0] = marks[1];
-    }
-    return status;
-}
-
 dea_status dea_export_ac_rings(dea_export *export, dea_error *error)
 {
     char meaning[256], u[24], v[24];
-    double gap;
+    double gap = INFINITY;
     if (export->analogy_given && export->analogy->loop) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the membrane is written in the mobility analogy: leave out --analogy");
     }
-    biased *b = calloc(1, sizeof *b);
-    if (!b) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
+    dea_rings_biased *b = calloc(1, sizeof *b);
+    dea_status status = b ? dea_rings_band(export->scene, export->scene->models[0], b, &gap, error)
+                          : dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
+    if (status == DEA_OK && !dea_rings_stands(b)) {
+        status = dea_fail(error, DEA_ERROR_UNSUPPORTED, "the film has no equilibrium under its bias, %g V", export->scene->ac.bias);
     }
-    const dea_status status = choose(export->scene, b, &gap, error);
     if (status == DEA_OK) {
         const dea_rings_small small = {&b->membrane, b->u, b->voltage};
         snprintf(meaning, sizeof meaning, "small signals about %.9g V; v(v<n>) = velocity [m/s] of node n, current = force [N]", b->voltage);
         dea_export_head(export, meaning);
-        fprintf(export->out, "* expected error of the static displacement and of the first resonance: %.0e\n", gap);
+        fprintf(export->out, "* expected error of the response: %.0e\n", gap);
         dea_rings_small_write(&small, export->out);
         snprintf(u, sizeof u, "u%zu", b->membrane.rings.edge + 1);
         snprintf(v, sizeof v, "v%zu", b->membrane.rings.edge + 1);
@@ -125,20 +93,19 @@ static dea_status tell_gap(moving *m, dea_error *error)
     mark marks[2];
     dea_scene scene = m->scene;
     dea_status status = DEA_OK;
-    biased *b = calloc(1, sizeof *b);
+    dea_rings_biased *b = calloc(1, sizeof *b);
     if (!b) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
     }
     scene.ac.bias = m->drive.signal.largest;
     for (int i = 0; i < 2 && status == DEA_OK; i++) {
-        status = open_mesh(&scene, meshes[i], b, &marks[i], error);
+        status = mark_mesh(&scene, meshes[i], b, &marks[i], error);
     }
     m->gap = status == DEA_OK ? apart(&marks[0], &marks[1]) : (double)NAN;
-    if (status == DEA_ERROR_UNSUPPORTED) { /* pull-in: a simulator tells more than this header */
+    if (status == DEA_OK && !dea_rings_stands(b)) {
         snprintf(m->export->note, sizeof m->export->note,
                  "the film has no equilibrium under %g V (pull-in): a simulator may end there with too small a time step",
                  m->drive.signal.largest);
-        status = DEA_OK;
     }
     free(b);
     return status;

@@ -446,12 +446,16 @@ static void write_hyperelastic_numbers(const dea_cards *c, const dea_mobility_st
 
 /* ---- the port */
 
-static void write_resistors(const dea_cards *c)
+static void write_resistors(dea_cards *c)
 {
     if (c->dynamics->conductance > 0.0) {
         fputs("* leakage resistance of the film [Ohm]\nRLEAK film 0 {r_leak}\n", c->out);
     }
-    if (c->dynamics->series > 0.0) {
+    if (isfinite(c->dynamics->limit)) {
+        fputs("* series resistance of source and electrodes [Ohm] behind a source of no more than i_limit [A]\n", c->out);
+        dea_part_text_source(&c->text, DEA_CURRENT, "SERIES", "source", "film",
+                             "min([i_limit],max(-[i_limit],(v(source)-v(film))/[r_series]))");
+    } else if (c->dynamics->series > 0.0) {
         fputs("* series resistance of source and electrodes [Ohm]\nRSERIES source film {r_series}\n", c->out);
     }
 }
@@ -463,6 +467,9 @@ static void write_resistor_numbers(const dea_cards *c, double unit)
     }
     if (c->dynamics->series > 0.0) {
         dea_part_value(c->out, "r_series", unit * c->dynamics->series);
+    }
+    if (isfinite(c->dynamics->limit)) {
+        dea_part_value(c->out, "i_limit", c->dynamics->limit / unit);
     }
 }
 

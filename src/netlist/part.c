@@ -676,7 +676,13 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
               .constants = constants_in_use(&defaults->material),
               .linear = model->linear != NULL,
               .branches = branches > PART_BRANCHES ? branches : PART_BRANCHES};
-    p.elements = (dea_dynamics){.model = model, .linear = p.linear, .softens = true, .branch_count = p.branches, .mass = 1.0, .retardation = 1.0};
+    p.elements = (dea_dynamics){.model = model,
+                                .linear = p.linear,
+                                .softens = true,
+                                .branch_count = p.branches,
+                                .mass = 1.0,
+                                .retardation = 1.0,
+                                .limit = (double)INFINITY};
     p.film = (dea_mobility){.dynamics = &p.elements, .stiffness = p.linear ? 1.0 : (double)NAN};
     if (status == DEA_OK) {
         status = write_part(&p, defaults, model, name, error);
@@ -785,7 +791,7 @@ dea_scene dea_part_paper(dea_kind kind)
                      .focal_length = none,
                      .refractive_index = none},
         .material = *dea_material_find("elastosil-2030"),
-        .drive = {.voltage = none, .series_resistance = none, .leakage_resistance = none},
+        .drive = {.voltage = none, .series_resistance = none, .leakage_resistance = none, .current_limit = none},
     };
     scene.material.density = none;
     return scene;

@@ -54,6 +54,7 @@ static void declare(dea_rings_motion_cards *c)
 {
     dea_part_text *text = &c->text;
     const dea_membrane *m = c->membrane;
+    dea_part_text_root(text, "film"); /* numbers of terms in the pool follow the units */
     dea_rings_moving_declare(&c->moving, true, text);
     dea_part_text_name(text, c->per_r, "per_r", "strain over displacement and radius");
     dea_part_text_use(text, c->per_r);

@@ -378,15 +378,22 @@ double dea_still_error(const dea_still *still, const double *u)
     return still->pressure == 0.0 ? 0.0 : fmax(finer_error(still, u, 1), finer_error(still, u, 2));
 }
 
+/* Meshes of which none has an equilibrium, each finer than the last, and the degree from which on such a row of them is believed: finer
+ * ones take long to say the same. */
+enum { ALL_LOST = 8, LOST_DEGREE = 12 };
+
 dea_rings_mesh dea_still_mesh(const dea_point *point, double accuracy, double *error)
 {
     const dea_rings_mesh none = {0, 0, true};
     double u[DEA_RINGS_NODES];
+    size_t lost = 0;
     *error = (double)INFINITY;
-    for (size_t degree = 2; degree + 2 <= DEA_RINGS_DEGREE; degree++) {
+    for (size_t degree = 2; degree + 2 <= DEA_RINGS_DEGREE && !(lost >= ALL_LOST && degree > LOST_DEGREE); degree++) {
         dea_still still;
         dea_still_open(point, (dea_rings_mesh){1, degree, true}, &still);
-        if (dea_still_climb(&still, u) == DEA_STATE_OK) {
+        const bool stands = dea_still_climb(&still, u) == DEA_STATE_OK;
+        lost = stands ? 0 : lost + 1;
+        if (stands) {
             *error = dea_still_error(&still, u);
         }
         if (*error <= accuracy) {

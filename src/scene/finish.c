@@ -96,22 +96,22 @@ static dea_status law_check(dea_reader *reader, const dea_holder *holder)
     return dea_place_fail(dea_reader_place(reader, first, holder->name), reader->error, path, "%s", fault);
 }
 
-/* One resistance stands for the sheets of a film whose electrode moves as one; of a membrane the potential is told along them in time
- * alone. There charges rest under a bias only where none leak away. */
+/* One resistance stands for the sheets of a film whose electrode moves as one; of a membrane the potential is told along them, but in its
+ * modes. Under a bias it is uniform only where no charge leaks away. */
 static dea_status sheet_check(dea_reader *reader)
 {
     const dea_scene *scene = reader->scene;
     const dea_study *study = dea_study_of(scene);
     const size_t sheet = offsetof(dea_scene, electrode.sheet_resistance);
-    const bool currents = study->along && !study->still;
-    const bool leaks = scene->transient.from_bias && !isnan(scene->drive.leakage_resistance);
-    for (size_t i = 0; i < scene->model_count && currents; i++) {
-        if (scene->models[i]->membrane && (!study->timed || leaks)) {
+    const bool along = study->timed || study->phasors, biased = study->phasors || scene->transient.from_bias;
+    const bool leaks = biased && !isnan(scene->drive.leakage_resistance);
+    for (size_t i = 0; i < scene->model_count && study->along && !study->still; i++) {
+        if (scene->models[i]->membrane && (!along || leaks)) {
             return dea_place_fail(dea_reader_place(reader, sheet, "electrode"), reader->error, "electrode.sheet_resistance",
-                                  study->timed ? "beside a leakage, from a bias, is more than the model %s can do; accepted: start: rest, "
-                                                 "no leakage_resistance, or models of one node, e.g. ring"
-                                               : "is one resistance, which the model %s has no place for; accepted: models of one node, "
-                                                 "e.g. ring, or a transient",
+                                  along ? "beside a leakage, under a bias, is more than the model %s can do; accepted: no "
+                                          "leakage_resistance, start: rest, or models of one node, e.g. ring"
+                                        : "is one resistance, which the model %s has no place for; accepted: models of one node, e.g. ring, "
+                                          "or a transient",
                                   scene->models[i]->name);
         }
     }
@@ -183,6 +183,27 @@ static dea_status load_check(dea_reader *reader)
     }
     return dea_place_fail(dea_reader_place(reader, offsetof(dea_scene, load.mass), "load"), reader->error, "load.mass",
                           "moves with a film that has none; accepted: material.density beside it, e.g. 1080 kg/m^3");
+}
+
+/* A source gives less than its voltage only in time, and what it gives then needs a resistance to be told from that voltage. */
+static dea_status limit_check(dea_reader *reader)
+{
+    const dea_scene *scene = reader->scene;
+    const size_t limit = offsetof(dea_scene, drive.current_limit), series = offsetof(dea_scene, drive.series_resistance);
+    const dea_place *place = dea_reader_place(reader, limit, "drive");
+    if (isnan(scene->drive.current_limit)) {
+        return DEA_OK;
+    }
+    if (!dea_study_of(scene)->timed) {
+        return dea_place_fail(place, reader->error, "drive.current_limit",
+                              "belongs to study.transient, but the study is %s, in which the source gives what the film takes; accepted: a "
+                              "transient, or no limit",
+                              dea_study_of(scene)->name);
+    }
+    return swept(reader, series) || dea_series_resistance(scene) > 0.0
+               ? DEA_OK
+               : dea_place_fail(place, reader->error, "drive.current_limit",
+                                "of a source without resistance; accepted: drive.series_resistance > 0 beside it, e.g. 1 MOhm");
 }
 
 static dea_status radius_check(dea_reader *reader)
@@ -291,6 +312,7 @@ dea_status dea_reader_finish(dea_reader *reader)
     status = status ? status : dea_law_finish(reader);
     status = status ? status : electrode_check(reader);
     status = status ? status : load_check(reader);
+    status = status ? status : limit_check(reader);
     status = status ? status : locking_check(reader);
     status = status ? status : radius_check(reader);
     status = status ? status : thickness_check(reader);

@@ -130,6 +130,7 @@ static const dea_key keys_behind[] = {
            "a resistance >= 0, e.g. 1 MOhm"),
     SCALAR("drive.leakage_resistance", drive.leakage_resistance, "ohm", "_Ohm", 0, INFINITY, true, DEA_KEY_BOTH, 1,
            "a resistance > 0, e.g. 100 GOhm"),
+    SCALAR("drive.current_limit", drive.current_limit, "A", "_A", 0, INFINITY, true, DEA_KEY_BOTH, 1, "a current > 0, e.g. 100 uA"),
     OTHER("drive.waveform", dea_read_waveform, "a mapping with step, points, sine, pulse, square, triangle, chirp, burst, sines or file"),
 };
 

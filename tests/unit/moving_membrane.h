@@ -6,6 +6,8 @@
 #include <stdlib.h>
 
 #include "judges.h"
+#include "random_scenes.h"
+#include "result/scales.h"
 #include "support/gauss.h"
 
 enum {
@@ -277,6 +279,85 @@ static inline void fe_step(const fe_film *f, double time, double h, fe_state *s)
 static inline size_t fe_edge(const fe_film *f)
 {
     return f->disc_elements * FE_DEGREE;
+}
+
+/* ---- scenes and their judgement */
+
+static inline dea_scene fe_step_scene(dea_kind kind, double prestretch, double coverage, double voltage, double rise)
+{
+    dea_scene scene = paper_scene(kind, prestretch, coverage, (double)NAN);
+    scene.material.density = 1080.0;
+    scene.study = DEA_STUDY_TRANSIENT;
+    scene.drive.waveform = (dea_waveform){.kind = DEA_WAVE_STEP,
+                                          .step = {.off = (double)NAN, .voltage = voltage, .rise = rise},
+                                          .period = (double)NAN};
+    scene.transient = (dea_transient){.until = 8e-3, .every = 2e-5};
+    return scene;
+}
+
+/* A random film of moderate stiffness, which a step moves by some per cent. */
+static inline dea_scene fe_random_step(uint64_t *seed)
+{
+    const dea_kind kind = random_chance(seed, 0.5) ? DEA_DOT : DEA_LENS;
+    dea_scene scene = fe_step_scene(kind, random_between(seed, 1.05, 1.5), random_between(seed, 0.2, 0.8),
+                                 random_between(seed, 1500.0, 4500.0), random_between(seed, 2e-4, 5e-4));
+    scene.material.retardation = random_between(seed, 2e-5, 5e-5); /* the judge's elements see no sharper waves */
+    scene.transient = (dea_transient){.until = 1.5e-3, .every = 5e-5};
+    scene.accuracy = random_decades(seed, 1e-5, 1e-3);
+    if (random_chance(seed, 0.5)) {
+        scene.actuator.electrode_mass = random_between(seed, 0.0, 0.05);
+    }
+    scene.material.prony_count = random_chance(seed, 0.3) ? 0 : random_chance(seed, 0.5) ? 1 : 2;
+    scene.material.prony[0] = (dea_prony){random_between(seed, 0.05, 0.2), random_decades(seed, 1e-4, 1e-1)};
+    scene.material.prony[1] = (dea_prony){random_between(seed, 0.05, 0.2), random_decades(seed, 1e-3, 1.0)};
+    if (random_chance(seed, 0.5)) {
+        scene.drive.series_resistance = random_decades(seed, 1e5, 1e6);
+        scene.drive.leakage_resistance = random_chance(seed, 0.5) ? random_decades(seed, 1e7, 1e9) : (double)NAN;
+    }
+    return scene;
+}
+
+/* Steps of the judge between two samples: as many as its fastest mode and its damper take. */
+static inline int fe_judge_steps(const dea_scene *scene)
+{
+    const dea_film film = dea_law_film(scene->material.law, scene->material.constants, scene->actuator.prestretch);
+    const double shortest = 0.02 * fmin(scene->actuator.coverage, 1.0 - scene->actuator.coverage) * scene->actuator.frame_radius;
+    const double omega = 3.0 * scene->actuator.prestretch * sqrt(film.w11 / scene->material.density) / shortest;
+    return 1 + (int)(scene->transient.every * fmax(omega, 2.0 * scene->material.retardation * omega * omega) / 2.0);
+}
+
+/* Largest differences of displacement, velocity, film voltage and charge over what the columns promise. */
+static inline double fe_broken(const dea_scene *scene, const dea_sample *samples, size_t rows)
+{
+    static fe_film film;
+    static fe_state s;
+    const dea_scales scales = dea_scales_open(scene, dea_model_find("field"));
+    const dea_sample size = dea_scales_of(&scales, samples, rows);
+    const int steps = fe_judge_steps(scene);
+    const double h = scene->transient.every / steps;
+    double worst = 0.0;
+    fe_open(scene, &film);
+    fe_rest(&film, &s);
+    for (size_t i = 0; i < rows && samples[i].state != DEA_STATE_PULL_IN; i++) {
+        const dea_sample *row = &samples[i];
+        const double voltage = fe_voltage(&film, row->time, &s);
+        worst = fmax(worst, fabs(row->displacement - s.u[fe_edge(&film)]) / size.displacement);
+        worst = fmax(worst, 0.1 * fabs(row->velocity - s.v[fe_edge(&film)]) / size.velocity);
+        worst = fmax(worst, 0.1 * fabs(row->film_voltage - voltage) / size.film_voltage);
+        if (!isnan(row->charge)) {
+            worst = fmax(worst, 0.1 * fabs(row->charge - fe_capacitance(&film, s.u) * voltage) / size.charge);
+        }
+        for (int k = 0; k < steps; k++) {
+            const double time = row->time + k * h; /* the rise ends within a step, which is cut there */
+            const double cut = film.rise - time;
+            const double first = cut > 0.0 && cut < h ? cut : h;
+            fe_step(&film, time, first, &s);
+            if (first < h) {
+                fe_step(&film, film.rise, h - first, &s);
+            }
+        }
+    }
+    return worst / scene->accuracy;
 }
 
 #endif

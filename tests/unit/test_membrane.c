@@ -258,18 +258,6 @@ static void run_field(const dea_scene *scene, membrane_run *run)
     }
 }
 
-static dea_scene step_scene(dea_kind kind, double prestretch, double coverage, double voltage, double rise)
-{
-    dea_scene scene = paper_scene(kind, prestretch, coverage, (double)NAN);
-    scene.material.density = 1080.0;
-    scene.study = DEA_STUDY_TRANSIENT;
-    scene.drive.waveform = (dea_waveform){.kind = DEA_WAVE_STEP,
-                                          .step = {.off = (double)NAN, .voltage = voltage, .rise = rise},
-                                          .period = (double)NAN};
-    scene.transient = (dea_transient){.until = 8e-3, .every = 2e-5};
-    return scene;
-}
-
 static void a_step_is_that_of_the_table(void **state)
 {
     (void)state;
@@ -282,7 +270,7 @@ static void a_step_is_that_of_the_table(void **state)
     };
     static membrane_run run;
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
-        dea_scene scene = step_scene(DEA_DOT, 1.2, table[i].coverage, 4500.0, 1e-4);
+        dea_scene scene = fe_step_scene(DEA_DOT, 1.2, table[i].coverage, 4500.0, 1e-4);
         double peak = 0.0;
         scene.material.retardation = 5e-5;
         run_field(&scene, &run);
@@ -300,7 +288,7 @@ static void a_step_is_that_of_the_table(void **state)
 /* A film without mass and damper that follows a slow ramp of the voltage. */
 static dea_scene slow_scene(dea_kind kind, double voltage)
 {
-    dea_scene scene = step_scene(kind, 1.2, 0.4, voltage, 1.0);
+    dea_scene scene = fe_step_scene(kind, 1.2, 0.4, voltage, 1.0);
     scene.material.density = (double)NAN;
     scene.material.breakdown = 1.1e8;
     scene.transient = (dea_transient){.until = 1.0, .every = 1.0 / 128.0};
@@ -362,7 +350,7 @@ static void a_film_at_its_bias_rests(void **state)
     (void)state;
     static membrane_run run;
     double times[] = {0.0, 1e-2}, voltages[] = {3000.0, 3000.0};
-    dea_scene scene = step_scene(DEA_DOT, 1.2, 0.5, 0.0, 0.0);
+    dea_scene scene = fe_step_scene(DEA_DOT, 1.2, 0.5, 0.0, 0.0);
     scene.drive.waveform = (dea_waveform){
         .kind = DEA_WAVE_POINTS, .times = times, .voltages = voltages, .point_count = 2, .period = (double)NAN};
     scene.material.retardation = 2e-5;
@@ -379,81 +367,16 @@ static void a_film_at_its_bias_rests(void **state)
     }
 }
 
-/* A random film of moderate stiffness, which a step moves by some per cent. */
-static dea_scene random_step(uint64_t *seed)
-{
-    const dea_kind kind = random_chance(seed, 0.5) ? DEA_DOT : DEA_LENS;
-    dea_scene scene = step_scene(kind, random_between(seed, 1.05, 1.5), random_between(seed, 0.2, 0.8),
-                                 random_between(seed, 1500.0, 4500.0), random_between(seed, 2e-4, 5e-4));
-    scene.material.retardation = random_between(seed, 2e-5, 5e-5); /* the judge's elements see no sharper waves */
-    scene.transient = (dea_transient){.until = 1.5e-3, .every = 5e-5};
-    scene.accuracy = random_decades(seed, 1e-5, 1e-3);
-    if (random_chance(seed, 0.5)) {
-        scene.actuator.electrode_mass = random_between(seed, 0.0, 0.05);
-    }
-    scene.material.prony_count = random_chance(seed, 0.3) ? 0 : random_chance(seed, 0.5) ? 1 : 2;
-    scene.material.prony[0] = (dea_prony){random_between(seed, 0.05, 0.2), random_decades(seed, 1e-4, 1e-1)};
-    scene.material.prony[1] = (dea_prony){random_between(seed, 0.05, 0.2), random_decades(seed, 1e-3, 1.0)};
-    if (random_chance(seed, 0.5)) {
-        scene.drive.series_resistance = random_decades(seed, 1e5, 1e6);
-        scene.drive.leakage_resistance = random_chance(seed, 0.5) ? random_decades(seed, 1e7, 1e9) : (double)NAN;
-    }
-    return scene;
-}
-
-/* Steps of the judge between two samples: as many as its fastest mode and its damper take. */
-static int judge_steps(const dea_scene *scene)
-{
-    const dea_film film = dea_law_film(scene->material.law, scene->material.constants, scene->actuator.prestretch);
-    const double shortest = 0.02 * fmin(scene->actuator.coverage, 1.0 - scene->actuator.coverage) * scene->actuator.frame_radius;
-    const double omega = 3.0 * scene->actuator.prestretch * sqrt(film.w11 / scene->material.density) / shortest;
-    return 1 + (int)(scene->transient.every * fmax(omega, 2.0 * scene->material.retardation * omega * omega) / 2.0);
-}
-
-/* Largest differences of displacement, velocity, film voltage and charge over what the columns promise. */
-static double broken_by(const dea_scene *scene, const membrane_run *run)
-{
-    static fe_film film;
-    static fe_state s;
-    const dea_scales scales = dea_scales_open(scene, dea_model_find("field"));
-    const dea_sample size = dea_scales_of(&scales, run->samples, run->rows);
-    const int steps = judge_steps(scene);
-    const double h = scene->transient.every / steps;
-    double worst = 0.0;
-    fe_open(scene, &film);
-    fe_rest(&film, &s);
-    for (size_t i = 0; i < run->rows && run->samples[i].state != DEA_STATE_PULL_IN; i++) {
-        const dea_sample *row = &run->samples[i];
-        const double voltage = fe_voltage(&film, row->time, &s);
-        worst = fmax(worst, fabs(row->displacement - s.u[fe_edge(&film)]) / size.displacement);
-        worst = fmax(worst, 0.1 * fabs(row->velocity - s.v[fe_edge(&film)]) / size.velocity);
-        worst = fmax(worst, 0.1 * fabs(row->film_voltage - voltage) / size.film_voltage);
-        if (!isnan(row->charge)) {
-            worst = fmax(worst, 0.1 * fabs(row->charge - fe_capacitance(&film, s.u) * voltage) / size.charge);
-        }
-        for (int k = 0; k < steps; k++) {
-            const double time = row->time + k * h; /* the rise ends within a step, which is cut there */
-            const double cut = film.rise - time;
-            const double first = cut > 0.0 && cut < h ? cut : h;
-            fe_step(&film, time, first, &s);
-            if (first < h) {
-                fe_step(&film, film.rise, h - first, &s);
-            }
-        }
-    }
-    return worst / scene->accuracy;
-}
-
 static void random_steps_keep_their_promises(void **state)
 {
     (void)state;
     static membrane_run run;
     uint64_t seed = UINT64_C(20250713);
     for (int i = 0; i < SCENES; i++) {
-        const dea_scene scene = random_step(&seed);
+        const dea_scene scene = fe_random_step(&seed);
         run_field(&scene, &run);
         assert_int_not_equal(run.samples[run.rows - 1].state, DEA_STATE_FAILED);
-        const double broken = broken_by(&scene, &run);
+        const double broken = fe_broken(&scene, run.samples, run.rows);
         if (!(broken <= 1.0)) {
             fail_msg("scene %d: %.3g times the accuracy", i, broken);
         }

@@ -3,9 +3,14 @@
 #include <stdlib.h>
 #include <time.h>
 
+#include "engine/ngspice/moving.h"
+#include "engine/ngspice/rings_deck.h"
 #include "netlist/export.h"
 #include "netlist/part.h"
 #include "netlist/rings_line.h"
+#include "netlist/rings_small.h"
+#include "network/rings_band.h"
+#include "network/rings_mesh.h"
 #include "ngspice_child.h"
 #include "random_scenes.h"
 
@@ -203,6 +208,141 @@ static void what_is_exported_is_the_text_that_the_engine_runs(void **state)
     free(whole);
 }
 
+/* Of the network alone; the caller frees it. */
+static char *network_in(const char *text)
+{
+    const char *begin = strstr(text, DEA_CARDS_BEGIN), *end = begin ? strstr(begin, DEA_CARDS_END) : NULL;
+    assert_non_null(end);
+    assert_true(end > begin + 1000);
+    return strndup(begin, (size_t)(end - begin));
+}
+
+enum { WITH_MASS = 1, WITH_DAMPER = 2, WITH_BRANCHES = 4, WITH_SERIES = 8, WITH_LEAK = 16, WITH_SKIN = 32, WITH_LOAD = 64, WAYS = 128 };
+
+/* One of the ways in which a film can move. */
+static dea_scene moving_scene(const dea_law *law, int way)
+{
+    static const double constants[][DEA_LAW_CONSTANTS] = {{178426.0, -6023.0, 4234.0}, {44e3}, {16e3, 7.3e3}, {45e3, 120.0}, {43.4e3, 1.445}, {40e3, 5.99}};
+    static const char *const names[] = {"yeoh", "neo_hookean", "mooney_rivlin", "gent", "ogden", "arruda_boyce"};
+    dea_scene scene = paper_scene(way % 3 ? DEA_DOT : DEA_LENS, 1.2, way % 2 ? 0.5 : 0.3, (double)NAN);
+    scene.models[0] = dea_model_find("field");
+    for (size_t i = 0; i < 6; i++) {
+        if (strcmp(names[i], law->name) == 0) {
+            memcpy(scene.material.constants, constants[i], sizeof constants[i]);
+        }
+    }
+    scene.material.law = law;
+    scene.material.entry_count = 1;
+    scene.study = DEA_STUDY_TRANSIENT;
+    scene.transient = (dea_transient){.until = 0.02, .every = 1e-3};
+    scene.drive.waveform = (dea_waveform){.kind = DEA_WAVE_STEP, .step = {1e-3, (double)NAN, 700.0, 1e-4}, .period = (double)NAN};
+    scene.accuracy = 1e-3;
+    scene.material.density = way & WITH_MASS ? 1080.0 : (double)NAN;
+    scene.material.retardation = way & WITH_DAMPER ? 2e-4 : (double)NAN;
+    scene.material.prony_count = way & WITH_BRANCHES ? 2 : 0;
+    scene.material.prony[0] = (dea_prony){0.1, 5e-3};
+    scene.material.prony[1] = (dea_prony){0.05, 0.2};
+    scene.drive.series_resistance = way & WITH_SERIES ? 1e5 : (double)NAN;
+    scene.drive.leakage_resistance = way & WITH_LEAK ? 1e11 : (double)NAN;
+    if (way & WITH_SKIN) {
+        scene.electrode = (dea_electrode){.law = law, .entry_count = 1, .thickness = 25e-6, .density = 1010.0, .sheet_resistance = (double)NAN};
+        memcpy(scene.electrode.constants, scene.material.constants, sizeof scene.electrode.constants);
+    }
+    if (way & WITH_LOAD) {
+        scene.load.mass = 1e-3;
+        scene.load.stiffness = 100.0;
+    }
+    return scene;
+}
+
+/* Byte for byte, in the units of the engine and in those of the file, on the nodes that the file names. */
+static void transients_are_one_text(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 6 * WAYS; n += 7) {
+        const char *names[] = {"yeoh", "neo_hookean", "mooney_rivlin", "gent", "ogden", "arruda_boyce"};
+        const dea_scene scene = moving_scene(dea_law_find(names[n / WAYS]), n % WAYS);
+        static dea_membrane membrane;
+        dea_units units;
+        dea_scene inside;
+        dea_rings_mesh mesh = dea_rings_mesh_of(&scene, 8.0);
+        char *text = NULL, *whole = export_of(&scene, "ngspice");
+        const char *degrees = strstr(whole, "degrees of disc and annulus: ");
+        assert_non_null(degrees);
+        assert_non_null(strstr(whole, "expected error"));
+        assert_int_equal(sscanf(degrees, "degrees of disc and annulus: %zu, %zu", &mesh.disc, &mesh.annulus), 2);
+        assert_int_equal(dea_ngspice_units_rings(&scene, scene.models[0], &units, NULL), DEA_OK);
+        assert_int_equal(dea_units_enter(&units, &scene, &inside, NULL), DEA_OK);
+        assert_int_equal(dea_membrane_open(&inside, inside.models[0], mesh, &membrane, NULL), DEA_OK);
+        assert_int_equal(dea_rings_deck_network(&inside, &membrane, 0.5, &text, NULL), DEA_OK);
+        char *ours = network_in(text), *theirs = network_in(whole);
+        if (strcmp(ours, theirs) != 0) {
+            size_t i = 0;
+            while (ours[i] == theirs[i]) {
+                i++;
+            }
+            fail_msg("way %d of %s: the engine has\n%.200s\nthe file\n%.200s", n % WAYS, names[n / WAYS], ours + i, theirs + i);
+        }
+        dea_units_leave(&inside);
+        free(ours);
+        free(theirs);
+        free(text);
+        free(whole);
+    }
+}
+
+static void frequency_responses_are_one_text(void **state)
+{
+    (void)state;
+    static dea_rings_biased biased;
+    dea_scene scene = swinging_scene(100.0);
+    double gap;
+    char *own = NULL, *whole;
+    size_t length = 0;
+    scene.ac.to = 2000.0;
+    scene.accuracy = 1e-6;
+    whole = export_of(&scene, "ngspice");
+    FILE *out = open_memstream(&own, &length);
+    assert_int_equal(dea_rings_band(&scene, scene.models[0], &biased, &gap, NULL), DEA_OK);
+    assert_true(gap > 0.0 && gap <= scene.accuracy);
+    const dea_rings_small small = {&biased.membrane, biased.u, biased.voltage};
+    dea_rings_small_write(&small, out);
+    fclose(out);
+    assert_true(length > 4000);
+    assert_non_null(strstr(whole, own));
+    free(own);
+    free(whole);
+}
+
+/* A spring and a mass on the edge, against `direct`, which integrates along the radius. */
+static void a_load_is_carried(void **state)
+{
+    (void)state;
+    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, 4500.0);
+    scene.models[0] = dea_model_find("field");
+    scene.accuracy = 1e-9;
+    scene.load.stiffness = 200.0;
+    const dea_row wanted = solve_direct(&scene, "field"), free = solve_paper("field", DEA_DOT, 1.2, 0.5, 4500.0);
+    const row_list list = run(&scene);
+    assert_true(wanted.strain < 0.9 * free.strain);
+    assert_true(is_close(list.rows[0].strain, wanted.strain, 1e-9, 0.0));
+    dea_scene swings = swinging_scene(200.0);
+    swings.accuracy = 1e-7;
+    swings.load.stiffness = 200.0;
+    swings.load.mass = 2e-3;
+    dea_response rows[2][MOST_ROWS];
+    static const char *const engines[] = {"ngspice", "direct"};
+    for (int i = 0; i < 2; i++) {
+        dea_error error = {0};
+        const dea_run_options options = {.jobs = 1, .points = take_responses, .user = rows[i]};
+        if (dea_study_run(&swings, dea_engine_find(engines[i]), &options, &error) != DEA_OK) {
+            fail_msg("%s", error.message);
+        }
+    }
+    assert_true(is_close(rows[0][0].displacement, rows[1][0].displacement, 1e-7, 0.0));
+    assert_true(is_close(rows[0][0].impedance, rows[1][0].impedance, 1e-7, 0.0));
+}
+
 static void every_dialect_says_how_many_nodes_and_how_good(void **state)
 {
     (void)state;
@@ -214,6 +354,9 @@ static void every_dialect_says_how_many_nodes_and_how_good(void **state)
         for (const char *line = text; line && *line; line = strchr(line, '\n') ? strchr(line, '\n') + 1 : NULL) {
             cards += *line == 'G';
             assert_true(*line != ' ');
+            for (const char *c = line; *c > ' ' && *line != '.' && *line != '*' && *line != '+'; c++) {
+                assert_false(*c >= 'a' && *c <= 'z'); /* names of elements */
+            }
         }
         assert_true(cards > 40);
         assert_non_null(strstr(text, "expected error"));
@@ -320,6 +463,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_sweep_goes_on_behind_points_without_equilibrium),
         cmocka_unit_test(small_motion_about_a_bias_is_that_of_the_membrane),
         cmocka_unit_test(what_is_exported_is_the_text_that_the_engine_runs),
+        cmocka_unit_test(transients_are_one_text),
+        cmocka_unit_test(frequency_responses_are_one_text),
+        cmocka_unit_test(a_load_is_carried),
         cmocka_unit_test(every_dialect_says_how_many_nodes_and_how_good),
         cmocka_unit_test(parts_stand_where_the_membrane_does),
         cmocka_unit_test(parts_swing_as_the_membrane_does),

@@ -352,7 +352,7 @@ static double complex disc_stiffness(const excitation *e, const station *s)
     return s11 * (bessel_ratio(e->inertia[0] / s11) - 1.0) + s12;
 }
 
-static double complex viscosity(const dea_dynamics *d, double omega)
+double complex dea_radial_viscosity(const dea_dynamics *d, double omega)
 {
     double complex sum = I * (omega * d->retardation);
     for (size_t i = 0; i < d->branch_count; i++) {
@@ -366,7 +366,7 @@ static dea_per_volt answer_on(const dea_radial *m, const mesh *grid, double omeg
 {
     const dea_point *point = &m->dynamics->point;
     const bool dot = is_dot(m);
-    const double complex v = viscosity(m->dynamics, omega);
+    const double complex v = dea_radial_viscosity(m->dynamics, omega);
     const double complex slope =
         2.0 * point->film.permittivity * nominal(m) / (point->film_thickness * point->film.w11) / (1.0 + v); /* dk/dU */
     const double radius = m->dynamics->radius / point->film.prestretch;                       /* R_a */

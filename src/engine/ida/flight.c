@@ -123,6 +123,42 @@ dea_state dea_flight_step(dea_flight *flight, double time, const double *w)
     return passed > crawl * time ? DEA_STATE_OK : stand_still(flight, time);
 }
 
+/* Next to its limit a source counts as there: such shares of the drop at the limit are rounding. */
+static const double at_limit = 1e-9;
+
+/* How far the drop over the resistance is past that at which the source gives its limit, over that; NAN without a state. */
+static double excess_at(const dea_flight *flight, double time, dea_flight_state *at, void *user)
+{
+    double y[DEA_MOTION_MOST];
+    if (!at(user, time, y)) {
+        return (double)NAN;
+    }
+    const dea_moment moment = dea_motion_moment(&flight->motion, time, y);
+    return dea_dynamics_excess(flight->motion.dynamics, moment.source - moment.voltage);
+}
+
+double dea_flight_cut(dea_flight *flight, double before, double time, dea_flight_state *at, void *user)
+{
+    if (!isfinite(flight->motion.dynamics->limit)) {
+        return time;
+    }
+    const double first = excess_at(flight, before, at, user), last = excess_at(flight, time, at, user);
+    if (!(first * last < 0.0) || fabs(first) < at_limit) {
+        return time;
+    }
+    double low = before, high = time;
+    while (high - low > 4e-16 * high) { /* halves end next to each other */
+        const double middle = 0.5 * (low + high);
+        *(excess_at(flight, middle, at, user) * first > 0.0 ? &low : &high) = middle;
+        if (middle <= low && middle >= high) {
+            break;
+        }
+    }
+    flight->cut = high < time;
+    flight->cut_at = high;
+    return high;
+}
+
 bool dea_flight_affords(dea_flight *flight, double steps)
 {
     const double left = (double)(MOST_STEPS - flight->spent);
@@ -157,9 +193,13 @@ static bool jump(dea_flight *flight)
     return true;
 }
 
+/* Runge-Kutta's states between steps are too coarse to cut at. */
 static bool suits(const dea_flight *flight)
 {
     const dea_ring *ring = flight->ring;
+    if (isfinite(flight->motion.dynamics->limit)) {
+        return false;
+    }
     const bool linear = flight->motion.dynamics->linear && flight->motion.q < 0;
     return ring->light && !(linear && ring->turns) && ring->fastest <= 5.0 * ring->omega;
 }
@@ -197,7 +237,8 @@ static double explicit_time(const dea_flight *flight)
     return ring->turns || ring->omega * life < 1e6 ? life : 0.0;
 }
 
-static dea_state fly_segment(dea_flight *flight)
+/* The segment, or what it is up to where it is cut. */
+static dea_state fly_part(dea_flight *flight)
 {
     const dea_segment *segment = flight->motion.segment;
     if (!jump(flight) || (flight->trace->count == 0 && !dea_flight_record(flight, 0.0, flight->y))) {
@@ -215,9 +256,29 @@ static dea_state fly_segment(dea_flight *flight)
     return dea_flight_implicit(flight, turning);
 }
 
+/* All parts of the segment; what of it is left behind a cut is a segment of its own, @p part. */
+static dea_state fly_segment(dea_flight *flight, dea_segment *part)
+{
+    dea_state state;
+    flight->motion.segment = part;
+    do {
+        flight->crawled = 0.0;
+        flight->unseen = 0;
+        flight->cut = false;
+        state = fly_part(flight);
+        if (flight->cut) {
+            const double from = part->from + flight->cut_at;
+            part->start = dea_segment_voltage(flight->signal, part, from);
+            part->from = from;
+        }
+    } while (state == DEA_STATE_OK && flight->cut && part->from < part->to);
+    return state;
+}
+
 void dea_flight_run(dea_flight *flight, double tolerance, dea_trace *trace, dea_summary *summary)
 {
     dea_audit audit = {0};
+    dea_segment part;
     double first_z[DEA_RELAXED_MAX], z[DEA_RELAXED_MAX];
     *trace = (dea_trace){.moments = trace->moments};
     flight->trace = trace;
@@ -234,10 +295,8 @@ void dea_flight_run(dea_flight *flight, double tolerance, dea_trace *trace, dea_
     const dea_moment first = dea_motion_moment(&flight->motion, 0.0, flight->y);
     dea_motion_branches(&flight->motion, flight->y, first_z);
     for (size_t i = 0; trace->end == DEA_STATE_OK && i < flight->signal->count; i++) {
-        flight->motion.segment = &flight->signal->segments[i];
-        flight->crawled = 0.0;
-        flight->unseen = 0;
-        trace->end = fly_segment(flight);
+        part = flight->signal->segments[i];
+        trace->end = fly_segment(flight, &part);
     }
     if (summary && trace->end == DEA_STATE_OK) {
         const dea_segment *segment = flight->motion.segment;

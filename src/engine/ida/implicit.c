@@ -251,6 +251,16 @@ static void integrate_step(const dea_flight *flight, double before, double time)
     }
 }
 
+static bool state_at(void *user, double time, double *y)
+{
+    const dea_flight *flight = user;
+    const double *w = unknowns_at(flight, time, 0);
+    if (w) {
+        dea_ring_state(flight->ring, dea_ring_turn(flight->ring, time, 0.0), w, y);
+    }
+    return w != NULL;
+}
+
 /* Current at a time of the last step, counted over the run [A]. */
 static double current_at(void *user, double time)
 {
@@ -324,16 +334,18 @@ dea_state dea_flight_implicit(dea_flight *flight, double from)
         return DEA_STATE_PULL_IN;
     }
     double time = from;
-    for (int code = IDA_SUCCESS; code != IDA_TSTOP_RETURN;) {
+    for (int code = IDA_SUCCESS; code != IDA_TSTOP_RETURN && !flight->cut;) {
         const double before = time;
         code = m->sun->IDASolve(m->ida, width, &time, m->y, m->yp, IDA_ONE_STEP);
         if (code < 0) {
             const bool gone = code == IDA_REP_RES_ERR || dea_motion_firmness(&flight->motion, time, flight->y) < soft;
             return gone ? DEA_STATE_PULL_IN : dea_flight_broke(flight, "IDA", code, time);
         }
-        dea_state state = dea_flight_step(flight, time, NV_DATA_S(m->y));
+        time = dea_flight_cut(flight, before, time, state_at, flight);
+        const double *w = flight->cut ? unknowns_at(flight, time, 0) : NV_DATA_S(m->y);
+        dea_state state = w ? dea_flight_step(flight, time, w) : DEA_STATE_FAILED;
         if (state == DEA_STATE_OK) {
-            state = take_samples(flight, time, code == IDA_TSTOP_RETURN);
+            state = take_samples(flight, time, code == IDA_TSTOP_RETURN && !flight->cut);
         }
         if (state != DEA_STATE_OK) {
             return state;

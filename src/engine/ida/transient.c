@@ -58,7 +58,7 @@ typedef struct gap {
 /* Current of the source behind its resistance, where it has one. */
 static double current(const dea_dynamics *d, const dea_moment *m)
 {
-    return m->charging ? m->charge_slope + m->voltage * d->conductance : d->series > 0.0 ? (m->source - m->voltage) / d->series : 0.0;
+    return m->charging ? m->charge_slope + m->voltage * d->conductance : d->series > 0.0 ? dea_dynamics_flow(d, m->source - m->voltage) : 0.0;
 }
 
 /* Largest differences of two runs; velocity and current are held to what their columns promise. */

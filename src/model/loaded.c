@@ -196,6 +196,8 @@ void dea_model_solve(const dea_model *model, const dea_point *point, double accu
 {
     if (point->force == 0.0 && !point->second.there) {
         model->solve(point, accuracy, row);
+    } else if (!model->hold) {
+        dea_row_refuse(row, DEA_STATE_FAILED); /* it has no edge */
     } else {
         const dea_holder holder = holder_of(&model);
         dea_loaded_solve(&holder, point, row);

@@ -20,11 +20,7 @@ static const double negligible = 1e-9;
  * right relative to the larger of it and the rest without that voltage. */
 static bool is_pulled(const dea_scene *scene)
 {
-    bool swept = false;
-    for (size_t i = 0; i < scene->axis_count; i++) {
-        swept = swept || scene->axes[i].offset == offsetof(dea_scene, load.force);
-    }
-    return !dea_study_of(scene)->along && (swept || fabs(scene->load.force) > 0.0 || scene->antagonist.there);
+    return !dea_study_of(scene)->along && dea_scene_is_pulled(scene);
 }
 
 /* Columns that engines must agree on. */

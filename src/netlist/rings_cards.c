@@ -67,6 +67,7 @@ static void make_stress(const dea_symbols *symbols, dea_rings_strain strain, boo
         stress[1] = ADD(stress[1], DIV(dea_hyperelastic_skin(symbols, e2, e1), l2));
     }
     if (electroded) {
+        pressure = MUL(pressure, dea_symbols_electric(symbols, l1, l2).first);
         stress[0] = SUB(stress[0], MUL(pressure, MUL(l1, SQUARE(l2))));
         stress[1] = SUB(stress[1], MUL(pressure, MUL(l2, SQUARE(l1))));
     }

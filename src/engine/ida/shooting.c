@@ -6,7 +6,8 @@
  *
  * IDA finds lambda_1 behind the edge itself, from the continuity of s1; KINSOL finds the edge, from d2 = 0 at the frame. Unknowns
  * are scaled by the load, so that no tolerance depends on its size. The capacitance of the annulus of a lens,
- * (2 pi eps R_a^2/H) int (lambda_1 lambda_2)^2 exp(2 x) dx, is summed over IDA's own steps. */
+ * (2 pi eps R_a^2/H) int (lambda_1 lambda_2)^2 exp(2 x) dx, is summed over IDA's own steps. A permittivity that follows the strain
+ * puts its factors (dea_film_electric()) before k and that integrand. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -52,13 +53,14 @@ struct dea_shooting {
     double disc_k;          /* Maxwell pressure in the disc at this share [Pa] */
     double annulus_k;       /* and in the annulus [Pa] */
     double pull;            /* what pulls the edge outward beside film and load, over 2 pi R_a H, less what a uniform film wants [Pa] */
-    double uniform;         /* where the edge is held: annulus_k, whose part of s1 in a uniform film is no part of Sigma; else 0 [Pa] */
+    double uniform;         /* where the edge is held: what of a uniform film's s1 is the voltage's, over lambda_pre^3, and no part of
+                               Sigma; else 0 [Pa] */
     double stress;          /* scale of Sigma [Pa] */
     double strain;          /* scale of d1, d2 [1] */
     double tolerance;
     double least_stress; /* of the last integration [Pa] */
     double largest_area; /* largest lambda_1 lambda_2 of the electroded region [1] */
-    double edge_force;   /* lambda_1 lambda_2^2 of the electroded side at r_a [1] */
+    double edge_force;   /* lambda_1 lambda_2^2 of the electroded side at r_a, over k its stress [1] */
     double radial;       /* lambda_1 behind r_a [1] */
     limits limits;       /* at the end of the last step */
     panel end;           /* and there */
@@ -93,6 +95,19 @@ static dea_stress stress_at(const dea_shooting *s, region where, double l1, doub
     return is_coated(s, where) ? dea_point_coated_stress(s->point, l1, l2) : film->law->stress(film->constants, l1, l2);
 }
 
+/* Electrical stress k lambda_1 lambda_2^2 of the annulus, k that of its permittivity there and its electrostriction, less that of a
+ * uniform film where `uniform` is: by the rises of both factors, so that it keeps the digits of a small strain. */
+static double annulus_pull(const dea_shooting *s, double d1, double d2)
+{
+    const dea_film *film = &s->point->film;
+    const double pre = film->prestretch, l1 = pre + d1, l2 = pre + d2, k = s->annulus_k * dea_film_electric(film, l1 * l2).first;
+    if (s->uniform == 0.0) {
+        return k * l1 * l2 * l2;
+    }
+    const double stretch = (d1 * l2 + pre * d2) / (sqrt(l1 * l2) + pre); /* rise of the mean stretch, on which `first` is linear */
+    return k * (d1 * l2 * l2 + pre * d2 * (2.0 * pre + d2)) + 1.25 * s->annulus_k * film->electrostriction * stretch * pre * pre * pre;
+}
+
 static int residual(sunrealtype x, N_Vector y, N_Vector yp, N_Vector r, void *user)
 {
     const dea_shooting *s = user;
@@ -109,12 +124,11 @@ static int residual(sunrealtype x, N_Vector y, N_Vector yp, N_Vector r, void *us
     if (isnan(shear)) {
         return 1; /* a trial step too far, or past the end of the energy: IDA takes a shorter one */
     }
-    const double difference = (d1 - d2) * (shear + s->annulus_k * l1 * l2); /* s1 - s2 */
+    const double k = s->annulus_k * dea_film_electric(film, l1 * l2).first;
+    const double difference = (d1 - d2) * (shear + k * l1 * l2); /* s1 - s2 */
     out[SIGMA] = slope[SIGMA] + difference / s->stress;
     out[HOOP] = slope[HOOP] - (v[RADIAL] - v[HOOP]);
-    const double pre = film->prestretch, rise = d1 * l2 * l2 + pre * d2 * (2.0 * pre + d2); /* of lambda_1 lambda_2^2 */
-    const double electric = s->annulus_k * rise + (s->annulus_k - s->uniform) * pre * pre * pre;
-    out[RADIAL] = (stress_change(s, ANNULUS, d1, d2) - electric) / s->stress - v[SIGMA];
+    out[RADIAL] = (stress_change(s, ANNULUS, d1, d2) - annulus_pull(s, d1, d2)) / s->stress - v[SIGMA];
     return 0;
 }
 
@@ -139,13 +153,14 @@ static limits limits_at(const dea_shooting *s, double x)
     const sunrealtype *v = NV_DATA_S(s->integrator.y), *slope = NV_DATA_S(s->integrator.yp);
     const double l1 = s->point->film.prestretch + s->strain * v[RADIAL], l1_slope = s->strain * slope[RADIAL];
     const double l2 = s->point->film.prestretch + s->strain * v[HOOP], l2_slope = s->strain * slope[HOOP];
-    const double k = s->annulus_k;
+    const dea_electric electric = dea_film_electric(&s->point->film, l1 * l2);
+    const double k = s->annulus_k * electric.first, k_slope = s->annulus_k * electric.second;
     const dea_stress stress = stress_at(s, ANNULUS, l1, l2);
     const double hoop = stress.p2 - k * l2 * l1 * l1;
     return (limits){.x = x,
                     .stress = fmin(stress.p1 - k * l1 * l2 * l2, hoop),
                     .hoop = hoop,
-                    .hoop_slope = (stress.w12 - 2.0 * k * l1 * l2) * l1_slope + (stress.w22 - k * l1 * l1) * l2_slope,
+                    .hoop_slope = (stress.w12 - (k + k_slope) * l1 * l2) * l1_slope + (stress.w22 - k_slope * l1 * l1) * l2_slope,
                     .area = l1 * l2,
                     .area_slope = l1_slope * l2 + l1 * l2_slope};
 }
@@ -185,7 +200,8 @@ static panel panel_at(const dea_shooting *s, double x)
     const double l1 = s->point->film.prestretch + s->strain * v[RADIAL];
     const double l2 = s->point->film.prestretch + s->strain * v[HOOP];
     const double area = l1 * l2, growth = s->strain * (slope[RADIAL] * l2 + l1 * slope[HOOP]), weight = exp(2.0 * x);
-    return (panel){x, area * area * weight, 2.0 * area * (growth + area) * weight};
+    const dea_electric electric = dea_film_electric(&s->point->film, area);
+    return (panel){x, electric.own * area * area * weight, 2.0 * area * (electric.first * growth + electric.own * area) * weight};
 }
 
 /* Adds the step to @p x by the trapezoidal rule with its end correction, h/2 (q0 + q1) + h^2/12 (q0' - q1'). */
@@ -197,22 +213,28 @@ static void add_charge(dea_shooting *s, double x)
     s->end = to;
 }
 
+/* Nominal stress of the voltage in the uniform disc. */
+static double disc_pull(const dea_shooting *s, double l)
+{
+    return s->disc_k * dea_film_electric(&s->point->film, l * l).first * l * l * l;
+}
+
 /* Jump of lambda_1 at the edge by its own Newton steps, only to start IDA's search near its goal. */
 static double jump_guess(const dea_shooting *s, double l)
 {
     const double edge = l - s->point->film.prestretch;
-    const double pre = s->point->film.prestretch, load = (s->disc_k - s->annulus_k) * l * l * l + s->uniform * pre * pre * pre;
-    const double at_edge = stress_change(s, DISC, edge, edge) + load_stress(s, edge);
+    const double at_edge = stress_change(s, DISC, edge, edge) + load_stress(s, edge) - disc_pull(s, l);
     double jump = 0.0;
     double sound = 0.0; /* last place within the energy */
     for (int i = 0; i < 60; i++) {
-        const double slope = stress_at(s, ANNULUS, l - jump, l).w11 - s->annulus_k * l * l;
+        const dea_electric electric = dea_film_electric(&s->point->film, (l - jump) * l);
+        const double slope = stress_at(s, ANNULUS, l - jump, l).w11 - s->annulus_k * electric.second * l * l;
         if (isnan(slope) && jump != sound) { /* a step went past the end of the energy */
             jump = 0.5 * (sound + jump);
             continue;
         }
         sound = jump;
-        const double excess = stress_change(s, ANNULUS, edge - jump, edge) - at_edge + load + s->annulus_k * jump * l * l;
+        const double excess = stress_change(s, ANNULUS, edge - jump, edge) - at_edge - annulus_pull(s, edge - jump, edge);
         const double most = 0.25 * (l - jump); /* lambda_1 moves by a quarter at most: the first root is meant */
         jump += slope > 0.0 ? fmax(-most, fmin(most, excess / slope)) : copysign(most, excess);
         if (fabs(jump - sound) <= 1e-9 * fabs(jump)) {
@@ -228,7 +250,7 @@ static bool start(dea_shooting *s, double edge)
     dea_integrator *m = &s->integrator;
     const dea_sundials *sun = m->sun;
     const double l = s->point->film.prestretch + edge;
-    const double sigma = stress_change(s, DISC, edge, edge) + load_stress(s, edge) - s->disc_k * l * l * l;
+    const double sigma = stress_change(s, DISC, edge, edge) + load_stress(s, edge) - disc_pull(s, l);
     sunrealtype *v = NV_DATA_S(m->y);
     v[SIGMA] = sigma / s->stress;
     v[HOOP] = edge / s->strain;
@@ -240,12 +262,10 @@ static bool start(dea_shooting *s, double edge)
         sun->IDAGetConsistentIC(m->ida, m->y, m->yp) != IDA_SUCCESS) {
         return false;
     }
-    const double l1 = s->point->film.prestretch + s->strain * v[RADIAL];
-    const bool lens = s->point->kind == DEA_LENS;
-    s->least_stress = stress_at(s, DISC, l, l).p1 - s->disc_k * l * l * l;
-    s->largest_area = lens ? l1 * l : l * l;
-    s->radial = l1;
-    s->edge_force = lens ? l1 * l * l : l * l * l;
+    s->radial = s->point->film.prestretch + s->strain * v[RADIAL];
+    s->least_stress = stress_at(s, DISC, l, l).p1 - disc_pull(s, l);
+    s->largest_area = s->point->kind == DEA_LENS ? s->radial * l : l * l;
+    s->edge_force = dea_film_electric(&s->point->film, s->largest_area).first * s->largest_area * l;
     s->charge = 0.0;
     s->end = panel_at(s, 0.0);
     s->limits = limits_at(s, 0.0);
@@ -409,7 +429,7 @@ static double least_s11(const dea_shooting *s, place a, place b)
         const double l2 = s->point->film.prestretch + a.edge + weight * (b.edge - a.edge);
         const double l1 = a.radial + weight * (b.radial - a.radial);
         const double k = lens ? s->pressure * (a.share + weight * (b.share - a.share)) : 0.0;
-        least = fmin(least, stress_at(s, ANNULUS, l1, l2).w11 - k * l2 * l2);
+        least = fmin(least, stress_at(s, ANNULUS, l1, l2).w11 - k * dea_film_electric(&s->point->film, l1 * l2).second * l2 * l2);
     }
     return least;
 }
@@ -548,7 +568,7 @@ static double force_on_edge(dea_shooting *s, double share, double edge)
     s->held = edge;
     s->pull = 0.0;
     set_load(s, share);
-    s->uniform = s->annulus_k;
+    s->uniform = s->annulus_k * dea_point_electric(s->point).first;
     if (edge != 0.0) {
         s->pull = search_from(s, SEARCH_PULL, lame_stiffness(s->point) * edge / s->stress) * s->stress;
     }
@@ -560,7 +580,8 @@ static double held_at(dea_shooting *s, double edge, double *push)
 {
     const double held = -force_on_edge(s, 0.0, edge), l = s->point->film.prestretch + edge;
     const bool dot = s->point->kind == DEA_DOT;
-    *push = dot ? lever_of(s->point) * s->pressure * l * l * l : force_on_edge(s, 1.0, edge) + held;
+    const double first = dea_film_electric(&s->point->film, l * l).first;
+    *push = dot ? lever_of(s->point) * s->pressure * first * l * l * l : force_on_edge(s, 1.0, edge) + held;
     if (dot) {
         s->pull -= *push / lever_of(s->point);
     }

@@ -21,7 +21,7 @@ static const double mesh_share = 0.3;
 static const double gains_nothing = 0.5;
 
 /* Most time that a run may take, roughly, and what one time step of a node does of it [s]. */
-static const double most_time = 60.0;
+static const double most_time = 30.0;
 static const double node_time = 4e-5;
 
 enum { MOST_MESHES = 6, MOST_LEVELS = 10 };

@@ -135,6 +135,7 @@ typedef struct dea_drive {
     dea_waveform waveform;     /**< of a transient */
     double series_resistance;  /**< R_s, source and electrodes [Ohm], >= 0, NAN: none */
     double leakage_resistance; /**< R_p of the film [Ohm], > 0, NAN: none */
+    double current_limit;      /**< most that the source gives or takes [A], > 0, NAN or 0: any; of a transient, behind R_s > 0 */
 } dea_drive;
 
 /** One axis of a sweep. */

@@ -185,6 +185,34 @@ dea_status dea_signal_open(const dea_scene *scene, dea_signal *signal, dea_error
     return signal->count > 0 ? DEA_OK : dea_fail(error, DEA_ERROR_USAGE, "the scene has no waveform");
 }
 
+dea_status dea_signal_cut(dea_signal *signal, const double *times, size_t count, dea_error *error)
+{
+    dea_segment *segments = malloc((signal->count + count) * sizeof *segments);
+    size_t made = 0, next = 0;
+    if (!segments) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for the segments of a waveform");
+    }
+    for (size_t i = 0; i < signal->count; i++) {
+        dea_segment part = signal->segments[i];
+        const double room = 16.0 * DBL_EPSILON * part.to;
+        for (; next < count && times[next] < signal->segments[i].to; next++) {
+            if (times[next] > part.from + room && times[next] < part.to - room) {
+                const double voltage = dea_segment_voltage(signal, &signal->segments[i], times[next]);
+                segments[made] = part;
+                segments[made].to = times[next];
+                segments[made++].end = voltage;
+                part.from = times[next];
+                part.start = voltage;
+            }
+        }
+        segments[made++] = part;
+    }
+    free(signal->segments);
+    signal->segments = segments;
+    signal->count = made;
+    return DEA_OK;
+}
+
 void dea_signal_close(dea_signal *signal)
 {
     free(signal->segments);

@@ -36,6 +36,9 @@ typedef struct dea_signal {
 dea_status dea_signal_open(const dea_scene *scene, dea_signal *signal, dea_error *error);
 void dea_signal_close(dea_signal *signal);
 
+/* Cuts segments at times inside of them, which do not decrease; the voltage stays what it is. DEA_ERROR_MEMORY. */
+dea_status dea_signal_cut(dea_signal *signal, const double *times, size_t count, dea_error *error);
+
 /* Voltage [V], its slope [V/s] and its curvature [V/s^2] inside a segment, ends included. */
 double dea_segment_voltage(const dea_signal *signal, const dea_segment *segment, double time);
 double dea_segment_slope(const dea_signal *signal, const dea_segment *segment, double time);

@@ -51,9 +51,11 @@ static inline balance balance_at(const film_pair *pair, double e)
 
 static dea_path_place place_at(const void *user, double e)
 {
-    const balance b = balance_at(user, e);
-    const double cube = (1.0 + e) * (1.0 + e) * (1.0 + e);
-    return (dea_path_place){b.load, b.slope, cube * (1.0 + e), 4.0 * cube};
+    const film_pair *pair = user;
+    const balance b = balance_at(pair, e);
+    const double square = (1.0 + e) * (1.0 + e), cube = square * (1.0 + e);
+    const dea_electric electric = dea_film_electric(pair->film, pair->film->square * square);
+    return (dea_path_place){b.load, b.slope, electric.first * square * square, 2.0 * cube * (electric.first + electric.second)};
 }
 
 /* Strain of the active film at which a region vanishes, or the energy of the material ends. */
@@ -199,12 +201,6 @@ DEA_INLINE void settle_body(walkers *w)
 
 DEA_LANES_DISPATCH(settle, settle_body, (walkers *w), (w))
 
-/* True where the root of a lane is the first from rest: U grows all the way to it. */
-static bool is_first(const walkers *w, size_t l, const dea_path *path)
-{
-    return w->root[l] > 0.0 && w->fold[l] > 0.0 && (w->clear[l] > 0.0 || dea_path_grows(path, w->strain[l]));
-}
-
 static film_pair pair_of(const dea_point *point, double ratio)
 {
     const bool skinned = point->skin_share > 0.0;
@@ -217,6 +213,19 @@ static film_pair pair_of(const dea_point *point, double ratio)
                                    ? point->load * dea_point_divide(point) / dea_point_cross_section(point) * fabs(turn)
                                    : 0.0,
                        .turn = turn};
+}
+
+/* The first root from rest of a lane whose own may not be that: where U grows all the way to it, it is. False where there is none. */
+static bool trace(const dea_point *point, const walkers *w, size_t l, double *strain)
+{
+    const film_pair pair = pair_of(point, w->ratio[l]);
+    const dea_path path = {place_at, &pair, w->stiffness[l], w->end[l], 1.0 / (1.0 + w->ratio[l]), 0.0};
+    if (!(w->stiffness[l] > 0.0) || !isfinite(w->m[l])) {
+        return false;
+    }
+    const bool constant = point->film.electrostriction == 0.0;
+    const bool first = constant && w->root[l] > 0.0 && w->fold[l] > 0.0 && (w->clear[l] > 0.0 || dea_path_grows(&path, *strain));
+    return first || dea_path_trace(&path, w->m[l], strain);
 }
 
 /* Strains of up to DEA_LANES films of as many points, each with its own ratio, under the pressures m; false where there is none. */
@@ -237,18 +246,11 @@ static void find(const dea_point *points, size_t count, const double *ratio, con
         w.end[l] = end_of(&pair);
     }
     settle(&w);
+    const bool constant = points[0].film.electrostriction == 0.0; /* as the films abreast are taken */
     for (size_t l = 0; l < count; l++) {
-        const film_pair pair = pair_of(&points[l], ratio[l]);
-        const dea_path path = {place_at, &pair, w.stiffness[l], w.end[l], 1.0 / (1.0 + ratio[l]), 0.0};
-        strain[l] = w.strain[l];
-        if (m[l] == 0.0) {
-            strain[l] = 0.0;
-            found[l] = true;
-        } else if (!(w.stiffness[l] > 0.0) || !isfinite(m[l])) {
-            found[l] = false;
-        } else {
-            found[l] = is_first(&w, l, &path) || dea_path_trace(&path, m[l], &strain[l]);
-        }
+        strain[l] = m[l] == 0.0 ? 0.0 : w.strain[l];
+        const bool clear = (w.root[l] > 0.0) & (w.fold[l] > 0.0) & (w.clear[l] > 0.0) & (w.stiffness[l] > 0.0);
+        found[l] = m[l] == 0.0 || (clear && constant) || trace(&points[l], &w, l, &strain[l]);
     }
 }
 

@@ -22,8 +22,9 @@ static const double missed = 0.01;         /* share of the static displacement t
 
 static const double rounding = 1e-12; /* of a stand-in's answer, relative to its peak */
 
-/* Of a membrane the ring stands in, whose mass and swing are off by up to a half, for its mass alone: it swings in many modes. */
-static const double safe_membrane = 4.0;
+/* Of a membrane the ring stands in, for its mass alone: it swings in many modes. What a mass changes of a slow motion goes with the inverse
+ * square of the resonance, which the ring has up to five times too high. */
+static const double safe_membrane = 4.0, safe_resonance = 2.0;
 
 enum { MANY_BRANCHES = 8 };
 
@@ -130,12 +131,12 @@ static trace trace_of(const planner *p, const dea_omission *omission)
         return (trace){s->fading * (swings ? s->swing * s->swing : 1.0), s->fading, swings ? (double)INFINITY : s->fading};
     }
     if (omission->part == DEA_PART_BRANCH && omission->form == DEA_BRANCH_DAMPER) {
-        const dea_prony *prony = &material->prony[omission->branch];
+        const dea_prony prony = dea_material_branch(material, omission->branch);
         double rest = 1.0;
         for (size_t i = 0; i < material->prony_count; i++) {
             rest -= material->prony[i].g;
         }
-        return (trace){prony->g / rest * prony->tau, prony->tau, prony->tau};
+        return (trace){prony.g / rest * prony.tau, prony.tau, prony.tau};
     }
     return (trace){0.0, 0.0, 0.0};
 }
@@ -299,10 +300,10 @@ static bool may_go(const planner *p, const dea_prony *prony)
 static void try_branch(planner *p, size_t branch)
 {
     const dea_scene *scene = p->surrogate.scene;
-    const dea_prony *prony = &scene->material.prony[branch];
-    const bool slow = prony->tau > scene->transient.until;
+    const dea_prony prony = dea_material_branch(&scene->material, branch);
+    const bool slow = prony.tau > scene->transient.until;
     dea_omission omission = {.part = DEA_PART_BRANCH, .branch = branch, .form = DEA_BRANCH_OUT};
-    if (!may_go(p, prony) || try(p, omission)) {
+    if (!may_go(p, &prony) || try(p, omission)) {
         return;
     }
     /* one that is held counts from rest, where its spring is not strained */
@@ -475,6 +476,14 @@ static double safety_of(const dea_surrogate *s)
     return s->dynamics.series > 0.0 ? safe_nonlinear : fmin(safe_nonlinear, safe_linear + doubt * s->variation);
 }
 
+/* NAN where nobody knows the membrane's resonance: with a skin or a load. */
+static double safety_of_membrane(const dea_scene *scene, dea_dynamics *ring)
+{
+    const double stiff = dea_dynamics_stiffness(ring, ring->rest, 0.0, true) / ring->mass;
+    const double pace = 2.0 * DEA_PI * dea_point_resonance(scene, &ring->point);
+    return stiff > 0.0 && pace > 0.0 ? fmax(safe_membrane, safe_resonance * stiff / (pace * pace)) : (double)NAN;
+}
+
 dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const dea_engine *engine, dea_needs *needs,
                           dea_error *error)
 {
@@ -491,9 +500,10 @@ dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const 
         needs->resonance = swing.frequency;
         needs->decay = swing.decay;
     }
-    if (status == DEA_OK && usable) {
-        p.safety = safety_of(&p.surrogate) * (p.many_nodes ? safe_membrane : 1.0);
-        status = plan(&p, error);
+    const bool linear = !isfinite(p.surrogate.dynamics.limit); /* the stand-in charges through its resistance alone */
+    if (status == DEA_OK && usable && linear) {
+        p.safety = safety_of(&p.surrogate) * (p.many_nodes ? safety_of_membrane(scene, &p.surrogate.dynamics) : 1.0);
+        status = isnan(p.safety) ? DEA_OK : plan(&p, error);
     }
     dea_surrogate_close(&p.surrogate);
     return status == DEA_ERROR_MEMORY ? status : DEA_OK;

@@ -24,6 +24,7 @@ static const dea_dialect dialects[] = {
                      ".options method=trap trtol=1e30 itl4=50 pivtol=1e-60 pivrel=0.3 chgtol=1e-30\n",
         .ac = "* the network is linear: no operating point\n.options noopac pivtol=1e-60\n",
         .sweep = ".options itl1=200 itl2=200\n",
+        .table = "pwl",
         .save = ".save",
     },
     {

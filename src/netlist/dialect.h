@@ -25,6 +25,7 @@ typedef struct dea_dialect {
     const char *transient;            /* lines before a transient of a whole study, */
     const char *ac;                   /* its frequency response, */
     const char *sweep;                /* its sweep */
+    const char *table;                /* function of a value and a list of pairs, between which it is linear; NULL: none */
     const char *save;                 /* card that the nodes to be kept follow, NULL: none */
 } dea_dialect;
 

@@ -2,8 +2,6 @@
 
 #include "study/study.h"
 
-#include <math.h>
-
 void dea_export_head(const dea_export *export, const char *meaning)
 {
     const dea_scene *scene = export->scene;
@@ -33,7 +31,7 @@ static dea_status refuse_models(const dea_scene *scene, dea_error *error)
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "a netlist holds one model, the scene has %zu: choose one, --model %s",
                         scene->model_count, scene->models[0]->name);
     }
-    if (scene->models[0]->membrane && dea_study_of(scene)->timed && scene->electrode.sheet_resistance > 0.0) {
+    if (scene->models[0]->membrane && dea_study_of(scene)->along && scene->electrode.sheet_resistance > 0.0) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the potential along a sheet resistance of the model %s is no netlist: --model ring "
                                                       "has one resistance for it", scene->models[0]->name);
     }

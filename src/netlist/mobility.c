@@ -446,12 +446,16 @@ static void write_hyperelastic_numbers(const dea_cards *c, const dea_mobility_st
 
 /* ---- the port */
 
-static void write_resistors(const dea_cards *c)
+static void write_resistors(dea_cards *c)
 {
     if (c->dynamics->conductance > 0.0) {
         fputs("* leakage resistance of the film [Ohm]\nRLEAK film 0 {r_leak}\n", c->out);
     }
-    if (c->dynamics->series > 0.0) {
+    if (isfinite(c->dynamics->limit)) {
+        fputs("* series resistance of source and electrodes [Ohm] behind a source of no more than i_limit [A]\n", c->out);
+        dea_part_text_source(&c->text, DEA_CURRENT, "SERIES", "source", "film",
+                             "min([i_limit],max(-[i_limit],(v(source)-v(film))/[r_series]))");
+    } else if (c->dynamics->series > 0.0) {
         fputs("* series resistance of source and electrodes [Ohm]\nRSERIES source film {r_series}\n", c->out);
     }
 }
@@ -463,6 +467,9 @@ static void write_resistor_numbers(const dea_cards *c, double unit)
     }
     if (c->dynamics->series > 0.0) {
         dea_part_value(c->out, "r_series", unit * c->dynamics->series);
+    }
+    if (isfinite(c->dynamics->limit)) {
+        dea_part_value(c->out, "i_limit", c->dynamics->limit / unit);
     }
 }
 
@@ -649,8 +656,7 @@ double dea_cards_film_voltage(dea_cards *c, const dea_cards_numbers *n, double s
 
 static void start_node(const dea_cards *c, const char *node, double value)
 {
-    fprintf(c->out, " v(%s)=", node);
-    dea_part_number(c->out, value);
+    dea_part_print(c->out, " v(%s)=%g", node, value);
 }
 
 void dea_cards_write_start(dea_cards *c, const dea_cards_numbers *n, double source)
@@ -715,8 +721,5 @@ void dea_cards_write_band(const dea_mobility_band *band, FILE *out)
     } else {
         fprintf(out, ".ac lin %zu ", band->count > 1 ? band->count : 1);
     }
-    dea_part_number(out, band->from);
-    fputc(' ', out);
-    dea_part_number(out, band->to);
-    fputs("\n.end\n", out);
+    dea_part_print(out, "%g %g\n.end\n", band->from, band->to);
 }

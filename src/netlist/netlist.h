@@ -38,8 +38,7 @@ void dea_still_cards_write_start(dea_still_cards *cards, const char *inside, dou
 
 /* True where points `from` to `to`, excluded, are a part of an even axis, in which v(point) holds the index. */
 bool dea_axis_holds(const dea_axis *axis, size_t from, size_t to);
-/* Those points as the voltage v(axis) of the index v(k), so that no rounding adds up along a sweep; a list as the sum of its steps,
- * each of which rises between two indices. */
+/* Those points as the voltage v(axis) of the index v(k), so that no rounding adds up along a sweep. */
 void dea_axis_write(const dea_part_text *text, const dea_axis *axis, size_t from, size_t to);
 
 /* How the netlist is driven. */

@@ -17,11 +17,32 @@ void dea_part_number(FILE *out, double value)
     fputs(dea_number_text(text, value, digits), out);
 }
 
+void dea_part_print(FILE *out, const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    for (const char *c = format; *c; c++) {
+        if (*c != '%') {
+            fputc(*c, out);
+        } else if (*++c == 'g') {
+            dea_part_number(out, va_arg(values, double));
+        } else if (*c == 's') {
+            fputs(va_arg(values, const char *), out);
+        } else if (*c == 'z') { /* %zu */
+            fprintf(out, "%zu", va_arg(values, size_t));
+            c++;
+        } else if (*c == 'd') {
+            fprintf(out, "%d", va_arg(values, int));
+        } else {
+            fputc(*c == 'c' ? va_arg(values, int) : *c, out);
+        }
+    }
+    va_end(values);
+}
+
 void dea_part_value(FILE *out, const char *name, double value)
 {
-    fprintf(out, ".param %s=", name);
-    dea_part_number(out, value);
-    fputc('\n', out);
+    dea_part_print(out, ".param %s=%g\n", name, value);
 }
 
 /* Places of the displacement in a term, up to MANY: what is worth a node. */
@@ -35,16 +56,16 @@ static void mark_moving(const dea_pool *pool, dea_part_text *text, double *rest)
     for (int i = 0; i < pool->count; i++) {
         const dea_term *term = &pool->terms[i];
         const bool made = term->operation >= DEA_ADD;
-        const int places = made ? text->places[term->a] + text->places[term->b] : term->operation == DEA_NODE;
-        text->places[i] = places < MANY ? places : MANY;
-        text->moves[i] = places > 0;
-        text->nodal[i] = places >= WORTH && rest[i] == 0.0;
+        const int places = made ? text->terms[term->a].places + text->terms[term->b].places : term->operation == DEA_NODE;
+        text->terms[i].places = places < MANY ? places : MANY;
+        text->terms[i].moves = places > 0;
+        text->terms[i].nodal = places >= WORTH && rest[i] == 0.0;
     }
     for (int i = pool->count - 1; i >= 0; i--) { /* terms stand behind those that they are made of */
         const dea_term *term = &pool->terms[i];
         if (term->operation >= DEA_ADD) {
-            text->divides[term->a] = text->divides[term->a] || text->divides[i] || term->operation == DEA_LN;
-            text->divides[term->b] = text->divides[term->b] || text->divides[i] || term->operation == DEA_DIV;
+            text->terms[term->a].divides = text->terms[term->a].divides || text->terms[i].divides || term->operation == DEA_LN;
+            text->terms[term->b].divides = text->terms[term->b].divides || text->terms[i].divides || term->operation == DEA_DIV;
         }
     }
 }
@@ -53,18 +74,9 @@ bool dea_part_text_open(dea_part_text *text, const dea_pool *pool, const dea_dia
 {
     const size_t size = (size_t)pool->count + 1;
     *text = (dea_part_text){.pool = pool, .dialect = dialect, .out = out};
-    text->uses = calloc(size, sizeof *text->uses);
-    text->carded = calloc(size, sizeof *text->carded);
-    text->moves = calloc(size, sizeof *text->moves);
-    text->places = calloc(size, sizeof *text->places);
-    text->divides = calloc(size, sizeof *text->divides);
-    text->nodal = calloc(size, sizeof *text->nodal);
-    text->written = calloc(size, sizeof *text->written);
-    text->owners = calloc(size, sizeof *text->owners);
-    text->numbers = calloc(size, sizeof *text->numbers);
+    text->terms = calloc(size, sizeof *text->terms);
     double *rest = calloc(size, sizeof *rest);
-    const bool ready = !pool->exhausted && text->uses && text->carded && text->moves && text->places && text->divides &&
-                       text->nodal && text->written && text->owners && text->numbers && rest;
+    const bool ready = !pool->exhausted && text->terms && rest;
     if (ready) {
         mark_moving(pool, text, rest);
     }
@@ -75,15 +87,7 @@ bool dea_part_text_open(dea_part_text *text, const dea_pool *pool, const dea_dia
 void dea_part_text_close(dea_part_text *text)
 {
     free(text->names);
-    free(text->uses);
-    free(text->carded);
-    free(text->moves);
-    free(text->places);
-    free(text->divides);
-    free(text->nodal);
-    free(text->written);
-    free(text->owners);
-    free(text->numbers);
+    free(text->terms);
     free(text->roots);
     *text = (dea_part_text){0};
 }
@@ -92,7 +96,7 @@ void dea_part_text_close(dea_part_text *text)
 static bool is_scaled(const dea_part_text *text, const dea_term *term)
 {
     const bool product = term->operation == DEA_MUL, quotient = term->operation == DEA_DIV;
-    return ((product || quotient) && !text->moves[term->b]) || (product && !text->moves[term->a]);
+    return ((product || quotient) && !text->terms[term->b].moves) || (product && !text->terms[term->a].moves);
 }
 
 void dea_part_text_share(dea_part_text *text)
@@ -100,7 +104,7 @@ void dea_part_text_share(dea_part_text *text)
     text->dividing = true;
     for (int i = 0; i < text->pool->count; i++) {
         const dea_term *term = &text->pool->terms[i];
-        text->nodal[i] = text->moves[i] && term->operation >= DEA_ADD && !dea_operation_of(term->operation)->inner && !is_scaled(text, term);
+        text->terms[i].nodal = text->terms[i].moves && term->operation >= DEA_ADD && !dea_operation_of(term->operation)->inner && !is_scaled(text, term);
     }
 }
 
@@ -159,8 +163,8 @@ void dea_part_text_name(dea_part_text *text, dea_expr ref, const char *name, con
 static void claim(dea_part_text *text, dea_expr ref)
 {
     const dea_term *term = &text->pool->terms[ref];
-    if (text->owners[ref] == 0) {
-        text->owners[ref] = text->root;
+    if (text->terms[ref].owner == 0) {
+        text->terms[ref].owner = text->root;
         if (term->operation >= DEA_ADD) {
             claim(text, term->a);
             claim(text, term->b);
@@ -184,10 +188,10 @@ void dea_part_text_call(dea_part_text *text, const dea_network *network)
 static void use(dea_part_text *text, dea_expr ref, bool in_source)
 {
     const dea_term *term = &text->pool->terms[ref];
-    const bool moves = text->moves[ref];
-    text->owners[ref] = text->owners[ref] ? text->owners[ref] : text->root;
-    text->carded[ref] = text->carded[ref] || (in_source && !moves);
-    const bool again = text->uses[ref]++ > 0 && (!moves || text->nodal[ref]); /* else it is written out each time */
+    const bool moves = text->terms[ref].moves;
+    text->terms[ref].owner = text->terms[ref].owner ? text->terms[ref].owner : text->root;
+    text->terms[ref].carded = text->terms[ref].carded || (in_source && !moves);
+    const bool again = text->terms[ref].uses++ > 0 && (!moves || text->terms[ref].nodal); /* else it is written out each time */
     if (!again && term->operation >= DEA_ADD) {
         use(text, term->a, moves);
         if (dea_operation_of(term->operation)->operands == 2) {
@@ -205,8 +209,8 @@ void dea_part_text_use(dea_part_text *text, dea_expr ref)
 static void allow_nodes(dea_part_text *text, dea_expr ref)
 {
     const dea_term *term = &text->pool->terms[ref];
-    if (term->operation >= DEA_ADD && text->uses[ref] == 0) {
-        text->nodal[ref] = text->nodal[ref] || (text->places[ref] >= WORTH && !text->divides[ref]);
+    if (term->operation >= DEA_ADD && text->terms[ref].uses == 0) {
+        text->terms[ref].nodal = text->terms[ref].nodal || (text->terms[ref].places >= WORTH && !text->terms[ref].divides);
         allow_nodes(text, term->a);
         allow_nodes(text, term->b);
     }
@@ -228,10 +232,10 @@ const char *dea_part_text_parameter(const dea_part_text *text, dea_expr ref, cha
         snprintf(name, DEA_PART_NAME, "%s", text->symbols[term->a]);
     } else if (own) {
         snprintf(name, DEA_PART_NAME, "%s", own->name);
-    } else if (text->owners[ref]) {
-        snprintf(name, DEA_PART_NAME, "%s_%d", text->roots[text->owners[ref] - 1].name, text->numbers[ref]);
+    } else if (text->terms[ref].owner) {
+        snprintf(name, DEA_PART_NAME, "%s_%d", text->roots[text->terms[ref].owner - 1].name, text->terms[ref].number);
     } else {
-        snprintf(name, DEA_PART_NAME, "%c%d", text->moves[ref] ? 'x' : 'p', ref);
+        snprintf(name, DEA_PART_NAME, "%c%d", text->terms[ref].moves ? 'x' : 'p', ref);
     }
     return name;
 }
@@ -254,7 +258,7 @@ static void write_term(const stream *s, dea_expr ref);
 /* Terms that move with the swept scalar alone are the same for all nodes. */
 static const char *suffix_of(const dea_part_text *text, dea_expr ref)
 {
-    return text->suffix && text->places[ref] > 0 ? text->suffix : "";
+    return text->suffix && text->terms[ref].places > 0 ? text->suffix : "";
 }
 
 static void write_operand(const stream *s, dea_expr ref, bool brackets)
@@ -262,17 +266,17 @@ static void write_operand(const stream *s, dea_expr ref, bool brackets)
     const dea_part_text *t = s->text;
     const dea_term *term = &t->pool->terms[ref];
     char name[DEA_PART_NAME];
-    if (t->moves[ref] && t->written[ref] && (t->dividing || !s->divisor || t->places[ref] == 0)) {
+    if (t->terms[ref].moves && t->terms[ref].written && (t->dividing || !s->divisor || t->terms[ref].places == 0)) {
         fprintf(t->out, "v(%s%s)", dea_part_text_parameter(t, ref, name), suffix_of(t, ref));
     } else if (term->operation == DEA_NODE) {
         fputs(t->nodes ? t->nodes[term->a] : t->node, t->out);
     } else if (is_plain(term)) {
         fprintf(t->out, "%d", (int)term->number);
-    } else if (term->operation == DEA_SYMBOL && t->moves[ref]) {
+    } else if (term->operation == DEA_SYMBOL && t->terms[ref].moves) {
         fputs(t->symbols[term->a], t->out);
-    } else if (s->source && !t->moves[ref]) {
+    } else if (s->source && !t->terms[ref].moves) {
         dea_dialect_parameter(t->dialect, t->out, dea_part_text_parameter(t, ref, name));
-    } else if (term->operation == DEA_SYMBOL || (t->written[ref] && !t->moves[ref])) {
+    } else if (term->operation == DEA_SYMBOL || (t->terms[ref].written && !t->terms[ref].moves)) {
         fputs(dea_part_text_parameter(t, ref, name), t->out);
     } else if (term->operation == DEA_NUMBER) {
         fputs(term->number < 0.0 ? "(" : "", t->out);
@@ -311,7 +315,7 @@ static void write_term(const stream *s, dea_expr ref)
     if (term->operation < DEA_ADD) {
         write_operand(s, ref, false);
     } else {
-        dea_dialect_operation(t->dialect, t->out, term->operation, t->moves[ref], write_side, &(written_term){s, term});
+        dea_dialect_operation(t->dialect, t->out, term->operation, t->terms[ref].moves, write_side, &(written_term){s, term});
     }
 }
 
@@ -320,11 +324,11 @@ static void write_term(const stream *s, dea_expr ref)
 static bool gets_card(const dea_part_text *text, dea_expr ref)
 {
     const dea_term *term = &text->pool->terms[ref];
-    if (text->uses[ref] == 0 || text->moves[ref] || is_plain(term) || (term->operation == DEA_SYMBOL && !text->values)) {
+    if (text->terms[ref].uses == 0 || text->terms[ref].moves || is_plain(term) || (term->operation == DEA_SYMBOL && !text->values)) {
         return false;
     }
-    return text->carded[ref] ||
-           (!text->values && term->operation >= DEA_ADD && (text->uses[ref] > 1 || name_of(text, ref)));
+    return text->terms[ref].carded ||
+           (!text->values && term->operation >= DEA_ADD && (text->terms[ref].uses > 1 || name_of(text, ref)));
 }
 
 static void write_meaning(const dea_part_text *text, dea_expr ref)
@@ -338,14 +342,14 @@ static void write_meaning(const dea_part_text *text, dea_expr ref)
 /* Its number among those of its root. */
 static void give_number(dea_part_text *text, dea_expr ref)
 {
-    if (text->owners[ref] && text->numbers[ref] == 0 && text->pool->terms[ref].operation != DEA_SYMBOL && !name_of(text, ref)) {
-        text->numbers[ref] = ++text->roots[text->owners[ref] - 1].count;
+    if (text->terms[ref].owner && text->terms[ref].number == 0 && text->pool->terms[ref].operation != DEA_SYMBOL && !name_of(text, ref)) {
+        text->terms[ref].number = ++text->roots[text->terms[ref].owner - 1].count;
     }
 }
 
 static bool gets_node(const dea_part_text *text, dea_expr ref)
 {
-    return text->nodal[ref] && text->uses[ref] > 1;
+    return text->terms[ref].nodal && text->terms[ref].uses > 1;
 }
 
 /* What sources refer to first, so that they read the same with numbers and with formulas. */
@@ -353,7 +357,7 @@ static void number_terms(dea_part_text *text)
 {
     for (int pass = 0; pass < 3; pass++) {
         for (int i = 0; i < text->pool->count; i++) {
-            const bool its = pass == 0 ? gets_node(text, i) : gets_card(text, i) && text->carded[i] == (pass == 1);
+            const bool its = pass == 0 ? gets_node(text, i) : gets_card(text, i) && text->terms[i].carded == (pass == 1);
             if (its) {
                 give_number(text, i);
             }
@@ -365,7 +369,7 @@ static void number_terms(dea_part_text *text)
 static void card_aside(dea_part_text *text, dea_expr ref)
 {
     const dea_term *term = &text->pool->terms[ref];
-    if (!text->moves[ref]) {
+    if (!text->terms[ref].moves) {
         use(text, ref, true);
     } else if (term->operation >= DEA_ADD) {
         card_aside(text, term->a);
@@ -400,7 +404,7 @@ void dea_part_text_parameters(dea_part_text *text)
         if (gets_card(text, i)) {
             write_meaning(text, i);
             write_card(text, i);
-            text->written[i] = true;
+            text->terms[i].written = true;
         }
     }
 }
@@ -410,9 +414,9 @@ void dea_part_text_move_symbol(dea_part_text *text, int index)
     for (int i = 0; i < text->pool->count; i++) {
         const dea_term *term = &text->pool->terms[i];
         const bool made = term->operation >= DEA_ADD;
-        const bool swept = made ? text->moves[term->a] || text->moves[term->b] : term->operation == DEA_SYMBOL && term->a == index;
-        text->moves[i] = text->moves[i] || swept;
-        text->nodal[i] = text->nodal[i] || (made && swept && text->places[i] == 0 && !dea_expr_is_scaled(text->pool, i));
+        const bool swept = made ? text->terms[term->a].moves || text->terms[term->b].moves : term->operation == DEA_SYMBOL && term->a == index;
+        text->terms[i].moves = text->terms[i].moves || swept;
+        text->terms[i].nodal = text->terms[i].nodal || (made && swept && text->terms[i].places == 0 && !dea_expr_is_scaled(text->pool, i));
     }
 }
 
@@ -425,7 +429,7 @@ static void write_node(dea_part_text *text, dea_expr ref)
     dea_dialect_source_begin(text->dialect, text->out, DEA_VOLTAGE, name, name, "0");
     write_term(&s, ref);
     dea_dialect_source_end(text->dialect, text->out);
-    text->written[ref] = true;
+    text->terms[ref].written = true;
 }
 
 void dea_part_text_nodes(dea_part_text *text)
@@ -440,7 +444,7 @@ void dea_part_text_nodes(dea_part_text *text)
 void dea_part_text_start(const dea_part_text *text, const char *inside, const double *values)
 {
     for (int i = 0; i < text->pool->count; i++) {
-        if (text->written[i] && text->moves[i]) {
+        if (text->terms[i].written && text->terms[i].moves) {
             char name[DEA_PART_NAME];
             fprintf(text->out, " v(%s%s)=", inside, dea_part_text_parameter(text, i, name));
             dea_part_number(text->out, values[i]);
@@ -451,7 +455,7 @@ void dea_part_text_start(const dea_part_text *text, const char *inside, const do
 void dea_part_text_swept(dea_part_text *text)
 {
     for (int i = 0; i < text->pool->count; i++) {
-        if (text->nodal[i] && text->places[i] == 0 && text->uses[i] > 0) {
+        if (text->terms[i].nodal && text->terms[i].places == 0 && text->terms[i].uses > 0) {
             write_node(text, i);
         }
     }
@@ -460,10 +464,10 @@ void dea_part_text_swept(dea_part_text *text)
 void dea_part_text_nodes_of(dea_part_text *text, dea_expr ref)
 {
     const dea_term *term = &text->pool->terms[ref];
-    if (text->moves[ref] && !text->written[ref] && term->operation >= DEA_ADD) {
+    if (text->terms[ref].moves && !text->terms[ref].written && term->operation >= DEA_ADD) {
         dea_part_text_nodes_of(text, term->a);
         dea_part_text_nodes_of(text, term->b);
-        if (text->nodal[ref] && text->uses[ref] > 1) {
+        if (text->terms[ref].nodal && text->terms[ref].uses > 1) {
             write_node(text, ref);
         }
     }
@@ -472,7 +476,7 @@ void dea_part_text_nodes_of(dea_part_text *text, dea_expr ref)
 void dea_part_text_again(dea_part_text *text)
 {
     for (int i = 0; i < text->pool->count; i++) {
-        text->written[i] = text->written[i] && !(text->moves[i] && text->places[i] > 0);
+        text->terms[i].written = text->terms[i].written && !(text->terms[i].moves && text->terms[i].places > 0);
     }
 }
 

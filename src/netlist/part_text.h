@@ -23,6 +23,19 @@ typedef struct dea_part_root {
     int count;
 } dea_part_root;
 
+/* What is known of a term. */
+typedef struct dea_part_term {
+    int uses;     /* how often it is written */
+    int places;   /* how often the displacement stands in it, up to a bound */
+    int owner;    /* its root + 1, 0: none */
+    int number;   /* its number there */
+    bool carded;  /* a source refers to it, so that it needs a .param card */
+    bool moves;   /* depends on the displacement */
+    bool divides; /* stands in a divisor or a logarithm */
+    bool nodal;   /* becomes a node where it is shared */
+    bool written; /* has its .param card or its node */
+} dea_part_term;
+
 typedef struct dea_part_text {
     const dea_pool *pool;
     const dea_dialect *dialect;
@@ -34,19 +47,11 @@ typedef struct dea_part_text {
     const char *suffix;         /* of the nodes of shared terms that move with nodes of the pool, NULL: none */
     dea_part_name *names;       /* owned */
     size_t name_count;
-    int *uses;      /* owned: how often a term is written */
-    bool *carded;   /* owned: a source refers to it, so that it needs a .param card */
-    bool *moves;    /* owned: depends on the displacement */
-    int *places;    /* owned: how often the displacement stands in it, up to a bound */
-    bool *divides;  /* owned: stands in a divisor or a logarithm */
-    bool *nodal;    /* owned: becomes a node where it is shared */
-    bool *written;  /* owned: has its .param card or its node */
-    bool dividing;  /* nodes may stand in divisors: Newton does not start with every node at 0 */
-    dea_part_root *roots; /* owned */
-    int root_count, root; /* the one at hand is number root - 1 */
-    int *owners;    /* owned: of a term, its root + 1, 0: none */
-    int *numbers;   /* owned: its number there */
-    bool exhausted; /* memory ran out: a name is missing */
+    dea_part_term *terms;       /* owned: of each term of the pool */
+    bool dividing;              /* nodes may stand in divisors: Newton does not start with every node at 0 */
+    dea_part_root *roots;       /* owned */
+    int root_count, root;       /* the one at hand is number root - 1 */
+    bool exhausted;             /* memory ran out: a name is missing */
 } dea_part_text;
 
 /* Starts a text; the pool must not grow any more. False without memory. End it with dea_part_text_close() in either case. */
@@ -98,6 +103,8 @@ const char *dea_part_text_parameter(const dea_part_text *text, dea_expr ref, cha
 
 /* A number with as few digits as give it back. */
 void dea_part_number(FILE *out, double value);
+/* As fprintf() with %s, %zu, %d and %c, but %g is such a number. */
+void dea_part_print(FILE *out, const char *format, ...) DEA_PRINTF(2, 3);
 /* `.param name=value` */
 void dea_part_value(FILE *out, const char *name, double value);
 

@@ -90,6 +90,7 @@ static void make_stress(const dea_symbols *symbols, dea_rings_strain strain, boo
         stress[1] = ADD(stress[1], DIV(dea_hyperelastic_skin(symbols, e2, e1), l2));
     }
     if (electroded) {
+        pressure = MUL(pressure, dea_symbols_electric(symbols, l1, l2).first);
         stress[0] = SUB(stress[0], MUL(pressure, MUL(l1, SQUARE(l2))));
         stress[1] = SUB(stress[1], MUL(pressure, MUL(l2, SQUARE(l1))));
     }
@@ -142,14 +143,14 @@ enum { WORTH = 3 };
 static bool is_worth(const dea_part_text *text, dea_expr ref)
 {
     const dea_term *term = &text->pool->terms[ref];
-    const bool scaled = term->operation == DEA_MUL && (!text->moves[term->a] || !text->moves[term->b]);
-    return text->places[ref] == 0 || (text->places[ref] >= WORTH && !scaled);
+    const bool scaled = term->operation == DEA_MUL && (!text->terms[term->a].moves || !text->terms[term->b].moves);
+    return text->terms[ref].places == 0 || (text->terms[ref].places >= WORTH && !scaled);
 }
 
 void dea_rings_cards_share(dea_part_text *text)
 {
     for (int i = 0; i < text->pool->count; i++) {
-        text->nodal[i] = text->nodal[i] && is_worth(text, i);
+        text->terms[i].nodal = text->terms[i].nodal && is_worth(text, i);
     }
 }
 
@@ -211,7 +212,7 @@ static void write_stresses(const dea_rings_writer *w, const dea_rings_ring *ring
     for (int a = 0; a < stresses_of(ring); a++) {
         dea_rings_begin(w, dea_rings_label_of(a == 0 ? "s" : "t", number).text);
         dea_part_text_write(w->text, stress[a]);
-        if (w->text->moves[levers[a]]) {
+        if (w->text->terms[levers[a]].moves) {
             fputc('*', w->out);
             dea_part_text_write(w->text, levers[a]);
         }
@@ -222,7 +223,7 @@ static void write_stresses(const dea_rings_writer *w, const dea_rings_ring *ring
 /* Forces of a ring on its nodes, as currents out of them. */
 static void write_forces(const dea_rings_writer *w, const dea_rings_ring *ring, size_t number)
 {
-    const bool swept = w->text->moves[ring->along];
+    const bool swept = w->text->terms[ring->along].moves;
     const dea_rings_label s = dea_rings_label_of("s", number), t = dea_rings_label_of(ring->strain == DEA_RINGS_FREE ? "t" : "s", number);
     dea_rings_spread(w, ring, s.text, 'u', swept ? NULL : dea_rings_parameter(w, ring->along).text);
     if (ring->strain != DEA_RINGS_FRAME) {
@@ -258,7 +259,7 @@ void dea_rings_cards_write(const dea_rings_cards *cards, dea_part_text *text)
         }
         dea_rings_place here = {.nodes = nodes};
         dea_rings_enter(&w, &here, q + 1, "");
-        (text->moves[ring->radial] ? write_swept_strains : write_strains)(&w, ring, q + 1);
+        (text->terms[ring->radial].moves ? write_swept_strains : write_strains)(&w, ring, q + 1);
         dea_rings_thickness(&w, ring->strain, q + 1);
         write_stresses(&w, ring, q + 1);
         write_forces(&w, ring, q + 1);

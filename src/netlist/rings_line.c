@@ -28,7 +28,7 @@ typedef struct writer {
 static void write_edge(const writer *w)
 {
     fputs("* displacement of the edge [m]\n", w->out);
-    if (!w->text.moves[w->symbols.frame_radius]) {
+    if (!w->text.terms[w->symbols.frame_radius].moves) {
         char radius[DEA_PART_NAME];
         fprintf(w->out, "EEDGE edge 0 u%zu 0 {%s}\n", w->cards.edge,
                 dea_part_text_parameter(&w->text, w->symbols.frame_radius, radius));
@@ -59,7 +59,7 @@ static dea_status write_start(writer *w, dea_error *error)
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
     }
     for (int i = 0; i < w->pool.count; i++) {
-        if (w->text.written[i] && w->text.moves[i]) {
+        if (w->text.terms[i].written && w->text.terms[i].moves) {
             refs[count++] = i;
         }
     }

@@ -29,7 +29,7 @@ static void make_nominal(const dea_symbols *symbols, dea_rings_moving *m, int st
     const dea_expr e[2] = {dea_expr_node(pool, DEA_RINGS_E1),
                            strain == DEA_RINGS_FRAME ? NUM(0.0) : dea_expr_node(pool, DEA_RINGS_E2)};
     const dea_expr l1 = ADD(NUM(1.0), e[0]), l2 = ADD(NUM(1.0), e[1]);
-    const dea_expr pressure = dea_expr_node(pool, PRESSURE);
+    const dea_expr pressure = MUL(dea_expr_node(pool, PRESSURE), dea_symbols_electric(symbols, l1, l2).first);
     for (int a = 0; a < 2; a++) {
         const dea_expr film = SUB(dea_expr_node(pool, HELD1 + a), MUL(m->rest, e[a])), l = a == 0 ? l1 : l2;
         const dea_expr coated = symbols->skin ? ADD(film, dea_hyperelastic_skin(symbols, e[a], e[1 - a])) : film;
@@ -99,7 +99,7 @@ void dea_rings_moving_make(const dea_symbols *symbols, const dea_rings_numbers *
     }
     make_weights(symbols, m, numbers);
     const dea_expr l1 = ADD(NUM(1.0), dea_expr_node(pool, DEA_RINGS_E1)), l2 = ADD(NUM(1.0), dea_expr_node(pool, DEA_RINGS_E2));
-    m->swell = dea_expr_change(pool, MUL(SQUARE(l1), SQUARE(l2)));
+    m->swell = dea_expr_change(pool, MUL(dea_symbols_electric(symbols, l1, l2).own, MUL(SQUARE(l1), SQUARE(l2))));
 }
 
 static const char *const damper_names[2] = {"dx", "dy"};

@@ -71,7 +71,8 @@ bool dea_dynamics_relax(dea_dynamics *d, const dea_scene *scene)
         rest -= material->prony[i].g;
     }
     for (size_t i = 0; i < material->prony_count && rest > 0.0; i++) {
-        add_branch(d, scene->reduction.branches[i], (dea_branch){material->prony[i].g / rest, material->prony[i].tau});
+        const dea_prony branch = dea_material_branch(material, i);
+        add_branch(d, scene->reduction.branches[i], (dea_branch){branch.g / rest, branch.tau});
     }
     share_out(d);
     join_branches(d);
@@ -88,6 +89,7 @@ static void set_port(const dea_scene *scene, dea_dynamics *d)
         d->dropped = d->series;
         d->series = 0.0;
     }
+    d->limit = drive->current_limit > 0.0 ? drive->current_limit : (double)INFINITY;
     d->conductance = isnan(drive->leakage_resistance) ? 0.0 : 1.0 / drive->leakage_resistance;
 }
 
@@ -179,6 +181,10 @@ dea_status dea_dynamics_settle(const dea_scene *scene, const dea_model *model, d
                                   !(fabs(scene->load.force) > 0.0) && !scene->antagonist.there};
     d->damping = scene->load.damping > 0.0 ? scene->load.damping : 0.0;
     d->softens = !scene->reduction.softening;
+    const double shift = dea_material_shift(&scene->material);
+    if (!(shift > 0.0 && isfinite(shift))) {
+        return dea_fail(error, DEA_ERROR_USAGE, "the shift factors of the material do not reach the temperature %g K", scene->material.temperature);
+    }
     if (!dea_dynamics_relax(d, scene)) {
         return dea_fail(error, DEA_ERROR_USAGE, "the shares g of the branches sum to 1 or more");
     }
@@ -329,7 +335,7 @@ bool dea_dynamics_equilibrium(const dea_dynamics *dynamics, double voltage, doub
 
 bool dea_dynamics_begin(const dea_dynamics *d, bool from_bias, double source, double *u, double *voltage)
 {
-    *voltage = from_bias ? source / (1.0 + d->series * d->conductance) : 0.0;
+    *voltage = from_bias ? dea_dynamics_rest(d, source) : 0.0;
     *u = d->rest;
     return from_bias ? dea_dynamics_equilibrium(d, *voltage, u) : isfinite(*u);
 }
@@ -458,14 +464,36 @@ dea_sample dea_sample_refused(double time, double voltage, dea_state state)
     return (dea_sample){time, voltage, none, none, none, none, none, none, none, none, none, state, {none, none, none, none}};
 }
 
+/* Within the limit; NAN stays. */
+static double held_within(const dea_dynamics *d, double current)
+{
+    return current > d->limit ? d->limit : current < -d->limit ? -d->limit : current;
+}
+
+double dea_dynamics_flow(const dea_dynamics *d, double drop)
+{
+    return held_within(d, drop / d->series);
+}
+
+double dea_dynamics_excess(const dea_dynamics *d, double drop)
+{
+    return fabs(drop) / (d->series * d->limit) - 1.0;
+}
+
+double dea_dynamics_rest(const dea_dynamics *d, double source)
+{
+    const double current = source * d->conductance / (1.0 + d->series * d->conductance);
+    return fabs(current) > d->limit ? held_within(d, current) / d->conductance : source / (1.0 + d->series * d->conductance);
+}
+
 /* Current of the source: through R_s, or d(C U)/dt and the leakage. */
 static double current(const dea_dynamics *d, const dea_edge *e, const dea_moment *m)
 {
     if (m->charging) {
-        return m->charge_slope + m->voltage * d->conductance;
+        return held_within(d, m->charge_slope + m->voltage * d->conductance);
     }
     if (d->series > 0.0) {
-        return (m->source - m->voltage) / d->series;
+        return dea_dynamics_flow(d, m->source - m->voltage);
     }
     return e->capacitance * m->slope + e->capacitance_slope * m->v * m->voltage + m->voltage * d->conductance;
 }
@@ -510,7 +538,8 @@ void dea_dynamics_lighten(dea_dynamics *d, double accuracy)
 bool dea_dynamics_inside(dea_dynamics *dynamics, double u)
 {
     const bool framed = u > -dynamics->radius && u < dynamics->point.frame_radius - dynamics->radius;
-    return framed && (!dynamics->port || dea_dynamics_edge(dynamics, u).capacitance > 0.0);
+    const bool charged = dynamics->port || dynamics->point.film.electrostriction != 0.0;
+    return framed && (!charged || dea_dynamics_edge(dynamics, u).capacitance > 0.0);
 }
 
 void dea_dynamics_start(dea_dynamics *dynamics, dea_moment *moment)
@@ -580,7 +609,8 @@ void dea_audit_add(dea_audit *audit, dea_dynamics *dynamics, const dea_moment *m
     const bool series = dynamics->series > 0.0;
     const double flow = series ? current(dynamics, &e, m) : 0.0;
     const double work = series ? m->source * flow : e.push * square * m->v + leak;
-    const double ohmic = leak + flow * flow * dynamics->series;
+    const double kept = fmax(0.0, fabs(m->source - m->voltage) - dynamics->series * dynamics->limit); /* by a source at its limit [V] */
+    const double ohmic = leak + flow * flow * dynamics->series + (kept > 0.0 ? kept * fabs(flow) : 0.0);
     audit->work += weight * work;
     audit->dissipated += weight * (ohmic + dea_edge_resistance(dynamics, &e) * m->v * m->v);
     audit->branch += weight * branch_force(dynamics, &e, z) * m->v;

@@ -4,9 +4,9 @@
  *   z_ai' = (S_a - z_ai)/tau_i
  *
  * with the film voltage U, the changes S_a of the long-term stresses from rest on their levers B_a (one with B = 1 and S = K u
- * where the springs are linear, one of Eq. 18, three of rings), what the stress at rest does by its
- * levers, less what is steady, G, c_i = g_i/g_inf,
- * phi = (1/2) dC/du. Relaxed, z_ai = S_a. With an electrical port: U_s = U + R_s (d(C U)/dt + U/R_p). */
+ * where the springs are linear, one of Eq. 18, three of rings), what the stress at rest does by its levers, less what is steady, G,
+ * c_i = g_i/g_inf, phi = (1/2) dC/du. Relaxed, z_ai = S_a. With an electrical port: d(C U)/dt + U/R_p = i, where
+ * i = (U_s - U)/R_s, held within -I ... I by a source that gives no more than I: what it does not give is heat in it. */
 #ifndef DEA_DYNAMICS_H
 #define DEA_DYNAMICS_H
 
@@ -38,6 +38,7 @@ typedef struct dea_dynamics {
     double dropped;                        /* R_s that is left out and shows in the first sample alone [Ohm], else 0 */
     bool biased;                           /* the run starts at the equilibrium under its first voltage */
     bool clamped;                          /* mass, damper or resistance, left out or not, hold the film there for the moment */
+    double limit;                          /* I [A], +inf: any */
     double conductance;                    /* 1/R_p [S], 0: no leakage */
     double radius;                         /* r_a [m] */
     double focal_length, refractive_index; /* NAN: no optics */
@@ -139,6 +140,12 @@ void dea_dynamics_start(dea_dynamics *dynamics, dea_moment *moment);
 /* Fills a row; its state says slack or breakdown. A displacement past what the film can do is pull_in: false, as for all that
  * follows. */
 bool dea_dynamics_sample(dea_dynamics *dynamics, const dea_moment *moment, dea_sample *sample);
+/* Current of the source behind its resistance, from the drop U_s - U [A]. */
+double dea_dynamics_flow(const dea_dynamics *dynamics, double drop);
+/* The drop over that at which the source gives its limit, less 1: >= 0 where it does, -1 without a limit. */
+double dea_dynamics_excess(const dea_dynamics *dynamics, double drop);
+/* Film voltage at rest under a voltage of the source [V]. */
+double dea_dynamics_rest(const dea_dynamics *dynamics, double source);
 /* Current of the source at a moment [A]. */
 double dea_dynamics_current(dea_dynamics *dynamics, const dea_moment *moment);
 /* A row without numbers but time and voltage. */

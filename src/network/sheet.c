@@ -40,7 +40,8 @@ static void set_places(const dea_scene *scene, dea_membrane *m)
 void dea_sheet_open(const dea_scene *scene, dea_membrane *m)
 {
     m->sheet = (dea_sheet){.front = (double)INFINITY};
-    if (scene->study == DEA_STUDY_TRANSIENT && scene->electrode.sheet_resistance > 0.0 && !scene->reduction.series) {
+    const bool currents = scene->study == DEA_STUDY_TRANSIENT || scene->study == DEA_STUDY_AC;
+    if (currents && scene->electrode.sheet_resistance > 0.0 && !scene->reduction.series) {
         m->film.series = scene->drive.series_resistance > 0.0 ? scene->drive.series_resistance : 0.0;
         set_places(scene, m);
     }

@@ -93,7 +93,8 @@ static const char *print_axes(const dea_scene *scene, const dea_spot *spot, cons
         const dea_axis *axis = &scene->axes[i];
         const char *dot = strrchr(axis->key, '.');
         step /= axis->count;
-        fprintf(stderr, "%s%s = ", before, dot ? dot + 1 : axis->key);
+        const char *whose = strncmp(axis->key, "antagonist.", 11) == 0 ? "antagonist " : "";
+        fprintf(stderr, "%s%s%s = ", before, whose, dot ? dot + 1 : axis->key);
         print_quantity(axis->values[spot->number / step % axis->count], axis->unit, 6);
         before = ", ";
     }

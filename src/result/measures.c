@@ -208,7 +208,7 @@ static double relaxed(const dea_scene *scene, double voltage)
     dea_dynamics dynamics;
     double u = (double)NAN;
     if (dea_dynamics_settle(scene, scene->models[0], &dynamics, NULL) != DEA_OK ||
-        !dea_dynamics_equilibrium(&dynamics, voltage / (1.0 + dynamics.series * dynamics.conductance), &u)) {
+        !dea_dynamics_equilibrium(&dynamics, dea_dynamics_rest(&dynamics, voltage), &u)) {
         u = (double)NAN;
     }
     return u;

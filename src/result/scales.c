@@ -91,8 +91,11 @@ static void set_least(dea_scales *scales, const dea_dynamics *d, const rest *fil
 
 static void set_rates(dea_scales *scales, const dea_dynamics *d, const rest *film, const dea_signal *signal, double first)
 {
+    const double largest = signal->largest;
     bool creeps;
-    const double answer = answer_time(d, film, &creeps), charging = d->series * film->capacitance;
+    const double answer = answer_time(d, film, &creeps);
+    /* of a jump of the largest voltage, which a source at its limit takes longer for */
+    const double charging = fmax(d->series, largest / d->limit) * film->capacitance;
     scales->pace = pace_of(signal, first, answer, creeps);
     scales->charging = pace_of(signal, first, charging > 0.0 ? charging : (double)INFINITY, !(charging > 0.0));
     scales->motional = film->motional;

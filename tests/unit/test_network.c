@@ -652,7 +652,8 @@ static const char *fault_of_word(const char *at, size_t length, const char *netl
         snprintf(sought, sizeof sought, " %.*s 0 ", (int)length, at);
         return strstr(netlist, sought) ? NULL : "an unknown node";
     }
-    const bool function = strncmp(at, "v(", 2) == 0 || strncmp(at, "min(", 4) == 0 || strncmp(at, "max(", 4) == 0;
+    const bool function = strncmp(at, "v(", 2) == 0 || strncmp(at, "min(", 4) == 0 || strncmp(at, "max(", 4) == 0 ||
+                          strncmp(at, "pwl(", 4) == 0;
     const bool output = strncmp(at - 1, " v=", 3) == 0 || strncmp(at - 1, " i=", 3) == 0;
     return function || output ? NULL : "an unknown function";
 }

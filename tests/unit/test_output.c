@@ -161,6 +161,12 @@ static double sample_displacement(size_t number, double time)
     return 1e-4 * (double)(number + 1) * (1.0 - exp(-time));
 }
 
+/* Number @p index of what the rows of a run tell over the radius. */
+static double entry_made(size_t number, size_t index)
+{
+    return 1e6 * (double)number + (double)index;
+}
+
 static void point_make(const dea_scene *scene, const dea_layout *layout, size_t number, void *point)
 {
     for (size_t i = 0; i < layout->rows; i++) {
@@ -188,6 +194,9 @@ static void point_make(const dea_scene *scene, const dea_layout *layout, size_t 
                                                            .residual = 1e-8,
                                                            .resonance = 700.0 + x,
                                                            .averages = {{0.01, 1e-3}, {0.02, 2e-3 + x}}};
+    }
+    for (size_t i = 0; i < layout->rows * layout->spread_points * layout->spread_count; i++) {
+        dea_layout_entry(layout, point, 0, 0)[i] = entry_made(number, i);
     }
 }
 
@@ -598,6 +607,42 @@ static void netcdf_of_a_transient_holds_time_samples_and_summaries(void **state)
     dlclose(library);
 }
 
+/* Over time, radius and axes, whether the radii of a row fit into a slab of the writer or not; and in CSV a line each. */
+static void what_rows_tell_over_the_radius_keeps_its_places(void **state)
+{
+    (void)state;
+    enum { SAMPLES = 3 };
+    static const size_t counts[][2] = {{3, 4}, {1, 1}, {2, 100}}, radii[] = {7, 5001, 301};
+    void *library = netcdf_library();
+    const char *path = in_folder("a.nc");
+    for (size_t i = 0; i < sizeof radii / sizeof *radii; i++) {
+        dea_scene scene = transient_make(2, counts[i], 1, SAMPLES);
+        dea_error error = {0};
+        scene.transient.points = radii[i];
+        const size_t all = counts[i][0] * counts[i][1];
+        assert_int_equal(points_write(&scene, path, 5, &error), DEA_OK);
+        for (size_t number = 0; number < all; number += 1 + all / 7) {
+            for (size_t row = 0; row < SAMPLES; row++) {
+                const size_t radius = (number * 31 + row * 17) % radii[i], index = (row * radii[i] + radius) * DEA_SPREAD_COLUMNS;
+                const size_t place[] = {row, radius, number / counts[i][1], number % counts[i][1]};
+                assert_true(netcdf_value(library, path, "profile_displacement_m", place) == entry_made(number, index));
+                assert_true(netcdf_value(library, path, "field_V_per_m", place) == entry_made(number, index + 7));
+            }
+        }
+        assert_true(netcdf_value(library, path, "radius", (const size_t[]){radii[i] - 1}) == scene.actuator.frame_radius);
+    }
+    dea_scene scene = transient_make(1, counts[1], 1, SAMPLES);
+    dea_error error = {0};
+    char last[128];
+    scene.transient.points = 2;
+    assert_int_equal(points_write(&scene, in_folder("a.csv"), 1, &error), DEA_OK);
+    snprintf(last, sizeof last, ",%d,%d,ok\n", SAMPLES * 2 * DEA_SPREAD_COLUMNS - 2, SAMPLES * 2 * DEA_SPREAD_COLUMNS - 1);
+    const char *text = file_text(in_folder("a.csv"));
+    assert_non_null(strstr(text, "radius_m,profile_displacement_m,profile_velocity_m_per_s,stretch_radial,"));
+    assert_string_equal(text + strlen(text) - strlen(last), last);
+    dlclose(library);
+}
+
 static void netcdf_of_a_frequency_response_lies_along_frequency(void **state)
 {
     (void)state;
@@ -821,7 +866,7 @@ static void long_runs_make_small_pictures(void **state)
 static dea_plot_trace *trace_make(const dea_scene *scene, dea_runs *runs, size_t quantity, const void *point)
 {
     dea_error error = {0};
-    assert_int_equal(dea_runs_open(scene, runs, &error), DEA_OK);
+    assert_int_equal(dea_runs_open(scene, false, runs, &error), DEA_OK);
     dea_runs_take(runs, 0, point);
     return &runs->runs[0].traces[quantity];
 }
@@ -1234,6 +1279,7 @@ int main(void)
         IN_FOLDER(full_disk_is_an_error),
         IN_FOLDER(netcdf_holds_what_the_rows_held),
         IN_FOLDER(netcdf_of_a_transient_holds_time_samples_and_summaries),
+        IN_FOLDER(what_rows_tell_over_the_radius_keeps_its_places),
         IN_FOLDER(netcdf_of_a_frequency_response_lies_along_frequency),
         IN_FOLDER(netcdf_keeps_the_scalars_that_the_study_used),
         IN_FOLDER(netcdf_tells_the_skin_from_the_film),

@@ -1,5 +1,7 @@
 /* Resistive electrodes of the moving membrane: against diffusion in a film that rests, finite elements of a film that moves, the one
  * resistance of a slow film, and the balance of energy. */
+#include <complex.h>
+
 #include "moving_membrane.h"
 
 enum { POINTS = 61, THICKNESS = 4, FIELD = 7 };
@@ -420,6 +422,122 @@ static void a_jump_into_bare_sheets_is_refused_by_name(void **state)
     free(samples);
 }
 
+/* ---- in frequency */
+
+static dea_scene tone_scene(dea_kind kind, double rho, double bias, double from, double to)
+{
+    dea_scene scene = sheet_scene(kind, rho, 1.0, 1e-4, 1e-3, 10);
+    scene.study = DEA_STUDY_AC;
+    scene.accuracy = 1e-6;
+    scene.drive.waveform = (dea_waveform){.kind = DEA_WAVE_NONE, .period = (double)NAN};
+    scene.drive.voltage = bias;
+    scene.ac = (dea_ac){.from = from, .to = to, .points_per_decade = 2, .bias = bias};
+    return scene;
+}
+
+/* Rows of a response by `direct`; the caller frees them. */
+static dea_response *respond(const dea_scene *scene, size_t *count)
+{
+    dea_error error = {0};
+    const dea_layout layout = dea_layout_of(scene);
+    dea_response *rows = calloc(1, layout.point_size);
+    *count = layout.rows;
+    assert_null(dea_engine_refuses(dea_engine_find("direct"), scene, scene->models[0]));
+    assert_int_equal(dea_engine_find("direct")->ac(NULL, scene, scene->models[0], rows, NULL, &error), DEA_OK);
+    assert_string_equal(error.message, "");
+    return rows;
+}
+
+/* Modified Bessel functions I0 and I1 by their series. */
+static double complex modified(int order, double complex z)
+{
+    double complex term = order ? 0.5 * z : 1.0, sum = term;
+    for (int k = 1; k < 200; k++) {
+        term *= 0.25 * z * z / ((double)k * (double)(k + order));
+        sum += term;
+    }
+    return sum;
+}
+
+/* A disc at rest, fed at its rim: I/U = 2 pi x I1(x)/(rho I0(x)), x^2 = i w c rho a^2. */
+static void a_resting_disc_has_the_impedance_of_diffusion(void **state)
+{
+    (void)state;
+    const double rho = 1e7, a = 0.015, areal = epsilon * 1.44 / 1e-4;
+    const dea_scene scene = tone_scene(DEA_DOT, rho, 0.0, 1.0, 1e5);
+    size_t count;
+    dea_response *rows = respond(&scene, &count);
+    for (size_t i = 0; i < count; i++) {
+        const double omega = 2.0 * 3.14159265358979323846 * rows[i].frequency;
+        const double complex x = csqrt(I * (omega * areal * 2.0 * rho)) * a;
+        const double complex impedance = 2.0 * rho * modified(0, x) / (2.0 * 3.14159265358979323846 * x * modified(1, x));
+        assert_relative(rows[i].impedance, cabs(impedance), 2e-6);
+        assert_true(fabs(rows[i].impedance_phase - carg(impedance) * 180.0 / 3.14159265358979323846) <= 2e-4);
+        assert_true(rows[i].displacement == 0.0);
+    }
+    free(rows);
+}
+
+/* With good sheets the response is that of the equation along the radius, which knows no rings. */
+static void a_response_with_good_sheets_is_that_without(void **state)
+{
+    (void)state;
+    for (int kind = DEA_DOT; kind <= DEA_LENS; kind++) {
+        size_t count;
+        dea_scene scene = tone_scene((dea_kind)kind, 1e-3, 3000.0, 1.0, 1e4);
+        scene.drive.series_resistance = kind == DEA_DOT ? (double)NAN : 1e5;
+        dea_response *with = respond(&scene, &count);
+        scene.electrode.sheet_resistance = (double)NAN;
+        dea_response *without = respond(&scene, &count);
+        for (size_t i = 0; i < count; i++) {
+            assert_relative(with[i].displacement, without[i].displacement, 2e-6);
+            assert_relative(with[i].impedance, without[i].impedance, 2e-6);
+            assert_true(fabs(with[i].displacement_phase - without[i].displacement_phase) <= 2e-4);
+        }
+        free(with);
+        free(without);
+    }
+}
+
+/* A small tone on the bias, in time: the last of its periods against the response. */
+static void a_small_tone_in_time_moves_the_film_as_its_response_says(void **state)
+{
+    (void)state;
+    enum { PERIODS = 24, EACH = 20 };
+    for (int kind = DEA_DOT; kind <= DEA_LENS; kind++) {
+        const double tone = 400.0, small = 3.0;
+        const double resistance = kind == DEA_DOT ? 1e6 : (double)NAN; /* before the rim of the dot */
+        dea_scene scene = sheet_scene((dea_kind)kind, 1e7, 1.0, 1e-4, PERIODS / tone, PERIODS * EACH);
+        scene.accuracy = 1e-6;
+        scene.material.retardation = 2e-4;
+        scene.transient.points = 0;
+        scene.transient.from_bias = true;
+        scene.drive.series_resistance = resistance;
+        scene.drive.waveform = (dea_waveform){
+            .kind = DEA_WAVE_SINE, .sine = {.offset = 3000.0, .amplitude = small, .frequency = tone}, .period = (double)NAN};
+        dea_layout layout;
+        dea_sample *samples = fly(&scene, &layout);
+        double complex u = 0.0, i = 0.0, source = 0.0;
+        for (size_t k = (PERIODS - 1) * EACH; k < PERIODS * EACH; k++) {
+            const double complex turn = cexp(-2.0 * I * 3.14159265358979323846 * tone * samples[k].time) * (2.0 / EACH);
+            u += samples[k].displacement * turn;
+            i += samples[k].current * turn;
+            source += samples[k].voltage * turn;
+        }
+        free(samples);
+        size_t count;
+        scene = tone_scene((dea_kind)kind, 1e7, 3000.0, tone, tone);
+        scene.material.retardation = 2e-4;
+        scene.drive.series_resistance = resistance;
+        dea_response *row = respond(&scene, &count);
+        assert_relative(cabs(u / source), row->displacement, 2e-3);
+        assert_relative(cabs(source / i), row->impedance, 2e-3);
+        assert_true(fabs(carg(u / source) * 180.0 / 3.14159265358979323846 - row->displacement_phase) <= 0.2);
+        assert_true(fabs(carg(source / i) * 180.0 / 3.14159265358979323846 - row->impedance_phase) <= 0.2);
+        free(row);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -431,6 +549,9 @@ int main(void)
         cmocka_unit_test(energy_balances_whatever_the_sheets_are),
         cmocka_unit_test(good_sheets_are_as_none),
         cmocka_unit_test(from_a_bias_nothing_moves),
+        cmocka_unit_test(a_resting_disc_has_the_impedance_of_diffusion),
+        cmocka_unit_test(a_response_with_good_sheets_is_that_without),
+        cmocka_unit_test(a_small_tone_in_time_moves_the_film_as_its_response_says),
         cmocka_unit_test(a_jump_into_bare_sheets_is_refused_by_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -42,4 +42,7 @@ void dea_radial_close(dea_radial *radial);
 /* The answer at a frequency; false where two meshes do not agree within the accuracy, or memory ran out. */
 bool dea_radial_answer(dea_radial *radial, double frequency, double accuracy, dea_per_volt *answer);
 
+/* V at an angular frequency. */
+double complex dea_radial_viscosity(const dea_dynamics *dynamics, double omega);
+
 #endif

@@ -4,7 +4,7 @@
 
 #include "deaspice/measures.h"
 #include "engine/direct/direct.h"
-#include "engine/direct/radial.h"
+#include "engine/direct/sheets.h"
 
 /* Dynamic stiffness at an equilibrium under the film voltage U,
  *   -m w^2 + i w r + d(A S - phi U^2)/du + A S' [i w tau_KV + sum c_i i w tau_i/(1 + i w tau_i)]. */
@@ -49,12 +49,16 @@ typedef struct biased {
     double accuracy;
     dea_edge edge;
     double relaxed;         /* stiffness of the node [N/m] */
-    dea_radial *radial; /* borrowed; NULL: one node */
+    dea_radial *radial; /* borrowed, as sheets; NULL: one node */
+    dea_sheets *sheets; /* NULL: the electrodes have no sheet resistance */
 } biased;
 
 /* Per volt on the film: u = 2 phi U/D, q = C + C' U u. */
 static bool answer_of(const biased *b, double frequency, dea_per_volt *answer)
 {
+    if (b->sheets) {
+        return dea_sheets_answer(b->sheets, frequency, b->accuracy, answer);
+    }
     if (b->radial) {
         return dea_radial_answer(b->radial, frequency, b->accuracy, answer);
     }
@@ -133,7 +137,12 @@ static dea_status respond_radius(const dea_scene *scene, const dea_model *model,
     if (status != DEA_OK) {
         return status;
     }
+    const bool resistive = scene->electrode.sheet_resistance > 0.0;
+    if (resistive) { /* what stands before the rim */
+        d.series = scene->drive.series_resistance > 0.0 ? scene->drive.series_resistance : 0.0;
+    }
     d.point.voltage = film_bias(&d, scene);
+    dea_sheets sheets = dea_sheets_open(scene, model, d.point.voltage);
     dea_radial radial;
     dea_radial_open(&d, scene, &radial);
     biased b = {.dynamics = &d,
@@ -141,12 +150,14 @@ static dea_status respond_radius(const dea_scene *scene, const dea_model *model,
                 .state = radial.rest.state,
                 .held = isfinite(radial.rest.strain),
                 .accuracy = scene->accuracy,
-                .radial = &radial};
+                .radial = &radial,
+                .sheets = resistive ? &sheets : NULL};
     const size_t failed = respond(&b, scene, rows, band);
     if (failed > 0) {
         dea_fail(error, DEA_OK, "%zu frequencies failed: two meshes of the film do not agree within the accuracy", failed);
     }
     dea_radial_close(&radial);
+    dea_sheets_close(&sheets);
     return DEA_OK;
 }
 

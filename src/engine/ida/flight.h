@@ -1,12 +1,13 @@
-/* One run of a transient at one tolerance. Every segment of the voltage is a problem of its own, solved
+/* One run of a transient at one tolerance. Every segment of the voltage, cut where a source comes to its limit or from it, is a
+ * problem of its own, solved
  *
- *   - by IDA (variable order BDF) in general, in the turning frame of a ring where the network is linear;
- *   - by an explicit Runge-Kutta method (ARKODE) while a light ring lives in a film that is not linear, or under a
+ *   - by IDA (variable order BDF) in general, in the turning frame of a swing where the network is linear;
+ *   - by an explicit Runge-Kutta method (ARKODE) while a light swing lives in a film that is not linear, or under a
  *     voltage that varies: BDF would crawl through its periods. */
 #ifndef DEA_IDA_FLIGHT_H
 #define DEA_IDA_FLIGHT_H
 
-#include "engine/ida/ring.h"
+#include "engine/ida/rotation.h"
 #include "engine/ida/sundials.h"
 #include "network/peak.h"
 
@@ -24,7 +25,7 @@ typedef struct dea_flight {
     const dea_scene *scene; /* borrowed, as signal */
     const dea_signal *signal;
     dea_motion motion;
-    dea_ring *ring;            /* owned */
+    dea_rotation *swing;            /* owned */
     dea_integrator integrator; /* owned */
     N_Vector between;          /* owned: w between two steps */
     size_t rows;
@@ -41,6 +42,8 @@ typedef struct dea_flight {
     long steps;
     double crawled; /* time of the segment at the last look whether it still passes [s] */
     int unseen;     /* steps since then */
+    bool cut;       /* the segment ended early: the source came to its limit or from it */
+    double cut_at;  /* time of the segment there [s] */
 } dea_flight;
 
 /* Prepares runs of a scene; the caller ends them with dea_flight_close(), also after a failure. */
@@ -66,6 +69,12 @@ bool dea_flight_record(dea_flight *flight, double time, const double *y);
 bool dea_flight_affords(dea_flight *flight, double steps);
 /* Takes w of the end of a step as the state; `failed` past the most steps, `pull_in` where the film runs away. */
 dea_state dea_flight_step(dea_flight *flight, double time, const double *w);
+
+/* State at a time of the last step; false where there is none. */
+typedef bool dea_flight_state(void *user, double time, double *y);
+/* Time within the last step at which a source comes to its limit or from it, where the segment is then cut; else the end of the
+ * step. */
+double dea_flight_cut(dea_flight *flight, double before, double time, dea_flight_state *at, void *user);
 
 /* `failed`, because a solver ended with an error code at a time of the segment. */
 dea_state dea_flight_broke(dea_flight *flight, const char *solver, int code, double time);

@@ -137,7 +137,7 @@ bool dea_motion_rates(const dea_motion *m, double time, const double *y, double 
         f[k] = (at.edge.stress[stress_of(m, k)] / m->size[k] - y[k]) / branch_of(m, k)->tau;
     }
     if (m->q >= 0) {
-        const double current = (dea_motion_source(m, time) - at.voltage) / d->series - at.voltage * d->conductance;
+        const double current = dea_dynamics_flow(d, dea_motion_source(m, time) - at.voltage) - at.voltage * d->conductance;
         f[m->q] = current / m->size[m->q];
     }
     return isfinite(f[0]);
@@ -190,7 +190,8 @@ void dea_motion_jacobian(const dea_motion *m, double time, const double *y, doub
         jacobian[k * n + k] = -1.0 / tau;
     }
     if (m->q >= 0) {
-        const double admittance = 1.0 / d->series + d->conductance;
+        const bool limited = dea_dynamics_excess(d, dea_motion_source(m, time) - at.voltage) > 0.0;
+        const double admittance = (limited ? 0.0 : 1.0 / d->series) + d->conductance;
         jacobian[m->q] = -admittance * at.voltage_slope * m->size[0] / m->size[m->q];
         jacobian[m->q * n + m->q] = -admittance / at.edge.capacitance;
     }
@@ -257,7 +258,7 @@ static double velocity(const dea_motion *m, double time, const local_state *at)
     if (m->q < 0) {
         return dea_dynamics_velocity(d, at->u, at->voltage, dea_motion_slope(m, time), at->z);
     }
-    const double current = (dea_motion_source(m, time) - at->voltage) / d->series - at->voltage * d->conductance;
+    const double current = dea_dynamics_flow(d, dea_motion_source(m, time) - at->voltage) - at->voltage * d->conductance;
     return dea_dynamics_velocity_charged(d, at->u, at->voltage, current / at->edge.capacitance, at->z);
 }
 

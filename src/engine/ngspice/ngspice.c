@@ -55,7 +55,7 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
     if (dea_study_of(scene)->timed && scene->accuracy < 1e-6) {
         return "its trapezoidal rule is good to 1e-6 in a transient, the scene wants more";
     }
-    if (dea_study_of(scene)->timed && model->membrane && scene->electrode.sheet_resistance > 0.0) {
+    if (dea_study_of(scene)->along && model->membrane && scene->electrode.sheet_resistance > 0.0) {
         return "its rings have one potential, not one along a sheet resistance";
     }
     return scene->accuracy < 1e-9 ? "its answers are good to 1e-9, the scene wants more" : NULL;

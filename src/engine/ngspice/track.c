@@ -48,6 +48,7 @@ typedef struct runner {
     double parts;           /* of an edge that is shorter than a step */
     double loose;           /* absolute tolerances over the tightest, since the last collapse of the library's steps */
     double speed;           /* velocities of the film over those of the matched network [1] */
+    bool cut;               /* the netlist ended early: the source came to its limit or from it */
     bool euler;             /* the next step is the first behind a corner */
     double complex lag;     /* what irregular steps since the last corner did to a ring: to multiply by */
     double complex carried; /* what those before it did: to add [m] */
@@ -127,7 +128,8 @@ static void follow_source(const runner *r, const dea_edge *e, node *n)
     const dea_segment *segment = &signal->segments[r->segment];
     const double time = d->series * e->capacitance;
     const bool turns = d->mass > 0.0 && !r->slow && charges_at_once(r, n, time);
-    if (time >= at_once * r->step && !turns) {
+    const bool limited = dea_dynamics_excess(d, n->moment.source - n->moment.voltage) >= 0.0;
+    if (limited || (time >= at_once * r->step && !turns)) {
         return;
     }
     dea_moment *m = &n->moment;
@@ -168,7 +170,7 @@ static node node_at(const runner *r, double time, const dea_mobility_state *stat
     if (d->series > 0.0) {
         n.current = slope && r->fast.charge
                         ? slope->charge
-                        : (n.moment.source - n.moment.voltage) / d->series - n.moment.voltage * d->conductance;
+                        : dea_dynamics_flow(d, n.moment.source - n.moment.voltage) - n.moment.voltage * d->conductance;
     }
     set_rates(r, &n, slope);
     if (slope && r->fast.u) {
@@ -484,12 +486,57 @@ static node read_point(runner *r, const ahead *p)
     return node_at(r, p->time, &p->state, &here);
 }
 
-/* Takes one more point; false where the film has left what it can do. */
+/* Next to its limit a source counts as there: such shares of the drop at the limit are rounding. */
+static const double at_limit = 1e-9;
+
+static double excess_of(const runner *r, const node *n)
+{
+    return dea_dynamics_excess(r->route->dynamics, n->moment.source - n->moment.voltage);
+}
+
+static void note_cut(dea_cuts *cuts, double time)
+{
+    if (cuts->count == cuts->room) {
+        const size_t room = cuts->room ? 2 * cuts->room : 64;
+        double *more = realloc(cuts->times, room * sizeof *more);
+        if (!more) {
+            cuts->exhausted = true;
+            return;
+        }
+        cuts->times = more;
+        cuts->room = room;
+    }
+    cuts->times[cuts->count++] = time;
+}
+
+/* Where the source comes to its limit or from it before the point @p n, the point there takes its place: the current has a corner
+ * there, which no step may pass. */
+static void cut_short(runner *r, node *n)
+{
+    const double first = excess_of(r, &r->last), last = excess_of(r, n);
+    double low = r->last.moment.time, high = n->moment.time;
+    if (!isfinite(r->route->dynamics->limit) || !(first * last < 0.0) || fabs(first) < at_limit) {
+        return;
+    }
+    const node end = *n;
+    for (int i = 0; i < 60 && high - low > 4e-16 * high; i++) {
+        const double middle = 0.5 * (low + high);
+        const node there = between(r, &r->last, &end, middle);
+        *(excess_of(r, &there) * first > 0.0 ? &low : &high) = middle;
+    }
+    if (high < end.moment.time && high > r->last.moment.time) {
+        *n = between(r, &r->last, &end, high);
+        r->cut = true;
+    }
+}
+
+/* Takes one more point; false where the film has left what it can do, or the netlist ends early. */
 static bool advance(runner *r, const ahead *p)
 {
     enter_segment(r, r->last.moment.time, p->time);
     node n = read_point(r, p);
     correct(r, p->time - r->last.moment.time, &n);
+    cut_short(r, &n);
     if (!is_possible(r, &n)) {
         if (dea_dynamics_is_free(r->route->dynamics)) {
             r->track->end = verdict(r); /* Newton's method may have found a root of no film */
@@ -505,7 +552,13 @@ static bool advance(runner *r, const ahead *p)
     r->before = r->last.state;
     r->before_time = r->last.moment.time;
     r->last = n;
-    return true;
+    if (r->cut) {
+        r->before_time = n.moment.time; /* slopes do not go on */
+    }
+    if (r->cut && r->route->cuts) {
+        note_cut(r->route->cuts, n.moment.time);
+    }
+    return !r->cut;
 }
 
 static dea_mobility_state scaled(dea_mobility_state state, double speed)
@@ -554,6 +607,7 @@ static void set_piece(runner *r, dea_mobility_piece *piece, double to, double st
     r->speed = r->match.mass > 0.0 ? sqrt(r->match.mass / route->dynamics->mass) : 1.0;
     r->step = step;
     r->slow = !r->rings && route->omega * step > 2.0;
+    r->cut = false;
     r->lag = 1.0;
     r->carried = 0.0;
     r->euler = true;
@@ -669,9 +723,11 @@ static dea_status run_piece(runner *r, const dea_piece *piece, double fineness, 
     }
     for (double part = 1.0; part <= parts && status == DEA_OK && r->track->end == DEA_STATE_OK; part++) {
         const double to = part == parts ? piece->to : piece->from + (piece->to - piece->from) * (part / parts);
-        const double behind = nextafter(r->last.moment.time, INFINITY);
-        enter_segment(r, r->last.moment.time, 2.0 * behind - r->last.moment.time);
-        status = run_netlist(r, to, piece->step * fineness, error);
+        do {
+            const double behind = nextafter(r->last.moment.time, INFINITY);
+            enter_segment(r, r->last.moment.time, 2.0 * behind - r->last.moment.time);
+            status = run_netlist(r, to, piece->step * fineness, error);
+        } while (r->cut && status == DEA_OK && r->track->end == DEA_STATE_OK && r->last.moment.time < to);
     }
     return status;
 }

@@ -25,6 +25,13 @@ typedef struct dea_track {
     dea_mobility_state start, stop; /* the states that go with them */
 } dea_track;
 
+/* Times at which the source came to its limit or from it. */
+typedef struct dea_cuts {
+    double *times; /* owned by who made it, not decreasing [s] */
+    size_t count, room;
+    bool exhausted; /* no memory for all */
+} dea_cuts;
+
 /* A run's fixed parts. */
 typedef struct dea_route {
     dea_ngspice *library;
@@ -40,6 +47,7 @@ typedef struct dea_route {
     bool peaks; /* the current between samples is known */
     double omega;   /* of the ring [rad/s], 0: none */
     double unit;    /* of the times of the scene [1/s] */
+    dea_cuts *cuts; /* takes those of a run; NULL: not wanted */
 } dea_route;
 
 /* Runs the pieces with @p fineness times their steps; the caller frees track->points, also after a failure. A run that ends early

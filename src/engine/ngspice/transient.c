@@ -598,7 +598,29 @@ static dea_status can_keep_phase(const dea_route *route, const dea_pace *pace, d
                     angle / (2.0 * DEA_PI), angle * drift, route->scene->accuracy);
 }
 
-static dea_status run_on(dea_route *route, dea_sample *samples, dea_summary *summary, dea_error *error)
+/* A source at its limit has corners that only a run can tell: a first one does, and pieces are cut there, as behind all corners. */
+static dea_status cut_at_limits(dea_route *route, dea_signal *signal, const dea_pace *pace, bool quiet, dea_pieces *pieces,
+                                dea_error *error)
+{
+    dea_cuts cuts = {0};
+    dea_track track;
+    dea_route scout = *route;
+    scout.cuts = &cuts;
+    dea_status status = dea_track_run(&scout, first_fineness(route->scene), &track, error);
+    free(track.points);
+    if (status == DEA_OK) {
+        status = cuts.exhausted ? dea_fail(error, DEA_ERROR_MEMORY, "out of memory for the corners of a run")
+                                : dea_signal_cut(signal, cuts.times, cuts.count, error);
+    }
+    free(cuts.times);
+    if (status == DEA_OK) {
+        free(pieces->pieces);
+        status = dea_pieces_cut(signal, pace, route->scene->accuracy, route->scene->reduction.ring, quiet, pieces, error);
+    }
+    return status;
+}
+
+static dea_status run_on(dea_route *route, dea_signal *signal, dea_sample *samples, dea_summary *summary, dea_error *error)
 {
     const dea_transient *transient = &route->scene->transient;
     const dea_pace pace = pace_of_run(route->dynamics, route->signal);
@@ -622,6 +644,9 @@ static dea_status run_on(dea_route *route, dea_sample *samples, dea_summary *sum
     }
     if (status == DEA_OK) {
         status = can_see_branches(route, error);
+    }
+    if (status == DEA_OK && isfinite(route->dynamics->limit)) {
+        status = cut_at_limits(route, signal, &pace, quiet, &pieces, error);
     }
     if (status == DEA_OK) {
         status = refine(route, &l, &pace, summary, error);
@@ -661,7 +686,7 @@ static dea_status run_inside(dea_ngspice *library, const dea_scene *scene, const
                            .signal = &signal,
                            .unit = unit,
                            .samples = dea_layout_of(scene).rows};
-        status = run_on(&route, samples, summary, error);
+        status = run_on(&route, &signal, samples, summary, error);
     }
     dea_signal_close(&signal);
     dea_mobility_close(&mobility);

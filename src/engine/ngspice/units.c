@@ -141,6 +141,7 @@ dea_status dea_units_enter(const dea_units *units, const dea_scene *scene, dea_s
     enter_material(units, &inside->material);
     inside->drive.series_resistance *= resistance(units);
     inside->drive.leakage_resistance *= resistance(units);
+    inside->drive.current_limit *= charge(units) / units->time;
     enter_wave(units, &inside->drive.waveform);
     inside->transient.until *= units->time;
     inside->transient.every *= units->time;

@@ -1,5 +1,5 @@
 /** @file fit.h
- * Yeoh constants from measured stress over stretch, Prony branches from measured stress over time.
+ * Constants of a law from measured stress over stretch, Prony branches from a test of relaxation, of creep, or of dynamic moduli.
  */
 #ifndef DEASPICE_FIT_H
 #define DEASPICE_FIT_H
@@ -121,18 +121,28 @@ DEA_API dea_status dea_fit_auto(const dea_fit_data *data, bool relative, dea_fit
 /** Nominal stress of a material [Pa] at @p stretch under @p load. */
 DEA_API double dea_fit_stress(const dea_law *law, const double constants[DEA_LAW_CONSTANTS], dea_load load, double stretch);
 
-/** One measured point of a relaxation test. */
+/** How a viscoelastic film was tested. */
+typedef enum dea_test_kind {
+    DEA_TEST_RELAXATION, /**< stress over time at a held stretch */
+    DEA_TEST_DYNAMIC,    /**< storage and loss modulus over the frequency of small swings (DMA) */
+    DEA_TEST_CREEP,      /**< strain, or compliance, over time under a held stress */
+    DEA_TESTS
+} dea_test_kind;
+
+/** One measured point of such a test. */
 typedef struct dea_relaxation_point {
-    double time; /**< since the end of the ramp [s], >= 0 */
-    double
-        stress; /**< at the held stretch, nominal or true [Pa]; not below minus a tenth of the largest, which is noise about 0 */
+    double time;   /**< since the end of the ramp [s], >= 0; of a dynamic test the angular frequency [rad/s], > 0 */
+    double stress; /**< at the held stretch, nominal or true [Pa]; not below minus a tenth of the largest, which is noise about 0; the
+                        storage modulus of a dynamic test [Pa]; of a creep test the strain [1], or the compliance in any unit */
+    double loss;   /**< loss modulus of a dynamic test [Pa], else 0 */
 } dea_relaxation_point;
 
-/** One relaxation test; zeroed: a step without points. Owns its points; free with dea_relaxation_data_free(). */
+/** One test; zeroed: a relaxation after a step without points. Owns its points; free with dea_relaxation_data_free(). */
 typedef struct dea_relaxation_data {
+    dea_test_kind kind;              /**< default DEA_TEST_RELAXATION */
     dea_relaxation_point *points;    /**< times increasing */
     size_t count, room;              /**< points in use, points allocated */
-    double ramp;                     /**< duration of the ramp before the hold [s], >= 0, default 0: an ideal step */
+    double ramp;                     /**< duration of the ramp before the hold [s], >= 0, default 0: an ideal step; 0 of a dynamic test */
     dea_specimen specimen;           /**< of the table that is read */
     char columns[DEA_SOURCE_LENGTH]; /**< what each of its columns was taken for, in words */
 } dea_relaxation_data;
@@ -157,26 +167,29 @@ typedef enum dea_relaxation_end {
 
 /** Fitted branches and how good they are. */
 typedef struct dea_relaxation {
+    dea_test_kind kind;
     size_t prony_count;                                   /**< branches in use */
     dea_prony prony[DEA_RELAXATION_MOST];                 /**< of the instantaneous modulus, tau ascending */
     dea_prony deviation[DEA_RELAXATION_MOST];             /**< their standard errors, NAN where the points do not tell them */
     double long_term;                                     /**< 1 - sum of g [1], > 0 */
     double long_term_deviation;                           /**< its standard error [1], NAN where the points do not tell it */
-    double instantaneous;                                 /**< stress after an ideal step [Pa] */
-    double residual_rms;                                  /**< root mean square of (measured - fitted) [Pa] */
-    double residual_relative;                             /**< residual_rms over the rms of the measured stress [1] */
+    double instantaneous;                                 /**< stress or strain after an ideal step, instantaneous modulus [Pa, 1] */
+    dea_prony retardation[DEA_RELAXATION_MOST];           /**< of a creep test: shares of the strain after a long time, and their times */
+    double residual_rms;                                  /**< root mean square of (measured - fitted) [Pa, 1] */
+    double residual_relative;                             /**< residual_rms over the rms of what was measured [1] */
     size_t count;                                         /**< points */
-    double time_min, time_max, ramp;                      /**< of the data [s] */
+    double time_min, time_max, ramp;                      /**< of the data [s]; of a dynamic test 1/omega of the frequencies */
     size_t trial_count;                                   /**< entry i of the trials has i branches */
     dea_relaxation_trial trials[DEA_RELAXATION_MOST + 1]; /**< 0 branches, 1, ... */
     dea_relaxation_end end;                               /**< why there is no further branch */
 } dea_relaxation;
 
-/** Reads a relaxation test into @p data, which has no points yet; its ramp stays.
+/** Reads a test of its kind into @p data, which has no points yet; its ramp stays.
  *
  * A table as of dea_fit_read() with time (since the end of the ramp, increasing; rows of equal time become their mean) and stress
  * or force. With a displacement too, time may count from anywhere: the hold begins where it is reached, and a ramp of 0 becomes
- * the one before it.
+ * the one before it. Of a dynamic test: frequency [Hz] or angular frequency [rad/s] in any order, storage modulus, and loss modulus
+ * or tan delta. Of a creep test: time, and strain, stretch, displacement or compliance.
  * @return DEA_OK, DEA_ERROR_SCENE (message "file:line:column: ..."), DEA_ERROR_USAGE (has points), DEA_ERROR_IO,
  * DEA_ERROR_MEMORY; @p data has no points on DEA_ERROR_SCENE
  */
@@ -189,17 +202,26 @@ DEA_API dea_status dea_relaxation_add(dea_relaxation_data *data, dea_relaxation_
 /** Frees what the data owns; NULL and zeroed data are fine. */
 DEA_API void dea_relaxation_data_free(dea_relaxation_data *data);
 
-/** Fits Prony branches to a relaxation test: shares by non-negative least squares, times refined from a logarithmic grid.
+/** Fits Prony branches to a test: shares by non-negative least squares, times refined from a logarithmic grid. Those of a creep test
+ * are its retardation branches turned into those of the modulus, exactly.
  *
- * @param branches 1 to DEA_RELAXATION_MOST; 0: as many as an F test finds significant at 5 %; never more than (points - 1)/2
+ * @param branches 1 to DEA_RELAXATION_MOST; 0: as many as an F test finds significant at 5 %; never more than (values - 1)/2
  * @param relative as in dea_fit_yeoh()
- * @return DEA_OK (also without a branch: the stress does not relax), DEA_ERROR_USAGE (the stress grows, relaxes to nothing, or
+ * @return DEA_OK (also without a branch: the film does not relax), DEA_ERROR_USAGE (the stress grows, relaxes to nothing, or
  * does not determine the branches asked for), DEA_ERROR_DATA (the stress rises first: the ramp is in the data), DEA_ERROR_MEMORY
  */
 DEA_API dea_status dea_fit_relaxation(const dea_relaxation_data *data, size_t branches, bool relative, dea_relaxation *fit,
                                       dea_error *error);
-/** Stress of the fitted test at @p time since the end of its ramp [Pa]. */
+/** Stress, or strain, of the fitted test at @p time since the end of its ramp [Pa, 1]; storage modulus at that angular frequency. */
 DEA_API double dea_relaxation_stress(const dea_relaxation *fit, double time);
+/** Loss modulus of a fitted dynamic test at @p omega [rad/s] [Pa]. */
+DEA_API double dea_relaxation_loss(const dea_relaxation *fit, double omega);
+/** True where its slowest branch is slower than the test: the long-term share is extrapolated. */
+DEA_API bool dea_relaxation_slow(const dea_relaxation *fit);
+/** True where the fastest branch of a dynamic test is faster than its frequencies: the instantaneous modulus is extrapolated. */
+DEA_API bool dea_relaxation_fast(const dea_relaxation *fit);
+/** Name of a kind of test: "relaxation test". */
+DEA_API const char *dea_test_name(dea_test_kind kind);
 /** Why the fit has no further branch, in words. */
 DEA_API const char *dea_relaxation_reason(const dea_relaxation *fit);
 

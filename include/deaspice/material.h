@@ -17,8 +17,8 @@ extern "C" {
 #define DEA_EPSILON_0 8.8541878128e-12
 #define DEA_PI 3.14159265358979323846
 
-/** Most constants of a law, starts of a fit, most branches, lengths of texts. */
-enum { DEA_LAW_CONSTANTS = 8, DEA_LAW_STARTS = 4, DEA_PRONY_MAX = 64, DEA_NAME_LENGTH = 64, DEA_SOURCE_LENGTH = 256 };
+/** Most constants of a law, starts of a fit, most branches, rows of a table of shift factors, lengths of texts. */
+enum { DEA_LAW_CONSTANTS = 8, DEA_LAW_STARTS = 4, DEA_PRONY_MAX = 64, DEA_SHIFT_MOST = 64, DEA_NAME_LENGTH = 64, DEA_SOURCE_LENGTH = 256 };
 
 struct dea_film;
 struct dea_law_form;
@@ -110,6 +110,16 @@ typedef struct dea_prony {
     double tau; /**< relaxation time [s], > 0 */
 } dea_prony;
 
+/** Shift factor a_T of all relaxation times over the temperature: by Williams, Landel and Ferry, log10 a_T = -C1 (T - T_r)/(C2 + T -
+ * T_r), or by a table, evenly in ln a_T between its rows. */
+typedef struct dea_shift {
+    double c1;        /**< [1], > 0, NAN: no such law */
+    double c2;        /**< [K], > 0 */
+    double reference; /**< T_r, where a_T is 1 [K], > 0 */
+    size_t count;     /**< rows of the table, 0: none, else >= 2; it goes before the law */
+    double table[DEA_SHIFT_MOST][2]; /**< temperature, rising [K], and a_T, > 0 [1] */
+} dea_shift;
+
 /** Film material. Scalars that a scene does not give are NAN. */
 typedef struct dea_material {
     char name[DEA_NAME_LENGTH];         /**< built-in name, file name or "scene" */
@@ -119,11 +129,16 @@ typedef struct dea_material {
     size_t entry_count;                 /**< entries in use of a law that is a list, else 1 */
     double permittivity;                /**< relative, at stretch 0 of the line below [1], > 0 */
     double permittivity_per_stretch;    /**< slope of the relative permittivity over stretch [1], default 0 */
+    bool permittivity_follows;          /**< it is that of the strained film (true) or of the pre-stretched one (false, default) */
     double density;                     /**< [kg/m^3], > 0, NAN: no inertia */
     double retardation;                 /**< Kelvin-Voigt retardation time [s], > 0, NAN: none */
     double modulus;                     /**< operating modulus Y [Pa], > 0, NAN: dsigma/dlambda at the pre-stretch */
     double breakdown;                   /**< breakdown strength [V/m], > 0, NAN: never breaks down */
     double stretches[2];                /**< least and largest stretch that the data behind the constants cover [1], 0: not known */
+    double temperature;                 /**< of the film [K], > 0, NAN: that of the data */
+    double modulus_slope;               /**< change of all moduli over the temperature, over them at the reference [1/K], NAN: none */
+    double modulus_reference;           /**< temperature at which the moduli were measured [K], > 0 */
+    dea_shift shift;                    /**< of the relaxation times */
     bool instantaneous;                 /**< elastic constants are instantaneous (true) or long-term (false, default) */
     size_t prony_count;                 /**< branches in use */
     dea_prony prony[DEA_PRONY_MAX];     /**< relaxation of the instantaneous modulus */
@@ -137,6 +152,8 @@ typedef struct dea_film {
     bool valid;                          /**< constants in range, and the pre-stretch where the law holds */
     double prestretch;                   /**< lambda_pre [1] */
     double permittivity;                 /**< absolute permittivity at the pre-stretch, of a stack times layers^2 [F/m] */
+    double electrostriction;             /**< slope of the permittivity over the mean stretch, over that at the pre-stretch, where it
+                                            follows the strain, else 0 [1] */
     double breakdown;                    /**< breakdown strength [V/m], +inf: none */
     double slope;                        /**< dsigma/dlambda at the pre-stretch [Pa] */
     double curvature;                    /**< d2sigma/dlambda2 at the pre-stretch [Pa] */
@@ -160,9 +177,16 @@ DEA_API const dea_material *dea_material_builtin(size_t index);
 /** Built-in material by name, NULL if there is none. The library owns it. */
 DEA_API const dea_material *dea_material_find(const char *name);
 
-/** Long-term share of the given elastic constants [1]: 1 - sum g_i where they are instantaneous, else 1. */
+/** Shift factor a_T of the relaxation times at the material's temperature [1]; NAN where its law or table does not reach. */
+DEA_API double dea_material_shift(const dea_material *material);
+/** Moduli at the material's temperature over those given [1], 1 + slope (T - T_ref); <= 0 where no film is left. */
+DEA_API double dea_material_stiffening(const dea_material *material);
+/** Branch number @p index at the material's temperature. */
+DEA_API dea_prony dea_material_branch(const dea_material *material, size_t index);
+/** What is left of the given elastic constants in the long term and at the temperature [1]: dea_material_stiffening(), times
+ * 1 - sum g_i where they are instantaneous. */
 DEA_API double dea_material_long_term_share(const dea_material *material);
-/** Constants of the law with their moduli long-term, DEA_LAW_CONSTANTS values. */
+/** Constants of the law with their moduli long-term and at the temperature, DEA_LAW_CONSTANTS values. */
 DEA_API void dea_material_long_term(const dea_material *material, double constants[DEA_LAW_CONSTANTS]);
 /** Relative permittivity at stretch @p stretch [1]. */
 DEA_API double dea_material_permittivity(const dea_material *material, double stretch);

@@ -11,7 +11,9 @@ void dea_film_prepare(const dea_scene *scene, dea_film *film)
     dea_material_long_term(material, constants);
     *film = dea_law_film(material->law, constants, stretch);
     const double layers = scene->actuator.layers;
-    film->permittivity = DEA_EPSILON_0 * dea_material_permittivity(material, stretch) * (layers * layers);
+    const double relative = dea_material_permittivity(material, stretch);
+    film->permittivity = DEA_EPSILON_0 * relative * (layers * layers);
+    film->electrostriction = material->permittivity_follows ? material->permittivity_per_stretch / relative : 0.0;
     film->breakdown = isnan(material->breakdown) ? INFINITY : material->breakdown;
     film->modulus = isnan(material->modulus) ? film->slope : material->modulus * dea_material_long_term_share(material);
 }
@@ -109,7 +111,7 @@ bool dea_point_valid(const dea_point *point)
         return dea_point_valid(&alone) && dea_point_valid(&second);
     }
     return point->frame_radius > 0.0 && point->coverage > 0.0 && point->coverage < 1.0 && point->film_thickness > 0.0 &&
-           film->prestretch >= 1.0 && film->permittivity > 0.0 && film->valid && isfinite(film->modulus) &&
+           film->prestretch >= 1.0 && film->permittivity > 0.0 && dea_point_electric(point).first > 0.0 && film->valid && isfinite(film->modulus) &&
            isfinite(point->voltage) && isfinite(point->force) && (point->skin_share == 0.0 || (point->skin_share > 0.0 && point->skin.valid));
 }
 

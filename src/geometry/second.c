@@ -35,6 +35,7 @@ void dea_second_scene(const dea_scene *scene, dea_scene *second)
     second->electrode = (dea_electrode){.thickness = none, .density = none, .sheet_resistance = none};
     second->load = (dea_edge_load){none, none, none, none};
     second->material = own->own_material ? own->material : scene->material;
+    second->material.temperature = scene->material.temperature;
     second->drive.series_resistance = second->drive.leakage_resistance = none;
     for (size_t i = 0; i < PAIRS; i++) {
         const double value = *scalar_of(scene, pairs[i].second);
@@ -57,5 +58,6 @@ bool dea_second_axis(const dea_scene *scene, const dea_axis *axis, dea_axis *sec
             return false;
         }
     }
-    return !(scene->antagonist.own_material && axis->offset >= material && axis->offset < end);
+    const bool warms = axis->offset == offsetof(dea_scene, material.temperature); /* both films */
+    return warms || !(scene->antagonist.own_material && axis->offset >= material && axis->offset < end);
 }

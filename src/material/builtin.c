@@ -15,6 +15,10 @@
 #define VHB_4905_LONG_TERM 13.4e3
 #define VHB_4905_INSTANTANEOUS (VHB_4905_LONG_TERM + 31.2e3 + 11.6e3)
 
+/* Nothing is known of other temperatures. */
+#define ANY_TEMPERATURE \
+    .temperature = NAN, .modulus_slope = NAN, .modulus_reference = NAN, .shift = {.c1 = NAN, .c2 = NAN, .reference = NAN}
+
 static const dea_material materials[] = {
     {
         .name = "elastosil-2030",
@@ -27,6 +31,7 @@ static const dea_material materials[] = {
         .retardation = NAN,
         .modulus = NAN,
         .breakdown = NAN,
+        ANY_TEMPERATURE,
     },
     {
         .name = "elastosil-2030-solano",
@@ -41,6 +46,7 @@ static const dea_material materials[] = {
         .retardation = NAN,
         .modulus = NAN,
         .breakdown = NAN,
+        ANY_TEMPERATURE,
     },
     {
         .name = "vhb-4910",
@@ -54,6 +60,7 @@ static const dea_material materials[] = {
         .retardation = NAN,
         .modulus = NAN,
         .breakdown = NAN,
+        ANY_TEMPERATURE,
         .prony_count = 3,
         .prony = VHB_4910_BRANCHES,
     },
@@ -68,6 +75,7 @@ static const dea_material materials[] = {
         .retardation = NAN,
         .modulus = NAN,
         .breakdown = NAN,
+        ANY_TEMPERATURE,
         .prony_count = 3,
         .prony = VHB_4910_BRANCHES,
     },
@@ -83,6 +91,7 @@ static const dea_material materials[] = {
         .retardation = NAN,
         .modulus = NAN,
         .breakdown = NAN,
+        ANY_TEMPERATURE,
         .stretches = {1.0, 3.0},
         .prony_count = 2,
         .prony = {{31.2e3 / VHB_4905_INSTANTANEOUS, 6.45}, {11.6e3 / VHB_4905_INSTANTANEOUS, 140.0}},
@@ -98,6 +107,7 @@ static const dea_material materials[] = {
         .retardation = NAN,
         .modulus = NAN,
         .breakdown = NAN,
+        ANY_TEMPERATURE,
     },
 };
 
@@ -114,6 +124,7 @@ dea_material dea_material_default(void)
         .retardation = NAN,
         .modulus = NAN,
         .breakdown = NAN,
+        ANY_TEMPERATURE,
     };
 }
 

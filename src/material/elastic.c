@@ -154,7 +154,7 @@ double dea_material_long_term_share(const dea_material *material)
             share -= material->prony[i].g;
         }
     }
-    return share;
+    return share * dea_material_stiffening(material);
 }
 
 void dea_material_long_term(const dea_material *material, double constants[DEA_LAW_CONSTANTS])

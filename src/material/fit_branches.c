@@ -1,4 +1,4 @@
-/* Variable projection: S(t) = a_inf + sum a_i e^(-t/tau_i) r(T/tau_i) is linear in the stresses a, none of them negative. So only
+/* Variable projection: what a test measures (fit_test.h) is linear in the shares a, none of them negative. So only
  * ln tau_i are searched, and the a follow by non-negative least squares. A step is the part of ln tau in a Levenberg-Marquardt
  * step of all unknowns; starts come from a logarithmic grid of times. */
 #include "material/fit_branches.h"
@@ -18,43 +18,21 @@ static const double reach = 4.0;
 /* The largest weight in a relative fit: that of a stress of 1 % of the largest. */
 static const double relative_floor = 0.01;
 
-/* r(x), the share of a branch that a ramp leaves. */
-static double ramp_share(double x)
-{
-    return x > 0.0 ? -expm1(-x) / x : 1.0;
-}
-
-/* dr/dln tau = r - e^-x, since x = T/tau. */
-static double ramp_slope(double x)
-{
-    return x > 0.0 ? ramp_share(x) - exp(-x) : 0.0;
-}
-
-double dea_ramp_share(double ramp, double tau)
-{
-    return ramp_share(ramp / tau);
-}
-
 static void constant_column(const dea_held *held, double *column)
 {
-    memcpy(column, held->weight, held->rows * sizeof *column);
-}
-
-static void branch_column(const dea_held *held, double log_tau, double *column)
-{
-    const double tau = exp(log_tau), share = dea_ramp_share(held->data->ramp, tau);
     for (size_t i = 0; i < held->rows; i++) {
-        column[i] = held->weight[i] * exp(-held->data->points[i].time / tau) * share;
+        column[i] = held->weight[i] * held->test->rest[i % held->test->curves];
     }
 }
 
-/* d/dln tau of the branch. */
-static void slope_column(const dea_held *held, double log_tau, double *column)
+/* The branch, or its slope over ln tau. */
+static void branch_column(const dea_held *held, double log_tau, bool slope, double *column)
 {
-    const double tau = exp(log_tau), x = held->data->ramp / tau;
+    const dea_test_time time = dea_test_time_of(held->data->ramp, exp(log_tau));
+    const size_t curves = held->test->curves;
     for (size_t i = 0; i < held->rows; i++) {
-        const double t = held->data->points[i].time / tau;
-        column[i] = held->weight[i] * exp(-t) * (t * ramp_share(x) + ramp_slope(x));
+        const dea_test_term term = held->test->branch(held->data->points[i / curves].time, &time, i % curves);
+        column[i] = held->weight[i] * (slope ? term.slope : term.value);
     }
 }
 
@@ -78,12 +56,14 @@ void dea_held_end(dea_held *held)
 static void grid_fill(dea_held *held)
 {
     const dea_relaxation_point *points = held->data->points;
+    const size_t last = held->data->count - 1;
     double interval = INFINITY;
-    for (size_t i = 1; i < held->rows; i++) {
+    for (size_t i = 1; i <= last; i++) {
         interval = fmin(interval, points[i].time - points[i - 1].time);
     }
-    const double hold = points[held->rows - 1].time - points[0].time;
-    const double seen = fmax(interval, points[0].time) / reach;
+    const bool periodic = held->test->periodic;
+    const double hold = periodic ? 1.0 / points[0].time : points[last].time - points[0].time;
+    const double seen = (periodic ? 1.0 / points[last].time : fmax(interval, points[0].time)) / reach;
     held->log_min = log(fmin(seen, hold / reach));
     held->log_max = log(hold * reach);
     const double wanted = ceil((held->log_max - held->log_min) / log(10.0) * PER_DECADE) + 1.0;
@@ -95,12 +75,14 @@ static void grid_fill(dea_held *held)
 
 dea_status dea_held_begin(dea_held *held, const dea_relaxation_data *data, bool relative, dea_error *error)
 {
-    *held = (dea_held){.rows = data->count, .data = data, .memory = true};
-    for (size_t i = 0; i < held->rows; i++) {
+    const dea_test *test = dea_test_of(data->kind);
+    *held = (dea_held){.rows = data->count * test->curves, .data = data, .test = test, .memory = true};
+    for (size_t i = 0; i < data->count; i++) {
         held->scale = fmax(held->scale, data->points[i].stress);
     }
     if (!(held->scale > 0.0)) {
-        return dea_fail(error, DEA_ERROR_USAGE, "all %zu measured stresses are 0", data->count);
+        return dea_fail(error, DEA_ERROR_USAGE, "all %zu measured %s are 0", data->count,
+                        data->kind == DEA_TEST_RELAXATION ? "stresses" : "values");
     }
     held->weight = malloc(held->rows * sizeof *held->weight);
     held->right = malloc(held->rows * sizeof *held->right);
@@ -110,7 +92,7 @@ dea_status dea_held_begin(dea_held *held, const dea_relaxation_data *data, bool 
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
     for (size_t i = 0; i < held->rows; i++) {
-        const double stress = data->points[i].stress / held->scale;
+        const double stress = dea_test_measured(&data->points[i / test->curves], i % test->curves) / held->scale;
         held->weight[i] = relative ? 1.0 / fmax(stress, relative_floor) : 1.0;
         held->right[i] = held->weight[i] * stress;
     }
@@ -123,7 +105,7 @@ void dea_branches_solve(dea_held *held, dea_branches *c)
 {
     constant_column(held, held->matrix);
     for (size_t k = 0; k < c->count; k++) {
-        branch_column(held, c->logs[k], held->matrix + (k + 1) * held->rows);
+        branch_column(held, c->logs[k], false, held->matrix + (k + 1) * held->rows);
     }
     if (dea_nnls(held->rows, c->count + 1, held->matrix, held->right, c->shares, &c->squares) != DEA_OK) {
         held->memory = false;
@@ -139,8 +121,8 @@ void dea_branches_jacobian(const dea_held *held, const dea_branches *c, double *
     for (size_t k = 0; k < c->count; k++) {
         if (c->shares[k + 1] > 0.0) {
             double *slope = matrix + (c->count + 1 + k) * rows;
-            branch_column(held, c->logs[k], matrix + (k + 1) * rows);
-            slope_column(held, c->logs[k], slope);
+            branch_column(held, c->logs[k], false, matrix + (k + 1) * rows);
+            branch_column(held, c->logs[k], true, slope);
             for (size_t i = 0; i < held->rows; i++) {
                 slope[i] *= c->shares[k + 1];
             }
@@ -275,7 +257,7 @@ static size_t spectrum_find(dea_held *held, double logs[DEA_BRANCHES_GRID], doub
     }
     constant_column(held, matrix);
     for (size_t i = 0; i < held->grid_count; i++) {
-        branch_column(held, held->grid[i], matrix + (i + 1) * held->rows);
+        branch_column(held, held->grid[i], false, matrix + (i + 1) * held->rows);
     }
     held->memory = dea_nnls(held->rows, held->grid_count + 1, matrix, held->right, found, &squares) == DEA_OK;
     free(matrix);

@@ -2,14 +2,15 @@
 #ifndef DEA_MATERIAL_FIT_BRANCHES_H
 #define DEA_MATERIAL_FIT_BRANCHES_H
 
-#include "deaspice/fit.h"
+#include "material/fit_test.h"
 
 enum { DEA_BRANCHES_GRID = 128, DEA_BRANCHES_COLUMNS = 2 * DEA_RELAXATION_MOST + 1 };
 
-/* The weighted data, stresses as shares of the largest one. */
+/* The weighted data, stresses as shares of the largest one; row i is curve i % curves of point i/curves. */
 typedef struct dea_held {
     size_t rows;
     const dea_relaxation_data *data;
+    const dea_test *test;
     double scale;                   /* largest stress [Pa] */
     double *weight, *right;         /* rows values; owned */
     double *matrix;                 /* room for DEA_BRANCHES_COLUMNS columns of rows + DEA_BRANCHES_COLUMNS values; owned */
@@ -34,8 +35,6 @@ dea_status dea_held_begin(dea_held *held, const dea_relaxation_data *data, bool 
 /* Frees what it owns; zeroed is fine. */
 void dea_held_end(dea_held *held);
 
-/* r(T/tau), the share of a branch that a ramp of duration T leaves. */
-double dea_ramp_share(double ramp, double tau);
 /* The shares that go with the times, and what they leave. */
 void dea_branches_solve(dea_held *held, dea_branches *branches);
 /* The best fit found with one branch more than @p less. */

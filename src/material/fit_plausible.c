@@ -1,5 +1,7 @@
 #include "material/fit_plausible.h"
 
+#include "material/fit_test.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -106,29 +108,62 @@ bool dea_plausible_negative(double stress, double largest)
     return stress < -below_zero * largest;
 }
 
+/* The point of the lowest or the largest value. */
+static const dea_relaxation_point *extreme_of(const dea_relaxation_data *data, double sign)
+{
+    const dea_relaxation_point *found = data->points;
+    for (size_t i = 1; i < data->count; i++) {
+        found = sign * data->points[i].stress > sign * found->stress ? &data->points[i] : found;
+    }
+    return found;
+}
+
+/* Moduli that fall with the frequency, and a loss that is negative beyond noise. */
+static dea_status dynamic_check(const dea_relaxation_data *data, double largest, double least, dea_error *error)
+{
+    const double first = data->points[0].stress, last = data->points[data->count - 1].stress;
+    if (first - last > least) {
+        return dea_fail(error, DEA_ERROR_DATA, dea_test_of(data->kind)->mirrored, first, last);
+    }
+    for (size_t i = 0; i < data->count; i++) {
+        const double loss = data->points[i].loss;
+        if (dea_plausible_negative(loss, largest)) {
+            return dea_fail(error, DEA_ERROR_USAGE, "a loss modulus of %.6g Pa at %.6g Hz: a film takes energy, it gives none", loss,
+                            data->points[i].time / (2.0 * DEA_PI));
+        }
+    }
+    return DEA_OK;
+}
+
 dea_status dea_plausible_relaxation(const dea_relaxation_data *data, dea_error *error)
 {
-    const dea_relaxation_point *first = data->points, *peak = first, *lowest = first, *last = first + data->count - 1;
+    const dea_test *test = dea_test_of(data->kind);
+    const dea_relaxation_point *first = data->points, *last = first + data->count - 1;
+    const dea_relaxation_point *peak = extreme_of(data, 1.0), *lowest = extreme_of(data, -1.0);
     double noise = 0.0;
     const dea_status status = point_noise(data, &noise, error);
     if (status != DEA_OK) {
         return status;
     }
-    for (const dea_relaxation_point *p = first; p <= last; p++) {
-        peak = p->stress > peak->stress ? p : peak;
-        lowest = p->stress < lowest->stress ? p : lowest;
-    }
     if (dea_plausible_negative(lowest->stress, peak->stress)) {
-        return dea_fail(error, DEA_ERROR_USAGE, "a stress of %.6g Pa at %.6g s: a stress is not negative, in compression too",
-                        lowest->stress, lowest->time);
+        return dea_fail(error, DEA_ERROR_USAGE, "a %s of %.6g%s at %.6g %s: %s", test->quantity, lowest->stress, test->unit,
+                        test->periodic ? lowest->time / (2.0 * DEA_PI) : lowest->time, test->periodic ? "Hz" : "s", test->negative);
     }
-    /* A peak at the end is growth, which the branches themselves tell. */
-    if (peak != last && peak->stress - first->stress > fmax(rise_noise * noise, rise_share * peak->stress) &&
-        peak->stress - last->stress > fmax(rise_noise * noise, rise_share * peak->stress)) {
-        return dea_fail(error, DEA_ERROR_DATA,
-                        "the stress rises from %.6g Pa to %.6g Pa at %.6g s before it falls: time counts from the end of the ramp; leave "
-                        "out the %zu rows before and subtract %.6g s from the times",
-                        first->stress, peak->stress, peak->time, (size_t)(peak - first), peak->time);
+    const double least = fmax(rise_noise * noise, rise_share * peak->stress);
+    if (test->periodic) {
+        return dynamic_check(data, peak->stress, least, error);
     }
-    return DEA_OK;
+    /* A peak at an end is growth, or decay, which the branches themselves tell. */
+    if (peak == last || !(peak->stress - first->stress > least) || !(peak->stress - last->stress > least)) {
+        return DEA_OK;
+    }
+    return data->kind == DEA_TEST_CREEP
+               ? dea_fail(error, DEA_ERROR_DATA,
+                          "the strain grows to %.6g at %.6g s and then falls to %.6g: a creep test is of one stress; leave out the %zu rows "
+                          "behind",
+                          peak->stress, peak->time, last->stress, (size_t)(last - peak))
+               : dea_fail(error, DEA_ERROR_DATA,
+                          "the stress rises from %.6g Pa to %.6g Pa at %.6g s before it falls: time counts from the end of the ramp; "
+                          "leave out the %zu rows before and subtract %.6g s from the times",
+                          first->stress, peak->stress, peak->time, (size_t)(peak - first), peak->time);
 }

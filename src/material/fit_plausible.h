@@ -11,7 +11,8 @@ dea_status dea_plausible_stretches(const dea_fit_data *data, dea_error *error);
 double dea_plausible_turn(const dea_fit_data *data);
 /* Whether a stress is below 0 by more than noise about 0, @p largest being the largest of its test. */
 bool dea_plausible_negative(double stress, double largest);
-/* DEA_ERROR_DATA where the stress of a relaxation test rises before it falls, DEA_ERROR_USAGE where one is negative beyond noise. */
+/* DEA_ERROR_DATA where the stress of a relaxation test rises before it falls or the strain of a creep test falls behind its peak,
+ * DEA_ERROR_USAGE where a number is negative beyond noise. */
 dea_status dea_plausible_relaxation(const dea_relaxation_data *data, dea_error *error);
 
 #endif

@@ -1,4 +1,4 @@
-#include "deaspice/fit.h"
+#include "material/fit_test.h"
 
 #include "support/number.h"
 
@@ -123,23 +123,39 @@ static void print_deviation(FILE *stream, double deviation, const char *unit)
     }
 }
 
-static void print_relaxation_quality(const dea_relaxation *fit, FILE *stream)
+/* The range that was measured, and the ramp before it. */
+static void print_range(const dea_relaxation *fit, FILE *stream)
 {
-    fprintf(stream, "# Fit of %zu Prony branch%s to %zu points of a relaxation test", fit->prony_count,
-            fit->prony_count == 1 ? "" : "es", fit->count);
+    if (dea_test_of(fit->kind)->periodic) {
+        print_number(stream, ", ", 0.5 / DEA_PI / fit->time_max, 6, " Hz");
+        print_number(stream, " to ", 0.5 / DEA_PI / fit->time_min, 6, " Hz.\n");
+        return;
+    }
     print_number(stream, ", ", fit->time_min, 6, " s");
     print_number(stream, " to ", fit->time_max, 6, " s");
     print_number(stream, " after a ramp of ", fit->ramp, 6, " s.\n");
-    print_number(stream, "# Residual ", fit->residual_rms, 4, " Pa rms");
-    print_number(stream, " (", 100.0 * fit->residual_relative, 3, " %)");
-    print_number(stream, ", stress after an ideal step ", fit->instantaneous, 6, " Pa");
+}
+
+static void print_relaxation_quality(const dea_relaxation *fit, FILE *stream)
+{
+    const dea_test *test = dea_test_of(fit->kind);
+    fprintf(stream, "# Fit of %zu Prony branch%s to %zu points of a %s", fit->prony_count, fit->prony_count == 1 ? "" : "es", fit->count,
+            test->name);
+    print_range(fit, stream);
+    print_number(stream, "# Residual ", fit->residual_rms, 4, test->unit);
+    print_number(stream, " rms (", 100.0 * fit->residual_relative, 3, " %), ");
+    fputs(test->step, stream);
+    print_number(stream, " ", fit->instantaneous, 6, test->unit);
     print_number(stream, ", long-term share ", fit->long_term, 6, "");
     print_deviation(stream, fit->long_term_deviation, "");
     fputs(".\n# Tried, each against one branch less by an F test:\n", stream);
     print_trials(fit, stream);
     fprintf(stream, "# No further branch: %s.\n", dea_relaxation_reason(fit));
-    if (fit->prony_count > 0 && fit->prony[fit->prony_count - 1].tau > fit->time_max - fit->time_min) {
+    if (dea_relaxation_slow(fit)) {
         fputs("# WARNING: the slowest branch is slower than the test; the long-term share is extrapolated.\n", stream);
+    }
+    if (dea_relaxation_fast(fit)) {
+        fputs("# WARNING: the fastest branch is faster than the highest frequency; the instantaneous modulus is extrapolated.\n", stream);
     }
 }
 

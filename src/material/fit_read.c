@@ -1,4 +1,4 @@
-/* Tables of stress over stretch and of stress over time. */
+/* Tables of stress over stretch, of stress or strain over time, and of moduli over frequency. */
 #include "deaspice/fit.h"
 
 #include <math.h>
@@ -7,10 +7,11 @@
 #include <string.h>
 
 #include "material/fit_plausible.h"
+#include "material/fit_test.h"
 #include "support/file.h"
 #include "support/table.h"
 
-enum { STRETCH, STRAIN, DISPLACEMENT, STRESS, FORCE, MODE, TIME, COLUMNS };
+enum { STRETCH, STRAIN, DISPLACEMENT, STRESS, FORCE, MODE, TIME, COMPLIANCE, COLUMNS };
 _Static_assert((int)COLUMNS <= (int)DEA_TABLE_WANTED, "a row has room for every column");
 
 static const char *const stretch_names[] = {"stretch ratio", "lambda", NULL};
@@ -20,6 +21,7 @@ static const char *const stress_names[] = {"nominal stress", "engineering stress
 static const char *const force_names[] = {"load", NULL};
 static const char *const mode_words[] = {"uniaxial", "equibiaxial", NULL};
 static const char *const time_names[] = {"t", NULL};
+static const char *const compliance_names[] = {"creep compliance", "j", NULL};
 
 static const dea_wanted wanted[COLUMNS] = {
     [STRETCH] = {.name = "stretch", .aliases = stretch_names, .unit = "1", .assumed = "1"},
@@ -29,6 +31,24 @@ static const dea_wanted wanted[COLUMNS] = {
     [FORCE] = {.name = "force", .aliases = force_names, .unit = "N", .by_unit = true},
     [MODE] = {.name = "mode", .words = mode_words},
     [TIME] = {.name = "time", .aliases = time_names, .unit = "s", .by_unit = true},
+    [COMPLIANCE] = {.name = "compliance", .aliases = compliance_names, .unit = "Pa-1", .by_unit = true},
+};
+
+/* Those of a dynamic test. A frequency in radians per second is an angular one, whatever its name. */
+enum { FREQUENCY, OMEGA, STORAGE, LOSS, TANGENT, SWINGING };
+
+static const char *const frequency_names[] = {"freq", "f", NULL};
+static const char *const omega_names[] = {"frequency", "freq", "f", "ang frequency", "omega", "w", NULL};
+static const char *const storage_names[] = {"storage", "elastic modulus", "eprime", "gprime", "e\xE2\x80\xB2", "g\xE2\x80\xB2", NULL};
+static const char *const loss_names[] = {"loss", "viscous modulus", "eprimeprime", "gprimeprime", "e\xE2\x80\xB3", "g\xE2\x80\xB3", NULL};
+static const char *const tangent_names[] = {"tan d", "tandelta", "tan", "loss factor", "damping factor", "loss tangent", NULL};
+
+static const dea_wanted swinging[SWINGING] = {
+    [FREQUENCY] = {.name = "frequency", .aliases = frequency_names, .unit = "Hz", .by_unit = true},
+    [OMEGA] = {.name = "angular frequency", .aliases = omega_names, .unit = "rad/s", .by_unit = true},
+    [STORAGE] = {.name = "storage modulus", .aliases = storage_names, .unit = "Pa"},
+    [LOSS] = {.name = "loss modulus", .aliases = loss_names, .unit = "Pa"},
+    [TANGENT] = {.name = "tan delta", .aliases = tangent_names, .unit = "1", .assumed = "1"},
 };
 
 /* A displacement within this share of the largest one is that of the hold, or that of the rest before the ramp. */
@@ -122,6 +142,7 @@ static dea_status relaxation_add(dea_relaxation_data *data, dea_relaxation_point
     dea_relaxation_point *last = &data->points[data->count - 1];
     ++*equal;
     last->stress += (point.stress - last->stress) / (double)*equal;
+    last->loss += (point.loss - last->loss) / (double)*equal;
     return DEA_OK;
 }
 
@@ -161,19 +182,40 @@ typedef struct extremes {
     double lowest, largest;
 } extremes;
 
-static dea_status relaxation_judge(dea_table *t, const dea_relaxation_data *data, const extremes *found)
+static dea_status enough_check(const dea_table *t, const dea_relaxation_data *data)
 {
     char problem[80];
     if (data->count < DEA_RELAXATION_LEAST) {
-        snprintf(problem, sizeof problem, "%zu points; a relaxation test needs at least %d", data->count, DEA_RELAXATION_LEAST);
+        snprintf(problem, sizeof problem, "%zu points; a %s needs at least %d", data->count, dea_test_of(data->kind)->name,
+                 DEA_RELAXATION_LEAST);
         return dea_table_fail(t, 1, problem);
     }
-    if (dea_plausible_negative(found->lowest, found->largest)) {
+    return DEA_OK;
+}
+
+static dea_status relaxation_judge(dea_table *t, const dea_relaxation_data *data, const extremes *found)
+{
+    const dea_test *test = dea_test_of(data->kind);
+    char problem[80];
+    const dea_status status = enough_check(t, data);
+    if (status == DEA_OK && dea_plausible_negative(found->lowest, found->largest)) {
         t->line = found->line;
-        snprintf(problem, sizeof problem, "a stress is not negative, in compression too: %.6g Pa", found->lowest);
+        snprintf(problem, sizeof problem, "%s: %.6g%s", test->negative, found->lowest, test->unit);
         return dea_table_fail(t, found->column, problem);
     }
-    return DEA_OK;
+    return status;
+}
+
+/* What a row of a test over time has measured, and in which column. */
+static double held_of(const dea_table *t, const dea_relaxation_data *data, const double values[], size_t *column)
+{
+    if (data->kind == DEA_TEST_RELAXATION) {
+        *column = t->seen[STRESS] ? STRESS : FORCE;
+        return stress_of(t, values, &data->specimen);
+    }
+    *column = t->seen[STRAIN] ? STRAIN : t->seen[STRETCH] ? STRETCH : t->seen[DISPLACEMENT] ? DISPLACEMENT : COMPLIANCE;
+    const double length = data->specimen.length > 0.0 ? data->specimen.length : 1.0; /* its unit does not matter to the branches */
+    return *column == STRETCH ? values[STRETCH] - 1.0 : *column == DISPLACEMENT ? values[DISPLACEMENT] / length : values[*column];
 }
 
 static dea_status point_take(const dea_table *t, dea_relaxation_data *data, dea_relaxation_point point, size_t *equal)
@@ -187,7 +229,8 @@ static dea_status point_take(const dea_table *t, dea_relaxation_data *data, dea_
     return relaxation_add(data, point, equal, t->error);
 }
 
-static dea_status relaxation_rows(dea_table *t, dea_relaxation_data *data, double begin)
+/* @p ramped: rows before `begin` are of the ramp. */
+static dea_status relaxation_rows(dea_table *t, dea_relaxation_data *data, bool ramped, double begin)
 {
     extremes found = {.lowest = INFINITY};
     double values[DEA_TABLE_WANTED];
@@ -195,14 +238,15 @@ static dea_status relaxation_rows(dea_table *t, dea_relaxation_data *data, doubl
     bool more = true;
     dea_status status = dea_table_row(t, values, &more);
     for (; status == DEA_OK && more; status = status ? status : dea_table_row(t, values, &more)) {
-        const dea_relaxation_point point = {values[TIME] - begin, stress_of(t, values, &data->specimen)};
-        if (t->seen[DISPLACEMENT] && values[TIME] < begin) {
-            continue; /* of the ramp */
+        size_t column;
+        const dea_relaxation_point point = {.time = values[TIME] - begin, .stress = held_of(t, data, values, &column)};
+        if (ramped && values[TIME] < begin) {
+            continue;
         }
         if (point.stress < found.lowest) {
             found.lowest = point.stress;
             found.line = t->line;
-            found.column = dea_table_place(t, t->seen[STRESS] ? STRESS : FORCE);
+            found.column = dea_table_place(t, column);
         }
         found.largest = fmax(found.largest, point.stress);
         status = point_take(t, data, point, &equal);
@@ -210,17 +254,92 @@ static dea_status relaxation_rows(dea_table *t, dea_relaxation_data *data, doubl
     return status == DEA_OK ? relaxation_judge(t, data, &found) : status;
 }
 
+static dea_status strain_check(const dea_table *t)
+{
+    return t->seen[STRAIN] || t->seen[STRETCH] || t->seen[DISPLACEMENT] || t->seen[COMPLIANCE]
+               ? DEA_OK
+               : dea_table_missing(t, STRAIN, "name it strain, stretch, displacement_mm or compliance_1/MPa");
+}
+
 static dea_status relaxation_read(dea_table *t, const target *to)
 {
     dea_relaxation_data *data = to->relaxation;
     ramp found = {0.0, 0.0};
-    dea_status status =
-        t->seen[TIME] ? stress_check(t, &data->specimen) : dea_table_missing(t, TIME, "name it with its unit, e.g. time_s");
-    if (status == DEA_OK && t->seen[DISPLACEMENT]) {
+    const bool ramped = data->kind == DEA_TEST_RELAXATION && t->seen[DISPLACEMENT];
+    dea_status status = !t->seen[TIME] ? dea_table_missing(t, TIME, "name it with its unit, e.g. time_s")
+                        : data->kind == DEA_TEST_CREEP ? strain_check(t)
+                                                       : stress_check(t, &data->specimen);
+    if (status == DEA_OK && ramped) {
         status = ramp_find(*t, &found);
         data->ramp = status == DEA_OK && data->ramp == 0.0 ? found.end - found.begin : data->ramp;
     }
-    status = status ? status : relaxation_rows(t, data, found.end);
+    status = status ? status : relaxation_rows(t, data, ramped, found.end);
+    if (status != DEA_OK) {
+        data->count = 0;
+    }
+    return status;
+}
+
+static dea_status moduli_check(const dea_table *t)
+{
+    if (!t->seen[FREQUENCY] && !t->seen[OMEGA]) {
+        return dea_table_missing(t, FREQUENCY, "name it with its unit, e.g. frequency_Hz or omega_rad/s");
+    }
+    if (!t->seen[STORAGE]) {
+        return dea_table_missing(t, STORAGE, "name it with its unit, e.g. storage modulus (kPa)");
+    }
+    return t->seen[LOSS] || t->seen[TANGENT]
+               ? DEA_OK
+               : dea_table_missing(t, LOSS, "name it with its unit, e.g. loss modulus (kPa), or give tan delta");
+}
+
+static int by_time(const void *a, const void *b)
+{
+    const double x = ((const dea_relaxation_point *)a)->time, y = ((const dea_relaxation_point *)b)->time;
+    return (x > y) - (x < y);
+}
+
+static dea_status moduli_rows(dea_table *t, dea_relaxation_point **points, size_t *count)
+{
+    double values[DEA_TABLE_WANTED];
+    size_t room = 0;
+    bool more = true;
+    dea_status status = dea_table_row(t, values, &more);
+    for (; status == DEA_OK && more; status = status ? status : dea_table_row(t, values, &more)) {
+        const double omega = t->seen[FREQUENCY] ? 2.0 * DEA_PI * values[FREQUENCY] : values[OMEGA];
+        if (!(omega > 0.0)) {
+            return dea_table_fail_at(t, t->seen[FREQUENCY] ? FREQUENCY : OMEGA, "a frequency is above 0:");
+        }
+        if (*count == room) {
+            room = room > 0 ? 2 * room : 64;
+            dea_relaxation_point *larger = realloc(*points, room * sizeof *larger);
+            if (!larger) {
+                return dea_fail(t->error, DEA_ERROR_MEMORY, "out of memory");
+            }
+            *points = larger;
+        }
+        (*points)[(*count)++] = (dea_relaxation_point){
+            .time = omega, .stress = values[STORAGE], .loss = t->seen[LOSS] ? values[LOSS] : values[STORAGE] * values[TANGENT]};
+    }
+    return status;
+}
+
+/* Frequencies may come in any order; rows of one become their mean. */
+static dea_status moduli_read(dea_table *t, const target *to)
+{
+    dea_relaxation_data *data = to->relaxation;
+    dea_relaxation_point *points = NULL;
+    size_t count = 0, equal = 0;
+    dea_status status = moduli_check(t);
+    status = status ? status : moduli_rows(t, &points, &count);
+    if (status == DEA_OK && count > 0) {
+        qsort(points, count, sizeof *points, by_time);
+    }
+    for (size_t i = 0; i < count && status == DEA_OK; i++) {
+        status = relaxation_add(data, points[i], &equal, t->error);
+    }
+    free(points);
+    status = status ? status : enough_check(t, data);
     if (status != DEA_OK) {
         data->count = 0;
     }
@@ -229,11 +348,21 @@ static dea_status relaxation_read(dea_table *t, const target *to)
 
 typedef dea_status table_reader(dea_table *table, const target *to);
 
+static table_reader *reader_of(const dea_relaxation_data *data)
+{
+    return data->kind == DEA_TEST_DYNAMIC ? moduli_read : relaxation_read;
+}
+
 static dea_status parse(const char *text, size_t length, const char *name, table_reader *read, const target *to,
                         char columns[DEA_SOURCE_LENGTH], dea_error *error)
 {
     dea_units *units = dea_units_open();
-    dea_table t = {.name = name, .wanted = wanted, .wanted_count = COLUMNS, .units = units, .error = error};
+    const bool swings = read == moduli_read;
+    dea_table t = {.name = name,
+                   .wanted = swings ? swinging : wanted,
+                   .wanted_count = swings ? SWINGING : COLUMNS,
+                   .units = units,
+                   .error = error};
     dea_status status = units ? dea_table_begin(&t, text, length) : dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     status = status ? status : read(&t, to);
     snprintf(columns, DEA_SOURCE_LENGTH, "%.*s", DEA_SOURCE_LENGTH - 1, t.told);
@@ -269,17 +398,17 @@ dea_status dea_fit_read(const char *path, dea_load load, dea_fit_data *data, dea
 
 static dea_status one_test(const dea_relaxation_data *data, dea_error *error)
 {
-    return data->count > 0 ? dea_fail(error, DEA_ERROR_USAGE, "one relaxation test at a time") : DEA_OK;
+    return data->count > 0 ? dea_fail(error, DEA_ERROR_USAGE, "one test at a time") : DEA_OK;
 }
 
 dea_status dea_relaxation_parse(const char *text, size_t length, const char *name, dea_relaxation_data *data, dea_error *error)
 {
     const dea_status status = one_test(data, error);
-    return status ? status : parse(text, length, name, relaxation_read, &(target){.relaxation = data}, data->columns, error);
+    return status ? status : parse(text, length, name, reader_of(data), &(target){.relaxation = data}, data->columns, error);
 }
 
 dea_status dea_relaxation_read(const char *path, dea_relaxation_data *data, dea_error *error)
 {
     const dea_status status = one_test(data, error);
-    return status ? status : parse_file(path, relaxation_read, &(target){.relaxation = data}, data->columns, error);
+    return status ? status : parse_file(path, reader_of(data), &(target){.relaxation = data}, data->columns, error);
 }

@@ -1,13 +1,11 @@
-/* Prony branches of a relaxation test. After a ramp of constant rate and duration T that ends at t = 0, the relative modulus
- * E(t) = 1 - sum g_i (1 - e^(-t/tau_i)) gives, by superposition of the steps of the ramp,
- *
- *     S(t) = S_0 (g_inf + sum g_i e^(-t/tau_i) r(T/tau_i)),   r(x) = (1 - e^-x)/x,   r(0) = 1: an ideal step.
+/* Prony branches of a test of relaxation, of creep or of dynamic moduli, whose models fit_test.h has.
  *
  * The number of branches grows while an F test finds the gain of the last one, 2 constants, significant; with 2 degrees of
  * freedom the chance is p = (R_m/R_(m-1))^((n - 2m - 1)/2) in closed form, R being squared residuals. */
 #include "deaspice/fit.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "material/fit_branches.h"
@@ -32,9 +30,9 @@ static const double ramp_hides = 10.0;
 dea_status dea_relaxation_add(dea_relaxation_data *data, dea_relaxation_point point, dea_error *error)
 {
     const double last = data->count > 0 ? data->points[data->count - 1].time : -1.0;
-    if (!(point.time >= 0.0) || !isfinite(point.time) || !(point.time > last) || !isfinite(point.stress)) {
+    if (!(point.time >= 0.0) || !isfinite(point.time) || !(point.time > last) || !isfinite(point.stress) || !isfinite(point.loss)) {
         return dea_fail(error, DEA_ERROR_USAGE,
-                        "a point of a relaxation test needs a time >= 0 after the last and a finite stress");
+                        "a point of a %s needs a time >= 0 or a frequency after the last and finite numbers", dea_test_of(data->kind)->name);
     }
     if (data->count == data->room) {
         const size_t room = data->room > 0 ? 2 * data->room : 64;
@@ -57,14 +55,28 @@ void dea_relaxation_data_free(dea_relaxation_data *data)
     }
 }
 
+/* A curve of the fit; the sum of its shares is 1. */
+static double curve_of(const dea_relaxation *fit, double at, size_t curve)
+{
+    const dea_test *test = dea_test_of(fit->kind);
+    const bool creeps = fit->kind == DEA_TEST_CREEP;
+    double share = fit->long_term * test->rest[curve];
+    for (size_t i = 0; i < fit->prony_count; i++) {
+        const dea_prony *branch = creeps ? &fit->retardation[i] : &fit->prony[i];
+        const dea_test_time time = dea_test_time_of(fit->ramp, branch->tau);
+        share += branch->g * test->branch(at, &time, curve).value;
+    }
+    return (creeps ? fit->instantaneous / fit->long_term : fit->instantaneous) * share;
+}
+
 double dea_relaxation_stress(const dea_relaxation *fit, double time)
 {
-    double share = fit->long_term;
-    for (size_t i = 0; i < fit->prony_count; i++) {
-        const dea_prony *branch = &fit->prony[i];
-        share += branch->g * exp(-time / branch->tau) * dea_ramp_share(fit->ramp, branch->tau);
-    }
-    return fit->instantaneous * share;
+    return curve_of(fit, time, 0);
+}
+
+double dea_relaxation_loss(const dea_relaxation *fit, double omega)
+{
+    return fit->kind == DEA_TEST_DYNAMIC ? curve_of(fit, omega, 1) : 0.0;
 }
 
 static double long_term_of(const dea_branches *c)
@@ -104,17 +116,18 @@ static double gain_chance(const dea_held *held, const dea_branches *less, const 
 
 static void trial_note(const dea_held *held, dea_relaxation *fit, const dea_branches *c, double chance)
 {
+    const size_t curves = held->test->curves;
     double residuals = 0.0, squares = 0.0;
     for (size_t i = 0; i < held->rows; i++) {
-        const dea_relaxation_point *point = &held->data->points[i];
-        double stress = c->shares[0];
+        const dea_relaxation_point *point = &held->data->points[i / curves];
+        const double measured = dea_test_measured(point, i % curves) / held->scale;
+        double model = c->shares[0] * held->test->rest[i % curves];
         for (size_t k = 0; k < c->count; k++) {
-            const double tau = exp(c->logs[k]);
-            stress += c->shares[k + 1] * exp(-point->time / tau) * dea_ramp_share(held->data->ramp, tau);
+            const dea_test_time time = dea_test_time_of(held->data->ramp, exp(c->logs[k]));
+            model += c->shares[k + 1] * held->test->branch(point->time, &time, i % curves).value;
         }
-        const double residual = point->stress / held->scale - stress;
-        residuals += residual * residual;
-        squares += point->stress / held->scale * (point->stress / held->scale);
+        residuals += (measured - model) * (measured - model);
+        squares += measured * measured;
     }
     fit->trials[fit->trial_count++] = (dea_relaxation_trial){sqrt(residuals / squares), chance, long_term_of(c)};
 }
@@ -259,51 +272,74 @@ static void branches_sort(dea_branches *c)
     }
 }
 
-/* Standard errors. With A = a_inf + sum a_i, dg_j = (da_j - g_j sum_k da_k)/A and dtau = tau dln tau. */
+/* What a fit prints of its branches: g_inf, g_i, ln tau_i. */
+static void outputs_of(const dea_held *held, const dea_branches *c, double outputs[DEA_BRANCHES_COLUMNS])
+{
+    dea_spectrum spectrum;
+    held->test->convert(c->count, c->shares, c->logs, &spectrum);
+    outputs[0] = spectrum.long_term;
+    for (size_t i = 0; i < c->count; i++) {
+        outputs[1 + i] = spectrum.prony[i].g;
+        outputs[1 + c->count + i] = log(spectrum.prony[i].tau);
+    }
+}
+
+/* Standard errors by the slopes of the outputs over the unknowns, from differences of either side: their error of 1e-10 is none of a
+ * standard error. */
 static void deviations_find(dea_held *held, const dea_branches *c, dea_relaxation *fit)
 {
+    const double step = 1e-5;
+    const size_t columns = 2 * c->count + 1;
     covariances found;
-    const double sum = fit->instantaneous / held->scale;
+    double slopes[DEA_BRANCHES_COLUMNS][DEA_BRANCHES_COLUMNS]; /* [output][unknown] */
     const bool told = fit->end != DEA_RELAXATION_TIME && times_told(held, c, INFINITY) && covariances_find(held, c, &found);
-    for (size_t j = 0; j <= c->count; j++) {
-        double weights[DEA_BRANCHES_COLUMNS] = {0.0};
-        for (size_t k = 0; k <= c->count; k++) {
-            weights[k] = ((k == j) - c->shares[j] / sum) / sum;
+    for (size_t k = 0; k < columns; k++) {
+        double up[DEA_BRANCHES_COLUMNS], down[DEA_BRANCHES_COLUMNS];
+        dea_branches more = *c, less = *c;
+        const double size = k <= c->count ? step * c->shares[k] : step;
+        *(k <= c->count ? &more.shares[k] : &more.logs[k - c->count - 1]) += size;
+        *(k <= c->count ? &less.shares[k] : &less.logs[k - c->count - 1]) -= size;
+        outputs_of(held, &more, up);
+        outputs_of(held, &less, down);
+        for (size_t j = 0; j < columns; j++) {
+            slopes[j][k] = (up[j] - down[j]) / (2.0 * size);
         }
-        const double deviation = told ? sqrt(variance_of(&found, weights)) : NAN;
-        *(j == 0 ? &fit->long_term_deviation : &fit->deviation[j - 1].g) = deviation;
     }
+    fit->long_term_deviation = told ? sqrt(variance_of(&found, slopes[0])) : NAN;
     for (size_t i = 0; i < c->count; i++) {
-        fit->deviation[i].tau = told ? log_deviation(c, &found, i) * fit->prony[i].tau : NAN;
+        fit->deviation[i].g = told ? sqrt(variance_of(&found, slopes[1 + i])) : NAN;
+        fit->deviation[i].tau = told ? fit->prony[i].tau * sqrt(variance_of(&found, slopes[1 + c->count + i])) : NAN;
     }
 }
 
 static void fit_fill(dea_held *held, dea_branches *c, dea_relaxation *fit)
 {
-    double sum = 0.0;
+    dea_spectrum spectrum;
+    double sum = c->shares[0], squares = 0.0;
     branches_sort(c);
-    for (size_t k = 0; k <= c->count; k++) {
-        sum += c->shares[k];
+    held->test->convert(c->count, c->shares, c->logs, &spectrum);
+    for (size_t k = 0; k < c->count; k++) {
+        sum += c->shares[k + 1];
     }
     fit->prony_count = c->count;
-    fit->long_term = c->shares[0] / sum;
-    fit->instantaneous = sum * held->scale;
+    fit->long_term = spectrum.long_term;
+    fit->instantaneous = held->scale * (fit->kind == DEA_TEST_CREEP ? c->shares[0] : sum);
     for (size_t k = 0; k < c->count; k++) {
-        fit->prony[k] = (dea_prony){.g = c->shares[k + 1] / sum, .tau = exp(c->logs[k])};
+        fit->prony[k] = spectrum.prony[k];
+        fit->retardation[k] = (dea_prony){.g = c->shares[k + 1] / sum, .tau = exp(c->logs[k])};
     }
     deviations_find(held, c, fit);
-    double stress = 0.0;
     for (size_t i = 0; i < held->rows; i++) {
-        stress += pow(held->data->points[i].stress, 2.0) / (double)held->rows;
+        squares += pow(dea_test_measured(&held->data->points[i / held->test->curves], i % held->test->curves), 2.0) / (double)held->rows;
     }
     fit->residual_relative = fit->trials[c->count].residual_relative;
-    fit->residual_rms = fit->residual_relative * sqrt(stress);
+    fit->residual_rms = fit->residual_relative * sqrt(squares);
 }
 
 /* Whether the mirror image of the data relaxes. */
 static dea_status growth_find(const dea_relaxation_data *data, bool relative, bool *grows, dea_error *error)
 {
-    dea_relaxation_data mirror = {.ramp = data->ramp};
+    dea_relaxation_data mirror = {.kind = data->kind, .ramp = data->ramp};
     dea_relaxation fit = {0};
     double most = 0.0;
     dea_status status = DEA_OK;
@@ -311,7 +347,8 @@ static dea_status growth_find(const dea_relaxation_data *data, bool relative, bo
         most = fmax(most, data->points[i].stress);
     }
     for (size_t i = 0; i < data->count && status == DEA_OK; i++) {
-        const dea_relaxation_point point = {data->points[i].time, 2.0 * most - data->points[i].stress};
+        const dea_relaxation_point *own = &data->points[i];
+        const dea_relaxation_point point = {.time = own->time, .stress = 2.0 * most - own->stress, .loss = own->loss};
         status = dea_relaxation_add(&mirror, point, error);
     }
     dea_held held = {.rows = 0};
@@ -330,22 +367,24 @@ static dea_status growth_find(const dea_relaxation_data *data, bool relative, bo
 
 static dea_status data_examine(const dea_relaxation_data *data, size_t branches, dea_error *error)
 {
+    const dea_test *test = dea_test_of(data->kind);
+    const size_t most = data->count > 0 ? (data->count * test->curves - 1) / 2 : 0;
     if (data->count < DEA_RELAXATION_LEAST) {
-        return dea_fail(error, DEA_ERROR_USAGE, "%zu points; a relaxation test needs at least %d", data->count,
-                        DEA_RELAXATION_LEAST);
+        return dea_fail(error, DEA_ERROR_USAGE, "%zu points; a %s needs at least %d", data->count, test->name, DEA_RELAXATION_LEAST);
     }
-    if (branches > DEA_RELAXATION_MOST || branches > (data->count - 1) / 2) {
+    if (branches > DEA_RELAXATION_MOST || branches > most) {
         return dea_fail(error, DEA_ERROR_USAGE,
                         "%zu branches were asked for; %zu points determine %zu at most, and no fit has more than %d", branches,
-                        data->count, (data->count - 1) / 2, DEA_RELAXATION_MOST);
+                        data->count, most, DEA_RELAXATION_MOST);
     }
     const double from = data->points[0].time, to = data->points[data->count - 1].time;
-    if (!(to - from >= from)) {
-        return dea_fail(
-            error, DEA_ERROR_USAGE,
-            "the first point lies %.6g s after the ramp and the last one %.6g s: too late to tell what came before; time "
-            "counts from the end of the ramp",
-            from, to);
+    if (test->periodic ? !(from > 0.0) : !(to - from >= from)) {
+        return test->periodic
+                   ? dea_fail(error, DEA_ERROR_USAGE, "a frequency of 0; the moduli of a dynamic test are of frequencies above 0")
+                   : dea_fail(error, DEA_ERROR_USAGE,
+                              "the first point lies %.6g s after the ramp and the last one %.6g s: too late to tell what came "
+                              "before; time counts from the end of the ramp",
+                              from, to);
     }
     if (!(data->ramp >= 0.0) || !isfinite(data->ramp)) {
         return dea_fail(error, DEA_ERROR_USAGE, "the duration of the ramp is negative or not finite; 0 is an ideal step");
@@ -362,16 +401,15 @@ static dea_status outcome_examine(const dea_relaxation_data *data, size_t asked,
     if (status != DEA_OK) {
         return status;
     }
+    const dea_test *test = dea_test_of(data->kind);
     const dea_relaxation_point *first = data->points, *last = first + data->count - 1;
     if (grows) {
-        return dea_fail(error, DEA_ERROR_USAGE,
-                        "the stress grows from %.6g Pa to %.6g Pa at the held stretch; a relaxation test falls", first->stress,
-                        last->stress);
+        return dea_fail(error, DEA_ERROR_USAGE, test->mirrored, first->stress, last->stress);
     }
     if (fit->end == DEA_RELAXATION_LONG_TERM && (best->count == 0 || asked > 0)) {
-        return dea_fail(error, DEA_ERROR_USAGE,
-                        "branch %zu leaves no long-term stress, which a film needs; measure longer than %.6g s", best->count + 1,
-                        last->time);
+        char remedy[80];
+        snprintf(remedy, sizeof remedy, test->remedy, test->periodic ? first->time / (2.0 * DEA_PI) : last->time);
+        return dea_fail(error, DEA_ERROR_USAGE, "branch %zu leaves %s, which a film needs; %s", best->count + 1, test->last, remedy);
     }
     if (best->count < asked) {
         return dea_fail(error, DEA_ERROR_USAGE, "%zu branches were asked for, the data tells %zu apart", asked, best->count);
@@ -387,9 +425,12 @@ dea_status dea_fit_relaxation(const dea_relaxation_data *data, size_t branches, 
     if (status != DEA_OK) {
         return status;
     }
-    *fit = (dea_relaxation){.count = data->count,
-                            .time_min = data->points[0].time,
-                            .time_max = data->points[data->count - 1].time,
+    const double first = data->points[0].time, last = data->points[data->count - 1].time;
+    const bool periodic = dea_test_of(data->kind)->periodic;
+    *fit = (dea_relaxation){.kind = data->kind,
+                            .count = data->count,
+                            .time_min = periodic ? 1.0 / last : first,
+                            .time_max = periodic ? 1.0 / first : last,
                             .ramp = data->ramp};
     dea_held held;
     status = dea_held_begin(&held, data, relative, error);
@@ -408,6 +449,23 @@ dea_status dea_fit_relaxation(const dea_relaxation_data *data, size_t branches, 
     return status;
 }
 
+bool dea_relaxation_slow(const dea_relaxation *fit)
+{
+    const double longest = dea_test_of(fit->kind)->periodic ? fit->time_max : fit->time_max - fit->time_min;
+    const dea_prony *measured = fit->kind == DEA_TEST_CREEP ? fit->retardation : fit->prony;
+    return fit->prony_count > 0 && measured[fit->prony_count - 1].tau > longest;
+}
+
+bool dea_relaxation_fast(const dea_relaxation *fit)
+{
+    return fit->kind == DEA_TEST_DYNAMIC && fit->prony_count > 0 && fit->prony[0].tau < fit->time_min;
+}
+
+const char *dea_test_name(dea_test_kind kind)
+{
+    return dea_test_of(kind)->name;
+}
+
 const char *dea_relaxation_reason(const dea_relaxation *fit)
 {
     static const char *const reasons[] = {
@@ -419,5 +477,8 @@ const char *dea_relaxation_reason(const dea_relaxation *fit)
         [DEA_RELAXATION_TIME] = "there is one that is faster than a tenth of the ramp, and the points do not tell its time",
         [DEA_RELAXATION_FULL] = "no fit has more",
     };
+    if (fit->end == DEA_RELAXATION_LONG_TERM && fit->kind == DEA_TEST_CREEP) {
+        return "one more leaves no strain at the start";
+    }
     return (unsigned)fit->end < sizeof reasons / sizeof *reasons ? reasons[fit->end] : "unknown";
 }

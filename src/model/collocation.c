@@ -624,7 +624,8 @@ static void solve_chunk(const dea_point *points, size_t count, double accuracy, 
         const double nominal = dea_point_nominal_field(&points[i]);
         loads[i] = points[i].film.permittivity * nominal * nominal;
         solved[i] = false;
-        const bool plain = points[i].skin_share == 0.0 && points[i].load == 0.0 && points[i].film.w11 > 0.0; /* one film all over */
+        const dea_film *film = &points[i].film;
+        const bool plain = points[i].skin_share == 0.0 && points[i].load == 0.0 && film->w11 > 0.0 && film->electrostriction == 0.0;
         next[i] = plain && loads[i] > 0.0 && isfinite(loads[i]) ? first_degree(&points[i], loads[i], accuracy) : DEGREES;
     }
     for (int d = 0; d < DEGREES; d++) {

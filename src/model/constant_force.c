@@ -12,7 +12,8 @@ static double free_edge(const dea_point *point)
 static void fill(const dea_point *point, double pressure, double strain, dea_row *row)
 {
     const double stretch = 1.0 + strain;
-    const double force = pressure * stretch * stretch * stretch * dea_point_cross_section(point); /* A(lambda_a) eps E^2 */
+    const double electric = dea_film_electric(&point->film, point->film.square * stretch * stretch).first;
+    const double force = pressure * electric * stretch * stretch * stretch * dea_point_cross_section(point); /* A(lambda_a) eps E^2 */
     dea_row_fill(row, point,
                  (dea_found){.strain = strain,
                              .force = force,
@@ -46,9 +47,11 @@ static void build(const dea_symbols *symbols, dea_network *network)
     }
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force, A eps E^2, Eq. 13 [N]",
                     dea_hyperelastic_force(symbols, network->strain, network->strain));
-    network->capacitance =
-        MUL(dea_symbols_capacitance(symbols), SQUARE(SQUARE(ADD(NUM(1.0), network->strain)))); /* C_0 lambda_a^4 */
+    const dea_expr stretch = ADD(NUM(1.0), network->strain);
+    const dea_expr rest = MUL(dea_symbols_capacitance(symbols), dea_symbols_electric(symbols, stretch, stretch).own);
+    network->capacitance = MUL(rest, SQUARE(SQUARE(stretch))); /* C_0 lambda_a^4 */
     network->field = dea_hyperelastic_field(symbols, network->strain);
+    dea_network_insulate(symbols, network, stretch, stretch);
     network->length = MUL(symbols->coverage, symbols->frame_radius);
 }
 

@@ -25,14 +25,24 @@ static double push_of_lens(double b, double s)
     return sum / (rest * rest);
 }
 
+/* int_1^{1+s} (1 + e)^4 e/x dx with 1 + e = (1 - B x)/(1 - B), where `push` is that without e: what a permittivity that is linear
+ * in e adds. (1 + e)/x = 1/(x (1 - B)) - B/(1 - B). */
+static double more_push_of_lens(double b, double e, double push)
+{
+    const double second = e * (2.0 + e), fifth = second * (2.0 + second) * (1.0 + e) + e; /* (1 + e)^5 - 1 */
+    return push * b / (1.0 - b) + 0.2 * fifth;
+}
+
 /* Dot: C_0 lambda_a^4. Lens: C_0 + int 2 F/U^2 du, because the equi-biaxial annulus is not the true area [F]. */
 static double capacitance_of(const dea_point *point, double strain)
 {
     if (point->kind == DEA_DOT) {
         return dea_point_disc_capacitance(point, strain);
     }
-    const double b = point->coverage;
-    return dea_point_full_capacitance(point) * (1.0 - b * b - 4.0 * b * b * push_of_lens(b, strain));
+    const double b = point->coverage, active = -b * strain / (1.0 - b), push = push_of_lens(b, strain);
+    const double rise = 1.25 * point->film.electrostriction * point->film.prestretch;
+    const double first = dea_point_electric(point).first;
+    return dea_point_full_capacitance(point) * (1.0 - b * b - 4.0 * b * b * (first * push + rise * more_push_of_lens(b, active, push)));
 }
 
 /* Strain that the passive film gives back per strain of the active one. */
@@ -59,8 +69,9 @@ static dea_change change_at(const dea_point *point, double strain, bool coated)
 /* Under a load the electroded film need not hold what the passive one does: is sigma_A - eps E^2 positive? */
 static bool is_active_taut(const dea_point *point, double pressure, double active)
 {
-    const double square = (1.0 + active) * (1.0 + active);
-    return point->film.tension * point->film.prestretch + change_at(point, active, true).value - pressure * square * square > 0.0;
+    const double square = (1.0 + active) * (1.0 + active), pull = pressure * square * square;
+    const double electric = dea_film_electric(&point->film, point->film.square * square).first;
+    return point->film.tension * point->film.prestretch + change_at(point, active, true).value - electric * pull > 0.0;
 }
 
 static dea_found found_at(const dea_point *point, double pressure, double active, bool alone)
@@ -70,10 +81,11 @@ static dea_found found_at(const dea_point *point, double pressure, double active
     const double strain = dot ? active : passive;
     const double stretch = 1.0 + active;
     const double square = stretch * stretch;
+    const dea_electric electric = dea_film_electric(&point->film, point->film.square * square);
     const double area = dea_point_cross_section(point) / (1.0 + strain); /* A(lambda_a) = 2 pi r_a H/(lambda_pre^2 lambda_a) */
     const bool taut = point->film.prestretch * (1.0 + passive) > 1.0;
     return (dea_found){.strain = strain,
-                       .force = dea_point_sign(point) * area * pressure * square * square,
+                       .force = dea_point_sign(point) * area * pressure * square * square * electric.first,
                        .stretch = point->film.square * square,
                        .capacitance = capacitance_of(point, strain),
                        .taut = taut && (alone || is_active_taut(point, pressure, active))};
@@ -91,13 +103,15 @@ static bool hold(const dea_point *point, double strain, dea_hold *hold)
     const double b = point->coverage, annulus = -b * strain / (1.0 - b), turn = -b / (1.0 - b);
     const double active = dot ? strain : annulus, active_turn = dot ? 1.0 : turn;
     const dea_change in = change_at(point, strain, dot), out = change_at(point, annulus, !dot);
+    const double square = (1.0 + active) * (1.0 + active);
+    const dea_electric electric = dea_film_electric(&point->film, point->film.square * square);
     const double edge = 1.0 + strain, area = dea_point_cross_section(point) / edge, radius = dea_point_divide(point);
     const double stress = in.value - out.value;
     hold->found = found_at(point, dea_point_pressure(point), active, false);
     hold->held = area * stress;
     hold->held_slope = area / radius * (in.slope - turn * out.slope - stress / edge);
     hold->push = hold->found.force;
-    hold->push_slope = hold->push / radius * (4.0 * active_turn / (1.0 + active) - 1.0 / edge);
+    hold->push_slope = hold->push / radius * (2.0 * (1.0 + electric.second / electric.first) * active_turn / (1.0 + active) - 1.0 / edge);
     return edge > 0.0 && 1.0 + annulus > 0.0 && isfinite(hold->held);
 }
 
@@ -185,6 +199,18 @@ static dea_expr push_by_moments(const dea_symbols *symbols, dea_expr s)
     return MUL(s, sum);
 }
 
+/* The push where the permittivity follows the strain, of that where it does not and more_push_of_lens(). */
+static dea_expr following_push(const dea_symbols *symbols, dea_expr push)
+{
+    dea_pool *pool = symbols->pool;
+    const dea_expr b = symbols->coverage, e = dea_symbols_annulus_strain(symbols);
+    const dea_expr second = MUL(e, ADD(NUM(2.0), e)), fourth = MUL(second, ADD(NUM(2.0), second));
+    const dea_expr fifth = ADD(MUL(fourth, ADD(NUM(1.0), e)), e);
+    const dea_expr more = ADD(DIV(MUL(push, b), SUB(NUM(1.0), b)), SCALE(0.2, fifth));
+    const dea_expr first = dea_symbols_electric(symbols, NUM(1.0), NUM(1.0)).first;
+    return ADD(MUL(first, push), MUL(SCALE(1.25, MUL(symbols->electrostriction, symbols->prestretch)), more));
+}
+
 /* Dot: C = C_0 lambda_a^4. Lens: C = C_0 + int 2 F/U^2 du because the equi-biaxial annulus is not the true area, with
  * F/U^2 = -2 pi r_a eps lambda_pre^2 (1 + e)^4/(H (1 + s)), s and e the strains of disc and annulus, both proportional to u. */
 static dea_expr capacitance(const dea_symbols *symbols, dea_expr strain)
@@ -192,7 +218,8 @@ static dea_expr capacitance(const dea_symbols *symbols, dea_expr strain)
     dea_pool *pool = symbols->pool;
     const dea_expr rest = dea_symbols_capacitance(symbols);
     if (symbols->kind == DEA_DOT) {
-        return MUL(rest, SQUARE(SQUARE(ADD(NUM(1.0), strain))));
+        const dea_expr stretch = ADD(NUM(1.0), strain);
+        return MUL(MUL(rest, dea_symbols_electric(symbols, stretch, stretch).own), SQUARE(SQUARE(stretch)));
     }
     const dea_expr radius = MUL(symbols->coverage, symbols->frame_radius);
     const dea_expr front = MUL(symbols->permittivity, DIV(SQUARE(MUL(radius, symbols->prestretch)), symbols->film_thickness));
@@ -201,7 +228,8 @@ static dea_expr capacitance(const dea_symbols *symbols, dea_expr strain)
     const dea_expr push = coverage < 0.5 ? push_by_logarithm(symbols, strain)
                           : part         ? push_by_rule(symbols, strain)
                                          : push_by_moments(symbols, strain);
-    return SUB(rest, MUL(SCALE(4.0 * DEA_PI, front), push));
+    const bool constant = dea_expr_constant(pool, symbols->electrostriction) == 0.0;
+    return SUB(rest, MUL(SCALE(4.0 * DEA_PI, front), constant ? push : following_push(symbols, push)));
 }
 
 /* Edge equation of physics.md, section 5: A(lambda_a) times the stress differences to the pre-stretch, as two springs and a
@@ -231,9 +259,12 @@ static void build(const dea_symbols *symbols, dea_network *network)
                     SCALE(network->sign, dea_hyperelastic_force(symbols, disc, active)));
     network->ends = true;
     network->field = dea_hyperelastic_field(symbols, active);
+    dea_network_insulate(symbols, network, ADD(one, active), ADD(one, active));
     dea_network_taut(network, SUB(MUL(symbols->prestretch, ADD(one, passive)), one));
     if (symbols->loaded) {
-        const dea_expr pull = MUL(dea_symbols_pressure(symbols), SQUARE(SQUARE(MUL(symbols->prestretch, ADD(one, active)))));
+        const dea_expr electric = dea_symbols_electric(symbols, ADD(one, active), ADD(one, active)).first;
+        const dea_expr fourth = SQUARE(SQUARE(MUL(symbols->prestretch, ADD(one, active))));
+        const dea_expr pull = MUL(MUL(dea_symbols_pressure(symbols), electric), fourth);
         const dea_expr film = ADD(dea_symbols_rest_stress(symbols), dea_hyperelastic_change(symbols, active));
         const dea_expr coated = symbols->skin ? ADD(film, dea_hyperelastic_skin(symbols, active, active)) : film;
         dea_network_taut(network, SUB(coated, pull));

@@ -9,6 +9,8 @@
  * annulus of a lens has the capacitance (2 pi eps/H) int (lambda_1 lambda_2)^2 R dR; what of it lies within R is (2 pi eps/H) R^2 c,
  *
  *     dc/dx = (lambda_1 lambda_2)^2 - 2 c,   c = 0 at R_a.
+ *
+ * A permittivity that follows the strain puts its factors (dea_film_electric()) before k and the integrand of c.
  */
 #include <float.h>
 
@@ -53,7 +55,7 @@ typedef struct membrane {
 typedef struct extremes {
     double least_stress; /* smallest in-plane nominal stress [Pa] */
     double largest_area; /* largest lambda_1 lambda_2 of the electroded region [1] */
-    double edge_force;   /* lambda_1 lambda_2^2 of the electroded side at R_a [1] */
+    double edge_force;   /* lambda_1 lambda_2^2 of the electroded side at R_a, over k the electrical stress [1] */
     double charge;       /* c at the frame [1] */
 } extremes;
 
@@ -82,13 +84,14 @@ static radial_state slope_at(const membrane *m, radial_state s)
     const double l1 = l2 - s.d;
     const double area = l1 * l2;
     const dea_stress stress = stress_at(m, l1, l2);
-    const double s11 = stress.w11 - m->annulus_k * l2 * l2;
-    const double s12 = stress.w12 - 2.0 * m->annulus_k * area;
+    const dea_electric electric = dea_film_electric(m->film, area);
+    const double s11 = stress.w11 - m->annulus_k * electric.second * l2 * l2;
+    const double s12 = stress.w12 - m->annulus_k * (electric.first + electric.second) * area;
     if (!(s11 > 0.0)) {
         return (radial_state){NAN, NAN, NAN}; /* loss of ellipticity: no such film is stable */
     }
-    const double rate = 1.0 + (stress.shear + m->annulus_k * area + s12) / s11;
-    return (radial_state){-s.d * rate, -s.d, area * area - 2.0 * s.c};
+    const double rate = 1.0 + (stress.shear + m->annulus_k * electric.first * area + s12) / s11;
+    return (radial_state){-s.d * rate, -s.d, electric.own * area * area - 2.0 * s.c};
 }
 
 /* Gragg's modified midpoint rule over one step with n substeps and its smoothing. */
@@ -133,11 +136,12 @@ static bool advance(const membrane *m, radial_state start, double step, radial_s
 }
 
 /* s1 of the annulus less that of the disc, and of what a load holds [Pa]:
- * p1(l - D, l) - p1(l, l) + (k_d - k_o) l^3 + k_o D l^2 */
+ * p1(l - D, l) - p1(l, l) + (k_d - k_o) l^3 + k_o D l^2, of k_d and k_o one is 0 */
 static double jump_of_stress(const membrane *m, double l, double d)
 {
     const double rise = m->film->law->rise(m->film->constants, l, -d, 0.0) + beside_jump(m, l, d);
-    return rise + (m->disc_k - m->annulus_k) * l * l * l + m->annulus_k * d * l * l;
+    const double disc = m->disc_k * dea_film_electric(m->film, l * l).first * l * l * l;
+    return rise + disc - m->annulus_k * dea_film_electric(m->film, (l - d) * l).first * (l - d) * l * l;
 }
 
 /* D on the annulus side of R_a from the continuity of s1 there; NAN where there is none. */
@@ -153,7 +157,7 @@ static double jump_at_edge(const membrane *m, double l)
         }
         sound = d;
         const double residual = jump_of_stress(m, l, d);
-        const double s11 = here.w11 - m->annulus_k * l * l;
+        const double s11 = here.w11 - m->annulus_k * dea_film_electric(m->film, (l - d) * l).second * l * l;
         const double most = 0.25 * (l - d); /* lambda_1 moves by a quarter at most: the first root from lambda_2 on is meant */
         const double step = s11 > 0.0 ? residual / s11 : copysign(most, residual);
         const double next = d + fmax(-most, fmin(most, step));
@@ -174,14 +178,16 @@ typedef struct limits {
 
 static limits limits_at(const membrane *m, radial_state s)
 {
-    const double l2 = m->film->prestretch + s.e, l1 = l2 - s.d, area = l1 * l2, k = m->annulus_k;
+    const double l2 = m->film->prestretch + s.e, l1 = l2 - s.d, area = l1 * l2;
+    const dea_electric electric = dea_film_electric(m->film, area);
+    const double k = m->annulus_k * electric.first, k_slope = m->annulus_k * electric.second;
     const dea_stress stress = stress_at(m, l1, l2);
     const radial_state slope = slope_at(m, s);
     const double l2_slope = slope.e, l1_slope = slope.e - slope.d;
     return (limits){.s1 = stress.p1 - k * area * l2,
                     .s2 = stress.p2 - k * area * l1,
                     .area = area,
-                    .s2_slope = (stress.w12 - 2.0 * k * area) * l1_slope + (stress.w22 - k * l1 * l1) * l2_slope,
+                    .s2_slope = (stress.w12 - (k + k_slope) * area) * l1_slope + (stress.w22 - k_slope * l1 * l1) * l2_slope,
                     .area_slope = l1_slope * l2 + l1 * l2_slope};
 }
 
@@ -242,9 +248,9 @@ static double miss_from(const membrane *m, double edge, double d, extremes *x)
     const double l = m->film->prestretch + edge;
     radial_state s = {d, edge, 0.0};
     if (x) {
-        const double disc = disc_stress(m, l).p1 - m->disc_k * l * l * l;
         const bool lens = m->annulus_k > 0.0;
-        *x = (extremes){disc, lens ? (l - s.d) * l : l * l, lens ? (l - s.d) * l * l : l * l * l, 0.0};
+        const double l1 = lens ? l - s.d : l, pull = dea_film_electric(m->film, l1 * l).first * l1 * l * l;
+        *x = (extremes){disc_stress(m, l).p1 - m->disc_k * pull, l1 * l, pull, 0.0};
         note(m, limits_at(m, s), x);
     }
     const double longest = m->length / ceil(m->length / m->mesh.step);
@@ -310,7 +316,7 @@ static bool stays_elliptic(const membrane *full, place from, place to, double le
         const double l2 = full->film->prestretch + from.edge + t * (to.edge - from.edge);
         const double l1 = from.stretch + t * (to.stretch - from.stretch);
         const double k = full->annulus_k * (from.share + t * (to.share - from.share));
-        if (!(stress_at(full, l1, l2).w11 - k * l2 * l2 > least)) {
+        if (!(stress_at(full, l1, l2).w11 - k * dea_film_electric(full->film, l1 * l2).second * l2 * l2 > least)) {
             return false;
         }
     }
@@ -645,7 +651,7 @@ static double force_on_edge(const membrane *m, double edge, double *d)
 static double held_at(const membrane *full, const membrane *still, double edge, double *push, double *d)
 {
     const double held = -force_on_edge(still, edge, d), l = full->film->prestretch + edge;
-    *push = full->lens ? force_on_edge(full, edge, d) + held : lever_of(full->point) * full->disc_k * l * l * l;
+    *push = full->lens ? force_on_edge(full, edge, d) + held : lever_of(full->point) * full->disc_k * dea_film_electric(full->film, l * l).first * l * l * l;
     return held;
 }
 

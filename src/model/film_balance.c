@@ -51,9 +51,11 @@ static inline balance balance_at(const film_pair *pair, double e)
 
 static dea_path_place place_at(const void *user, double e)
 {
-    const balance b = balance_at(user, e);
-    const double cube = (1.0 + e) * (1.0 + e) * (1.0 + e);
-    return (dea_path_place){b.load, b.slope, cube * (1.0 + e), 4.0 * cube};
+    const film_pair *pair = user;
+    const balance b = balance_at(pair, e);
+    const double square = (1.0 + e) * (1.0 + e), cube = square * (1.0 + e);
+    const dea_electric electric = dea_film_electric(pair->film, pair->film->square * square);
+    return (dea_path_place){b.load, b.slope, electric.first * square * square, 2.0 * cube * (electric.first + electric.second)};
 }
 
 /* Strain of the active film at which a region vanishes, or the energy of the material ends. */
@@ -221,7 +223,8 @@ static bool trace(const dea_point *point, const walkers *w, size_t l, double *st
     if (!(w->stiffness[l] > 0.0) || !isfinite(w->m[l])) {
         return false;
     }
-    const bool first = w->root[l] > 0.0 && w->fold[l] > 0.0 && (w->clear[l] > 0.0 || dea_path_grows(&path, *strain));
+    const bool constant = point->film.electrostriction == 0.0;
+    const bool first = constant && w->root[l] > 0.0 && w->fold[l] > 0.0 && (w->clear[l] > 0.0 || dea_path_grows(&path, *strain));
     return first || dea_path_trace(&path, w->m[l], strain);
 }
 
@@ -243,10 +246,11 @@ static void find(const dea_point *points, size_t count, const double *ratio, con
         w.end[l] = end_of(&pair);
     }
     settle(&w);
+    const bool constant = points[0].film.electrostriction == 0.0; /* as the films abreast are taken */
     for (size_t l = 0; l < count; l++) {
         strain[l] = m[l] == 0.0 ? 0.0 : w.strain[l];
-        found[l] = m[l] == 0.0 || ((w.root[l] > 0.0) & (w.fold[l] > 0.0) & (w.clear[l] > 0.0) & (w.stiffness[l] > 0.0)) ||
-                   trace(&points[l], &w, l, &strain[l]);
+        const bool clear = (w.root[l] > 0.0) & (w.fold[l] > 0.0) & (w.clear[l] > 0.0) & (w.stiffness[l] > 0.0);
+        found[l] = m[l] == 0.0 || (clear && constant) || trace(&points[l], &w, l, &strain[l]);
     }
 }
 

@@ -3,6 +3,8 @@
  *     sigma(lambda_A) - sigma(lambda_P) = eps lambda_A^4 (U/H)^2,   lambda_A = lambda_pre (1 + e),   lambda_P = lambda_pre (1 -
  * ratio e)
  *
+ * A permittivity that follows the strain scales the right side by dea_film_electric().first.
+ *
  * ratio is the strain that the passive film gives back per strain of the active one: 0 for a constant bias force (Eq. 13),
  * B/(1 - B) for a dot (Eq. 17), (1 - B)/B for a lens, whose annulus is the active film.
  */

@@ -1,4 +1,5 @@
-/* Plane elasticity about the pre-stretched film: Lame's disc and annulus, with electrostatic softening. */
+/* Plane elasticity about the pre-stretched film: Lame's disc and annulus, with electrostatic softening, both with the
+ * electrostriction of the pre-stretched film where its permittivity follows the strain. */
 #include "model/film_balance.h"
 #include "expression/formula.h"
 #include "network/network.h"
@@ -27,6 +28,15 @@ static double beside_stiffness(const dea_point *point)
     return coat + load_stiffness(point);
 }
 
+/* Softening over M lambda_pre^2: a + b of the disc of a dot, a q - b of the annulus of a lens; 3 or q - 2 where eps is constant. */
+static double softening_share(const dea_point *point)
+{
+    const double b2 = point->coverage * point->coverage, q = (1.0 + b2) / (1.0 - b2);
+    const dea_electric electric = dea_point_electric(point);
+    const double both = electric.first + electric.second;
+    return point->kind == DEA_DOT ? both + electric.second : q * electric.second - both;
+}
+
 /* 1/(2 pi H n) of disc, annulus and softening together [Pa], in long double from the constants of the film: just before pull-in
  * the terms cancel. W11 + W12 + W11 (1 + B^2)/(1 - B^2) - W12 = 2 W11/(1 - B^2). */
 static long double fine_stiffness(const dea_point *point)
@@ -37,7 +47,9 @@ static long double fine_stiffness(const dea_point *point)
     const long double w11 = law->fine_w11 ? law->fine_w11(film->constants, l) : film->w11;
     const long double b2 = (long double)point->coverage * point->coverage,
                       field = (long double)point->voltage / point->film_thickness;
-    const long double share = point->kind == DEA_DOT ? 3.0L : (1.0L + b2) / (1.0L - b2) - 2.0L;
+    const dea_electric electric = dea_point_electric(point);
+    const long double both = (long double)electric.first + electric.second, q = (1.0L + b2) / (1.0L - b2);
+    const long double share = point->kind == DEA_DOT ? both + electric.second : q * electric.second - both;
     return 2.0L * w11 / (1.0L - b2) + beside_stiffness(point) - share * film->permittivity * field * field * y;
 }
 
@@ -46,7 +58,8 @@ static long double fine_stiffness(const dea_point *point)
 static double fine_area(const dea_point *point)
 {
     const long double b = point->coverage, field = (long double)point->voltage / point->film_thickness;
-    const long double soft = point->film.permittivity * field * field * point->film.prestretch * point->film.prestretch;
+    const long double first = dea_point_electric(point).first;
+    const long double soft = point->film.permittivity * first * field * field * point->film.prestretch * point->film.prestretch;
     const long double edge = b * (1.0L - soft / fine_stiffness(point));
     return (double)((1.0L - edge) * (1.0L + edge) / (1.0L - b * b));
 }
@@ -68,8 +81,9 @@ static moduli moduli_of(const dea_point *point)
     const dea_film *film = &point->film;
     const double soft = softening_of(point);
     const bool coated = point->skin_share > 0.0;
-    const double softened1 = film->w11 - soft + (coated ? point->skin_share * point->skin.w11 : 0.0);
-    const double softened2 = film->w12 - 2.0 * soft + (coated ? point->skin_share * point->skin.w12 : 0.0);
+    const dea_electric electric = dea_point_electric(point);
+    const double softened1 = film->w11 - electric.second * soft + (coated ? point->skin_share * point->skin.w11 : 0.0);
+    const double softened2 = film->w12 - (electric.first + electric.second) * soft + (coated ? point->skin_share * point->skin.w12 : 0.0);
     return point->kind == DEA_DOT ? (moduli){softened1, softened2, film->w11, film->w12}
                                   : (moduli){film->w11, film->w12, softened1, softened2};
 }
@@ -81,10 +95,11 @@ static dea_found found_at(const dea_point *point, double strain, bool alone)
     const bool dot = point->kind == DEA_DOT;
     const double b2 = point->coverage * point->coverage, inverse = 1.0 / (1.0 - b2), q = (1.0 + b2) * inverse;
     const moduli w = moduli_of(point);
-    const double soft = softening_of(point), load = dea_point_sign(point) * soft; /* F_DEA/(2 pi H r_a) */
+    const dea_electric electric = dea_point_electric(point);
+    const double soft = softening_of(point), load = dea_point_sign(point) * electric.first * soft; /* F_DEA/(2 pi H r_a) */
     const double change = strain * film->prestretch; /* of the hoop stretch at r_a */
     const double edge = point->coverage * (1.0 + strain);
-    const double maxwell = soft * film->prestretch;
+    const double maxwell = electric.first * soft * film->prestretch;
     const double disc_rest = film->tension - (dot ? maxwell : 0.0);
     const double annulus_rest = film->tension - (dot ? 0.0 : maxwell);
     /* annulus: d1 = -c (F^2/R^2 + 1), d2 = c (F^2/R^2 - 1) with d2 = change at r_a; linear in F^2/R^2, so its ends decide */
@@ -96,8 +111,8 @@ static dea_found found_at(const dea_point *point, double strain, bool alone)
     const double area = dot ? (1.0 + strain) * (1.0 + strain) : cancels ? fine_area(point) : (1.0 - edge * edge) * inverse;
     const double force = 2.0 * DEA_PI * point->film_thickness * load * dea_point_divide(point);
     /* C_0 + C_1 u + C_2 u^2/2 with C_1 = 2 F_DEA/U^2, C_2 = -2/(n_el U^2) */
-    const double share = dot ? 3.0 : q - 2.0, rest = dot ? b2 : 1.0 - b2;
-    const double bend = 2.0 * b2 * strain * (2.0 * dea_point_sign(point) + share * strain);
+    const double rest = dot ? b2 : 1.0 - b2;
+    const double bend = 2.0 * b2 * strain * (2.0 * dea_point_sign(point) * electric.first + softening_share(point) * strain);
     const double capacitance = dea_point_full_capacitance(point) * (rest + bend);
     return (dea_found){.strain = strain,
                        .force = force,
@@ -122,7 +137,7 @@ static void solve(const dea_point *point, double accuracy, dea_row *row)
         dea_row_refuse(row, DEA_STATE_PULL_IN);
         return;
     }
-    dea_row_fill(row, point, found_at(point, soft > 0.0 ? dea_point_sign(point) * soft / stiffness : 0.0, true));
+    dea_row_fill(row, point, found_at(point, soft > 0.0 ? dea_point_sign(point) * dea_point_electric(point).first * soft / stiffness : 0.0, true));
 }
 
 /* Moduli of one region: W11, W12 and what the voltage takes off where it carries the electrode. */
@@ -164,7 +179,8 @@ static void build(const dea_symbols *symbols, dea_network *network)
     const dea_expr b2 = SQUARE(symbols->coverage);
     const dea_expr q = DIV(ADD(one, b2), SUB(one, b2));
     const dea_expr soft = MUL(dea_symbols_pressure(symbols), SQUARE(l)); /* M lambda_pre^2 */
-    const dea_expr maxwell = MUL(soft, l);
+    const dea_symbols_factors electric = dea_symbols_electric(symbols, one, one);
+    const dea_expr both = ADD(electric.first, electric.second), maxwell = MUL(MUL(soft, electric.first), l);
     const dea_expr rest = DIV(dea_symbols_rest_stress(symbols), l); /* nominal */
 
     dea_network_add(network, DEA_ROLE_SPRING, "n_disc", "compliance of the disc, 1/n = 2 pi H (W11 + W12) [m/N]",
@@ -172,7 +188,7 @@ static void build(const dea_symbols *symbols, dea_network *network)
     dea_network_add(network, DEA_ROLE_SPRING, "n_annulus",
                     "compliance of the annulus, 1/n = 2 pi H (W11 (1+B^2)/(1-B^2) - W12) [m/N]",
                     MUL(thickness, SUB(MUL(w11, q), w12)));
-    const dea_expr share = dot ? NUM(3.0) : SUB(q, NUM(2.0));
+    const dea_expr share = dot ? ADD(both, electric.second) : SUB(MUL(q, electric.second), both);
     dea_network_add(network, DEA_ROLE_SOFTENING, "n_el", "electrostatic softening, a negative compliance [m/N]",
                     NEG(MUL(thickness, MUL(soft, share))));
     const dea_expr radius = DIV(MUL(symbols->coverage, symbols->frame_radius), l); /* R_a */
@@ -180,12 +196,12 @@ static void build(const dea_symbols *symbols, dea_network *network)
                     SCALE(network->sign, MUL(thickness, MUL(maxwell, radius))));
     /* C = C_0 + C_1 u + C_2 u^2/2 with C_1 = 2 F_DEA/U^2 and C_2 = -2/(n_el U^2) */
     const dea_expr unit = MUL(thickness, MUL(DIV(symbols->permittivity, SQUARE(symbols->film_thickness)), SQUARE(l)));
-    const dea_expr first = SCALE(2.0 * network->sign, MUL(unit, MUL(l, radius)));
+    const dea_expr first = SCALE(2.0 * network->sign, MUL(MUL(unit, electric.first), MUL(l, radius)));
     const dea_expr second = SCALE(2.0, MUL(unit, share));
     network->capacitance =
         ADD(dea_symbols_capacitance(symbols), MUL(network->edge, ADD(first, SCALE(0.5, MUL(second, network->edge)))));
     const region passive = {w11, w12, rest};
-    region active = {SUB(w11, soft), SUB(w12, SCALE(2.0, soft)), SUB(rest, maxwell)};
+    region active = {SUB(w11, MUL(soft, electric.second)), SUB(w12, MUL(soft, both)), SUB(rest, maxwell)};
     if (symbols->skin) {
         const dea_tangent skin = dea_symbols_skin_tangent(symbols);
         const dea_expr coat = dot ? ADD(skin.w11, skin.w12) : SUB(MUL(skin.w11, q), skin.w12);
@@ -205,10 +221,10 @@ static void linear(const dea_point *point, dea_linear *linear)
     const double q = (1.0 + b2) / (1.0 - b2);
     const double thickness = 2.0 * DEA_PI * point->film_thickness;
     const double unit = thickness * film->permittivity / (point->film_thickness * point->film_thickness) * film->square;
-    const double share = point->kind == DEA_DOT ? 3.0 : q - 2.0; /* a + b of the disc, or a q - b of the annulus */
+    const double share = softening_share(point);
     *linear = (dea_linear){.stiffness = thickness * (film->w11 + film->w12 + film->w11 * q - film->w12),
                            .softening = -unit * share,
-                           .force = dea_point_sign(point) * unit * dea_point_divide(point)};
+                           .force = dea_point_sign(point) * unit * dea_point_electric(point).first * dea_point_divide(point)};
     linear->beside = thickness * beside_stiffness(point);
     linear->capacitance[0] = dea_point_capacitance(point);
     linear->capacitance[1] = 2.0 * linear->force;

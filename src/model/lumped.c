@@ -22,7 +22,8 @@ static double fine_area(const dea_point *point)
     const dea_film *film = &point->film;
     const long double b = point->coverage, field = (long double)point->voltage / point->film_thickness,
                       y = (long double)film->prestretch * film->prestretch;
-    const long double edge = b * (1.0L - (1.0L - b) * film->permittivity * field * field * y * y / modulus_of(point));
+    const long double pull = film->permittivity * dea_point_electric(point).first * field * field * y * y;
+    const long double edge = b * (1.0L - (1.0L - b) * pull / modulus_of(point));
     return (double)((1.0L - edge) * (1.0L + edge) / (1.0L - b * b));
 }
 
@@ -32,14 +33,15 @@ static bool is_active_taut(const dea_point *point, double strain)
 {
     const double b = point->coverage, e = point->kind == DEA_DOT ? strain : -b * strain / (1.0 - b);
     const double modulus = point->film.modulus + dea_point_skin_modulus(point);
-    return point->film.prestretch * (1.0 + (modulus * e - dea_point_pressure(point)) / point->film.modulus) > 1.0;
+    const double maxwell = dea_point_pressure(point) * dea_point_electric(point).first;
+    return point->film.prestretch * (1.0 + (modulus * e - maxwell) / point->film.modulus) > 1.0;
 }
 
 /* The film at a strain; @p alone: in balance with its own force. */
 static dea_found found_at(const dea_point *point, double strain, bool alone)
 {
     const dea_film *film = &point->film;
-    const double pressure = dea_point_pressure(point), sign = dea_point_sign(point);
+    const double electric = dea_point_electric(point).first, pressure = dea_point_pressure(point) * electric, sign = dea_point_sign(point);
     const double b = point->coverage;
     const double stretch = 1.0 + strain;
     const double edge = b * stretch;
@@ -50,7 +52,7 @@ static dea_found found_at(const dea_point *point, double strain, bool alone)
     const double area = dot ? stretch * stretch : alone && fabs(left) < nearly ? fine_area(point) : left / (1.0 - b * b);
     /* C_0 + C_1 u with C_1 u = 2 F_DEA/U^2 u = +-4 pi eps lambda_pre^2 r_a^2 s/H */
     const double rest = dot ? b * b : 1.0 - b * b;
-    const double capacitance = dea_point_full_capacitance(point) * (rest + 4.0 * sign * b * b * strain);
+    const double capacitance = dea_point_full_capacitance(point) * (rest + 4.0 * sign * b * b * electric * strain);
     return (dea_found){.strain = strain,
                        .force = sign * pressure * dea_point_cross_section(point),
                        .stretch = film->square * area,
@@ -61,7 +63,7 @@ static dea_found found_at(const dea_point *point, double strain, bool alone)
 static void solve(const dea_point *point, double accuracy, dea_row *row)
 {
     (void)accuracy;
-    const double pressure = dea_point_pressure(point);
+    const double pressure = dea_point_pressure(point) * dea_point_electric(point).first;
     if (pressure > 0.0 && !(modulus_of(point) > 0.0)) {
         dea_row_refuse(row, DEA_STATE_PULL_IN);
         return;
@@ -79,7 +81,8 @@ static void build(const dea_symbols *symbols, dea_network *network)
     const dea_expr tensile = MUL(symbols->modulus, section); /* Y A_cross */
     const dea_expr divide = MUL(symbols->frame_radius, symbols->coverage);
     const dea_expr square = SQUARE(symbols->prestretch);
-    const dea_expr maxwell = MUL(dea_symbols_pressure(symbols), SQUARE(square));
+    const dea_expr electric = dea_symbols_electric(symbols, one, one).first;
+    const dea_expr maxwell = MUL(MUL(dea_symbols_pressure(symbols), electric), SQUARE(square));
     dea_network_add(network, DEA_ROLE_SPRING, "n_a", "compliance of the disc, Eq. 19 [m/N]", DIV(tensile, divide));
     dea_network_add(network, DEA_ROLE_SPRING, "n_p", "compliance of the annulus, Eq. 20 [m/N]",
                     DIV(tensile, dea_symbols_annulus_width(symbols)));

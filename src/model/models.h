@@ -32,16 +32,40 @@ static inline double dea_point_nominal_field(const dea_point *point)
     return point->voltage / point->film_thickness;
 }
 
+/* What a permittivity that follows the mean stretch l = sqrt(J), J = lambda_1 lambda_2, makes of the electrical energy per volume
+ * -eps(l)/2 (U/H)^2 J^2: the nominal stresses -k first J^2/lambda_a and their slopes -k second (J/lambda_a)^2, -k (first + second) J
+ * with k = eps (U/H)^2 of the pre-stretched film. All are 1 where it does not follow. */
+typedef struct dea_electric {
+    double own;    /* eps(l)/eps */
+    double first;  /* own + l own'/4 */
+    double second; /* first + J dfirst/dJ = own + 7 l own'/8 */
+} dea_electric;
+
+static inline dea_electric dea_film_electric(const dea_film *film, double area)
+{
+    if (film->electrostriction == 0.0) {
+        return (dea_electric){1.0, 1.0, 1.0};
+    }
+    const double l = sqrt(area), rise = film->electrostriction * l, own = 1.0 + rise - film->electrostriction * film->prestretch;
+    return (dea_electric){own, own + 0.25 * rise, own + 0.875 * rise};
+}
+
 /* A_cross = 2 pi r_a H/lambda_pre^2 [m^2], the cross-section of the pre-stretched film at the electrode edge. */
 static inline double dea_point_cross_section(const dea_point *point)
 {
     return 2.0 * DEA_PI * dea_point_divide(point) * point->film_thickness / point->film.square;
 }
 
-/* eps lambda_pre^4/H^2 [Pa/V^2], the electrostatic stress at the pre-stretch per U^2. */
+/* dea_film_electric() at the pre-stretch: what models that are linear about it take of a permittivity that follows the strain. */
+static inline dea_electric dea_point_electric(const dea_point *point)
+{
+    return dea_film_electric(&point->film, point->film.square);
+}
+
+/* eps lambda_pre^4/H^2 and its electrostriction [Pa/V^2], the electrostatic stress at the pre-stretch per U^2. */
 static inline double dea_point_stress_per_volt(const dea_point *point)
 {
-    return point->film.permittivity * point->film.square * point->film.square / (point->film_thickness * point->film_thickness);
+    return point->film.permittivity * dea_point_electric(point).first * point->film.square * point->film.square / (point->film_thickness * point->film_thickness);
 }
 
 /* Relative change of the electroded area under a strain of the disc edge: (1 + s)^2 - 1 of the disc (dot), of the annulus
@@ -66,11 +90,11 @@ static inline double dea_point_capacitance(const dea_point *point)
     return dea_point_full_capacitance(point) * (point->kind == DEA_DOT ? b2 : 1.0 - b2);
 }
 
-/* Capacitance of a dot's uniform disc, C_0 lambda_a^4 [F]. */
+/* Capacitance of a dot's uniform disc, C_0 lambda_a^4 eps(lambda)/eps [F]. */
 static inline double dea_point_disc_capacitance(const dea_point *point, double strain)
 {
     const double square = (1.0 + strain) * (1.0 + strain);
-    return dea_point_capacitance(point) * square * square;
+    return dea_point_capacitance(point) * square * square * dea_film_electric(&point->film, point->film.square * square).own;
 }
 
 /* dsigma/dlambda that the skin adds to the electroded film at the pre-stretch, t lambda_pre/H Y_e(1) [Pa]. */
@@ -168,7 +192,8 @@ static inline void dea_row_fill(dea_row *row, const dea_point *point, dea_found 
     const double field = fabs(dea_point_nominal_field(point) * point->layers * found.stretch);
     const double radius = dea_point_divide(point);
     const double displacement = found.strain * radius;
-    if (!(isfinite(found.strain) && isfinite(displacement) && isfinite(found.force) && isfinite(field))) {
+    const bool insulates = dea_film_electric(&point->film, found.stretch).own > 0.0; /* no film has a permittivity below */
+    if (!(isfinite(found.strain) && isfinite(displacement) && isfinite(found.force) && isfinite(field) && insulates)) {
         dea_row_refuse(row, DEA_STATE_FAILED);
         return;
     }

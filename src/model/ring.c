@@ -4,7 +4,8 @@
  *     disc  e = s,    annulus  e1 = -s B/(1 - B),  e2 = s B/(1 + B),    lambda = lambda_pre (1 + e)
  *     2 pi A H s_disc + pi H [ (F - A) s_hoop - (F + A) s_radial ]_annulus = 0
  *
- * with the nominal stresses s_a = P_a - eps (U/H)^2 (lambda_1 lambda_2)^2/lambda_a where electroded: the gradient of one energy.
+ * with the nominal stresses s_a = P_a - eps (U/H)^2 (lambda_1 lambda_2)^2/lambda_a where electroded: the gradient of one energy. A
+ * permittivity that follows the strain scales them (dea_film_electric()).
  */
 #include "expression/formula.h"
 #include "model/models.h"
@@ -40,7 +41,7 @@ typedef struct ring_place {
     dea_biaxial disc, annulus;
 } ring_place;
 
-/* The weight of the load is the edge's radius over r_a times the area stretch of the electroded film. */
+/* The weight of the load is the edge's radius over r_a times the area stretch of the electroded film, and its electrostriction. */
 static inline ring_place place_at(const rings *r, double x)
 {
     const double s = r->dot ? x : -x;
@@ -55,8 +56,14 @@ static inline ring_place place_at(const rings *r, double x)
     place.path.slope = r->film->prestretch *
                        (disc->w11 + disc->w12 + 0.5 * (annulus->w11 * r->aspect + annulus->w22 / r->aspect) - annulus->w12) + r->load;
     const double area = area_at(r, s);
+    const double area_slope = r->dot ? 2.0 * edge : -(r->radial * (1.0 + e2) + r->hoop * (1.0 + e1)); /* over x */
     place.path.weight = edge * area;
-    place.path.weight_slope = r->dot ? 3.0 * area : -(area + edge * (r->radial * (1.0 + e2) + r->hoop * (1.0 + e1)));
+    place.path.weight_slope = r->dot ? 3.0 * area : edge * area_slope - area;
+    if (r->film->electrostriction != 0.0) {
+        const dea_electric electric = dea_film_electric(r->film, r->film->square * area);
+        place.path.weight_slope = electric.first * place.path.weight_slope + edge * (electric.second - electric.first) * area_slope;
+        place.path.weight *= electric.first;
+    }
     return place;
 }
 
@@ -115,7 +122,8 @@ static bool balance(const rings *r, double m, double *x, ring_place *at)
     if (!isfinite(m) || !(path.rest > 0.0)) {
         return false;
     }
-    if (settle(r, &path, m, x, at) && (dea_path_cannot_fold(&path, m, *x, &at->path) || dea_path_grows(&path, *x))) {
+    const bool constant = film->electrostriction == 0.0; /* the iteration knows how the weight of such a film begins */
+    if (constant && settle(r, &path, m, x, at) && (dea_path_cannot_fold(&path, m, *x, &at->path) || dea_path_grows(&path, *x))) {
         return true;
     }
     const bool found = dea_path_trace(&path, m, x);
@@ -128,7 +136,7 @@ static bool balance(const rings *r, double m, double *x, ring_place *at)
 static bool is_taut(const rings *r, double k, double x, double area, const ring_place *at)
 {
     const double s = r->dot ? x : -x, l0 = r->film->prestretch;
-    const double change = l0 * (r->dot ? x - at->x : at->x - x), pull = k * l0 * l0 * l0 * area * area;
+    const double change = l0 * (r->dot ? x - at->x : at->x - x), pull = k * dea_film_electric(r->film, l0 * l0 * area).first * l0 * l0 * l0 * area * area;
     const dea_biaxial *disc = &at->disc, *annulus = &at->annulus;
     double p = disc->p1 + (disc->w11 + disc->w12) * change;
     double radial = annulus->p1 + (annulus->w11 * r->radial + annulus->w12 * r->hoop) * change;
@@ -175,10 +183,11 @@ static dea_found found_at(const rings *r, double x, const ring_place *at)
     const dea_film *film = r->film;
     const double k = pressure_of(point), m = k * film->square * film->prestretch;
     const double sign = dea_point_sign(point), s = sign * x, area = area_at(r, s);
+    const dea_electric electric = dea_film_electric(film, film->square * area);
     return (dea_found){.strain = s,
-                       .force = sign * lever_of(point) * m * (1.0 + s) * area,
+                       .force = sign * lever_of(point) * m * electric.first * (1.0 + s) * area,
                        .stretch = film->square * area,
-                       .capacitance = dea_point_capacitance(point) * area * area,
+                       .capacitance = dea_point_capacitance(point) * electric.own * area * area,
                        .taut = is_taut(r, k, x, area, at)};
 }
 
@@ -224,6 +233,13 @@ static ring_strains strains_of(const dea_symbols *symbols, dea_expr disc)
     return e;
 }
 
+static dea_symbols_factors electric_of(const dea_symbols *symbols, const ring_strains *e)
+{
+    dea_pool *pool = symbols->pool;
+    const bool dot = symbols->kind == DEA_DOT;
+    return dea_symbols_electric(symbols, ADD(NUM(1.0), dot ? e->disc : e->radial), ADD(NUM(1.0), dot ? e->disc : e->hoop));
+}
+
 /* Levers of the three stresses: 2 pi A H/lambda and pi H (F +- A)/lambda_a [m^2]. */
 typedef struct ring_levers {
     dea_expr disc, radial, hoop;
@@ -265,7 +281,8 @@ static void limit_tension(const dea_symbols *symbols, dea_network *network, cons
 {
     dea_pool *pool = symbols->pool;
     const dea_expr rest = dea_symbols_rest_stress(symbols);
-    const dea_expr pull = MUL(dea_symbols_pressure(symbols), SQUARE(MUL(SQUARE(symbols->prestretch), e->area)));
+    const dea_expr square = MUL(dea_symbols_pressure(symbols), SQUARE(MUL(SQUARE(symbols->prestretch), e->area)));
+    const dea_expr pull = MUL(electric_of(symbols, e).first, square);
     const bool dot = symbols->kind == DEA_DOT;
     dea_expr disc = ADD(rest, dea_hyperelastic_change(symbols, e->disc));
     dea_expr radial = ADD(rest, dea_hyperelastic_principal(symbols, e->radial, e->hoop));
@@ -303,12 +320,15 @@ static void build(const dea_symbols *symbols, dea_network *network)
         add_skin(symbols, network, &e, &lever);
     }
     const dea_expr rest = MUL(dea_symbols_pressure(symbols), SQUARE(SQUARE(symbols->prestretch)));
-    const dea_expr force = MUL(MUL(dea_symbols_cross_section(symbols), rest), MUL(ADD(one, e.disc), e.area));
+    const dea_symbols_factors electric = electric_of(symbols, &e);
+    const dea_expr growth = MUL(ADD(one, e.disc), e.area);
+    const dea_expr force = MUL(MUL(dea_symbols_cross_section(symbols), MUL(electric.first, rest)), growth);
     dea_network_add(network, DEA_ROLE_SOURCE, "f_dea", "electrostatic force U^2/2 dC/du of the true area [N]",
                     SCALE(network->sign, force));
-    network->capacitance = MUL(dea_symbols_capacitance(symbols), SQUARE(e.area));
+    network->capacitance = MUL(dea_symbols_capacitance(symbols), MUL(electric.own, SQUARE(e.area)));
     network->ends = true;
     network->field = MUL(MUL(dea_symbols_nominal_field(symbols), SQUARE(symbols->prestretch)), e.area);
+    dea_network_insulate(symbols, network, e.area, one);
     limit_tension(symbols, network, &e);
 }
 

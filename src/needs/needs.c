@@ -131,12 +131,12 @@ static trace trace_of(const planner *p, const dea_omission *omission)
         return (trace){s->fading * (swings ? s->swing * s->swing : 1.0), s->fading, swings ? (double)INFINITY : s->fading};
     }
     if (omission->part == DEA_PART_BRANCH && omission->form == DEA_BRANCH_DAMPER) {
-        const dea_prony *prony = &material->prony[omission->branch];
+        const dea_prony prony = dea_material_branch(material, omission->branch);
         double rest = 1.0;
         for (size_t i = 0; i < material->prony_count; i++) {
             rest -= material->prony[i].g;
         }
-        return (trace){prony->g / rest * prony->tau, prony->tau, prony->tau};
+        return (trace){prony.g / rest * prony.tau, prony.tau, prony.tau};
     }
     return (trace){0.0, 0.0, 0.0};
 }
@@ -300,10 +300,10 @@ static bool may_go(const planner *p, const dea_prony *prony)
 static void try_branch(planner *p, size_t branch)
 {
     const dea_scene *scene = p->surrogate.scene;
-    const dea_prony *prony = &scene->material.prony[branch];
-    const bool slow = prony->tau > scene->transient.until;
+    const dea_prony prony = dea_material_branch(&scene->material, branch);
+    const bool slow = prony.tau > scene->transient.until;
     dea_omission omission = {.part = DEA_PART_BRANCH, .branch = branch, .form = DEA_BRANCH_OUT};
-    if (!may_go(p, prony) || try(p, omission)) {
+    if (!may_go(p, &prony) || try(p, omission)) {
         return;
     }
     /* one that is held counts from rest, where its spring is not strained */

@@ -75,34 +75,22 @@ static void write_sines(const dea_curve_cards *c, const dea_segment *segment)
 /* Age within a segment, as the netlist's time has it: constant before and behind. */
 static void write_age(const dea_curve_cards *c, const dea_segment *segment)
 {
-    fputs("min(max(time-(", c->out);
-    dea_part_number(c->out, fmax(segment->from, c->begin) - c->begin);
-    fputs("),0),", c->out);
-    dea_part_number(c->out, segment->to - fmax(segment->from, c->begin));
-    fputc(')', c->out);
+    dea_part_print(c->out, "min(max(time-(%g),0),%g)",
+                   fmax(segment->from, c->begin) - c->begin, segment->to - fmax(segment->from, c->begin));
 }
 
 /* sin(phase + 2 pi turns) of one tone. */
 static void write_tone(const dea_curve_cards *c, const dea_segment *segment, const dea_tone *whole)
 {
     const dea_tone tone = dea_tone_from(whole, fmax(segment->from, c->begin) - segment->origin);
-    dea_part_number(c->out, tone.amplitude);
-    fputs("*sin(", c->out);
-    dea_part_number(c->out, tone.phase);
-    fputs("+(", c->out);
+    dea_part_print(c->out, "%g*sin(%g+(", tone.amplitude, tone.phase);
     if (tone.growth != 0.0) {
-        dea_part_number(c->out, 2.0 * DEA_PI * tone.frequency / tone.growth);
-        fputs(")*(exp((", c->out);
-        dea_part_number(c->out, tone.growth);
-        fputs(")*", c->out);
+        dea_part_print(c->out, "%g)*(exp((%g)*", 2.0 * DEA_PI * tone.frequency / tone.growth, tone.growth);
         write_age(c, segment);
         fputs(")-1))", c->out);
         return;
     }
-    dea_part_number(c->out, 2.0 * DEA_PI * tone.frequency);
-    fputs("+(", c->out);
-    dea_part_number(c->out, DEA_PI * tone.rate);
-    fputs(")*", c->out);
+    dea_part_print(c->out, "%g+(%g)*", 2.0 * DEA_PI * tone.frequency, DEA_PI * tone.rate);
     write_age(c, segment);
     fputs(")*", c->out);
     write_age(c, segment);
@@ -114,9 +102,7 @@ static void write_chain(const dea_curve_cards *c)
 {
     const dea_curve *curve = &c->signal->curve;
     size_t links = 0;
-    fprintf(c->out, "VSOURCE %s wave0 ", c->node);
-    dea_part_number(c->out, curve->offset);
-    fputc('\n', c->out);
+    dea_part_print(c->out, "VSOURCE %s wave0 %g\n", c->node, curve->offset);
     for (size_t i = c->first; i < c->first + c->count; i++) {
         const dea_segment *segment = &c->signal->segments[i];
         if (!segment->sine) {
@@ -143,12 +129,10 @@ static void write_corners(const dea_curve_cards *c)
     fputs("* makes begin and end of the curves time points\nVDELAY delay 0 pwl(0 0", c->out);
     for (size_t i = c->first + 1; i < c->first + c->count; i++) {
         fputs(i % 4 == 0 ? "\n+ " : " ", c->out);
-        dea_part_number(c->out, c->signal->segments[i].from - c->begin);
-        fputs(" 0", c->out);
+        dea_part_print(c->out, "%g 0", c->signal->segments[i].from - c->begin);
     }
-    fputc(' ', c->out);
-    dea_part_number(c->out, end->to - c->begin + (c->signal->segments[c->first + 1].from - c->begin));
-    fputs(" 0)\nRDELAY delay 0 1\n", c->out);
+    dea_part_print(c->out, " %g 0)\nRDELAY delay 0 1\n",
+                   end->to - c->begin + (c->signal->segments[c->first + 1].from - c->begin));
 }
 
 void dea_curve_cards_write(const dea_curve_cards *c)

@@ -42,9 +42,7 @@ typedef struct pen {
 static void corner(pen *p, double time, double voltage)
 {
     fputs(p->count % LINE_POINTS == 0 ? "\n+ " : " ", p->out);
-    dea_part_number(p->out, time);
-    fputc(' ', p->out);
-    dea_part_number(p->out, voltage);
+    dea_part_print(p->out, "%g %g", time, voltage);
     p->count++;
     p->last = time;
     p->voltage = voltage;
@@ -165,13 +163,9 @@ void dea_export_drive_analysis(const dea_export_drive *w, const char *velocity)
     if (w->export->dialect->save) {
         fprintf(w->out, "%s v(disp) v(%s) v(film) i(vsource)\n", w->export->dialect->save, velocity);
     }
-    fputs("* .tran print interval, end, begin of the output, tmax [s]. tmax sets the accuracy: a tenth of it makes the error a "
-          "hundredth\n.tran ",
-          w->out);
-    dea_part_number(w->out, transient->logarithmic ? transient->until / 1000.0 : transient->every);
-    fputc(' ', w->out);
-    dea_part_number(w->out, transient->until);
-    fputs(" 0 ", w->out);
-    dea_part_number(w->out, w->step);
-    fputs(" uic\n.end\n", w->out);
+    dea_part_print(w->out,
+                   "* .tran print interval, end, begin of the output, tmax [s]. tmax sets the accuracy: a tenth of it makes the error a "
+                   "hundredth\n.tran %g %g 0 %g uic\n"
+                   ".end\n",
+                   transient->logarithmic ? transient->until / 1000.0 : transient->every, transient->until, w->step);
 }

@@ -67,11 +67,8 @@ static void write_tolerances(writer *w)
     const double held = w->analogy->loop ? least : fmin(velocity, 1e-11 * scale + 2e-12 * speed);
     const double voltage = w->mobility.displaced ? free : held;
     const double current = w->analogy->loop ? 1e-11 * speed : 1e-10 * force;
-    fprintf(w->out, "* tolerances of one time step\n%s reltol=1e-7 abstol=", w->dialect->solver);
-    dea_part_number(w->out, current);
-    fputs(" vntol=", w->out);
-    dea_part_number(w->out, voltage);
-    fputc('\n', w->out);
+    dea_part_print(w->out, "* tolerances of one time step\n%s reltol=1e-7 abstol=%g vntol=%g\n",
+                   w->dialect->solver, current, voltage);
 }
 
 /* The film at rest and, where it stands, under the largest voltage. */

@@ -168,9 +168,7 @@ static void write_readings(const moving *m)
 
 static void start_node(const moving *m, const char *node, double value)
 {
-    fprintf(m->out, ".ic v(%s)=", node);
-    dea_part_number(m->out, value);
-    fputc('\n', m->out);
+    dea_part_print(m->out, ".ic v(%s)=%g\n", node, value);
 }
 
 /* Where the first step starts: at 0, where nothing else is said. */
@@ -201,11 +199,8 @@ static void write_tolerances(const moving *m)
 {
     const double voltage = m->drive.signal.largest;
     if (m->export->dialect->solver) {
-        fprintf(m->out, "* tolerances of one time step\n%s reltol=1e-7 abstol=", m->export->dialect->solver);
-        dea_part_number(m->out, 1e-9 * m->motion.rest.force * voltage * voltage);
-        fputs(" vntol=", m->out);
-        dea_part_number(m->out, 1e-9 * m->motion.length / m->membrane.film.radius);
-        fputc('\n', m->out);
+        dea_part_print(m->out, "* tolerances of one time step\n%s reltol=1e-7 abstol=%g vntol=%g\n",
+                       m->export->dialect->solver, 1e-9 * m->motion.rest.force * voltage * voltage, 1e-9 * m->motion.length / m->membrane.film.radius);
     }
 }
 

@@ -103,8 +103,7 @@ static void find_stretch(line_text *l)
 static void write_guess(const line_text *l, const char *node, double value)
 {
     FILE *out = l->w->out;
-    fprintf(out, " v(xline%zu%s%s)=", l->w->lines, l->w->dialect->inside, node);
-    dea_part_number(out, value);
+    dea_part_print(out, " v(xline%zu%s%s)=%g", l->w->lines, l->w->dialect->inside, node, value);
 }
 
 /* Newton's start of the first point. */
@@ -112,8 +111,7 @@ static void write_start(line_text *l)
 {
     char inside[32];
     const double u = displacement_at(l, l->from);
-    fprintf(l->w->out, ".nodeset v(edge%zu)=", l->w->lines);
-    dea_part_number(l->w->out, u);
+    dea_part_print(l->w->out, ".nodeset v(edge%zu)=%g", l->w->lines, u);
     if (l->axis) {
         if (dea_axis_holds(l->axis, l->from, l->to)) {
             write_guess(l, "point", (double)l->from);
@@ -248,13 +246,8 @@ static dea_status visit_line(void *user, const dea_scene *scene, const dea_line 
 static void write_tolerances(const writer *w)
 {
     if (w->dialect->solver) {
-        fprintf(w->out, "* tolerances of one point\n%s reltol=", w->dialect->solver);
-        dea_part_number(w->out, fmin(1e-8, 0.1 * w->export->scene->accuracy));
-        fputs(" abstol=", w->out);
-        dea_part_number(w->out, 1e-18 * w->force);
-        fputs(" vntol=", w->out);
-        dea_part_number(w->out, 1e-18 * w->length);
-        fputc('\n', w->out);
+        dea_part_print(w->out, "* tolerances of one point\n%s reltol=%g abstol=%g vntol=%g\n",
+                       w->dialect->solver, fmin(1e-8, 0.1 * w->export->scene->accuracy), 1e-18 * w->force, 1e-18 * w->length);
     }
 }
 
@@ -272,9 +265,7 @@ static void write_analysis(const writer *w, const char *names)
         fprintf(out, "* every row number n %zu, n = 0, 1, 2 ..., is a point; those between lead from one to the next\n",
                 w->parts);
     }
-    fprintf(out, ".dc VINDEX 0 %zu ", w->points - 1);
-    dea_part_number(out, 1.0 / (double)w->parts);
-    fputs("\n.end\n", out);
+    dea_part_print(out, ".dc VINDEX 0 %zu %g\n.end\n", w->points - 1, 1.0 / (double)w->parts);
 }
 
 static dea_status refuse(const dea_export *export, dea_error *error)

@@ -656,8 +656,7 @@ double dea_cards_film_voltage(dea_cards *c, const dea_cards_numbers *n, double s
 
 static void start_node(const dea_cards *c, const char *node, double value)
 {
-    fprintf(c->out, " v(%s)=", node);
-    dea_part_number(c->out, value);
+    dea_part_print(c->out, " v(%s)=%g", node, value);
 }
 
 void dea_cards_write_start(dea_cards *c, const dea_cards_numbers *n, double source)
@@ -722,8 +721,5 @@ void dea_cards_write_band(const dea_mobility_band *band, FILE *out)
     } else {
         fprintf(out, ".ac lin %zu ", band->count > 1 ? band->count : 1);
     }
-    dea_part_number(out, band->from);
-    fputc(' ', out);
-    dea_part_number(out, band->to);
-    fputs("\n.end\n", out);
+    dea_part_print(out, "%g %g\n.end\n", band->from, band->to);
 }

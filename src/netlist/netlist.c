@@ -163,13 +163,11 @@ void dea_axis_write(const dea_part_text *text, const dea_axis *axis, size_t from
 /* The displacement of an edge that is held, as a voltage of the index k. */
 static void write_hold(FILE *out, const dea_netlist_study *study)
 {
-    fputs("* what holds the edge: its current is the force on it\n.param hold_from=", out);
-    dea_part_number(out, study->held->from);
-    fputs(" hold_span=", out);
-    dea_part_number(out, study->held->to - study->held->from);
-    fputs(" hold_last=", out);
-    dea_part_number(out, (double)(study->count - 1));
-    fputs("\nBHOLD edge 0 v=({hold_from})+({hold_span})*v(k)/{hold_last}\n", out);
+    dea_part_print(out,
+                   "* what holds the edge: its current is the force on it\n"
+                   ".param hold_from=%g hold_span=%g hold_last=%g\n"
+                   "BHOLD edge 0 v=({hold_from})+({hold_span})*v(k)/{hold_last}\n",
+                   study->held->from, study->held->to - study->held->from, (double)(study->count - 1));
 }
 
 static double first_of(const dea_netlist_study *study)
@@ -194,16 +192,11 @@ static void write_all(dea_still_cards *cards, const dea_netlist_study *study)
     }
     fputs(".nodeset v(edge)=0", out);
     if (study->axis) {
-        fputs(" v(axis)=", out);
-        dea_part_number(out, first_of(study));
+        dea_part_print(out, " v(axis)=%g", first_of(study));
     }
     dea_still_cards_write_start(cards, "", first_of(study), 0.0);
-    fputs("\n.options itl1=60 itl2=60 gminsteps=0 srcsteps=0 reltol=", out);
-    dea_part_number(out, study->tolerance);
-    fputs(" vntol=", out);
-    dea_part_number(out, 1e-21 * study->length_scale);
-    fputs(" abstol=", out);
-    dea_part_number(out, 1e-21 * study->force_scale);
+    dea_part_print(out, "\n.options itl1=60 itl2=60 gminsteps=0 srcsteps=0 reltol=%g vntol=%g abstol=%g",
+                   study->tolerance, 1e-21 * study->length_scale, 1e-21 * study->force_scale);
     fputs(study->held ? "\n.save bhold#branch\n" : "\n.save v(edge)\n", out);
     const size_t last = study->ramp ? study->ramp : study->from + study->count - 1;
     fprintf(out, ".dc VINDEX %zu %zu 1\n.end\n", study->ramp ? 0 : study->from, last);

@@ -27,13 +27,14 @@ enum {
     VOLTAGE,  /* always replaced by a number */
     CONSTANT, /* the first of those of the law */
     DAMP = CONSTANT + DEA_LAW_CONSTANTS, /* made by the checks; of the membrane alone */
+    EPS_SLOPE,                           /* of a permittivity that follows the strain */
     SYMBOLS
 };
 
 static const char *const symbol_names[SYMBOLS] = {"radius",  "cover",  "thick", "stretch", "eps_r",
                                                   "y_given", "y_free", "rho",   "areal",   "layer", "",
                                                   "film1",   "film2",  "film3", "film4",   "film5",
-                                                  "film6",   "film7",  "film8", "damp"};
+                                                  "film6",   "film7",  "film8", "damp",    "permittivity_per_stretch"};
 _Static_assert(DEA_LAW_CONSTANTS == 8, "one name a constant");
 
 typedef struct part {
@@ -42,6 +43,7 @@ typedef struct part {
     dea_kind kind;
     const dea_law *law;
     size_t constants; /* of the law, in use */
+    bool follows;     /* the permittivity follows the strain */
     bool linear;
     size_t branches;
     dea_dynamics elements; /* which there are: all, whatever their numbers turn out to be */
@@ -117,6 +119,7 @@ static dea_symbols symbols_of(dea_pool *pool, const part *p)
                            .force = NUM(0.0),
                            .prestretch = s[STRETCH],
                            .permittivity = MUL(SCALE(DEA_EPSILON_0, s[EPS_R]), SQUARE(s[LAYERS])),
+                           .electrostriction = p->follows ? DIV(dea_expr_symbol(pool, EPS_SLOPE), s[EPS_R]) : NUM(0.0),
                            .breakdown = NUM(INFINITY),
                            .voltage = s[VOLTAGE]};
     for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
@@ -335,6 +338,9 @@ static int write_checks(const part *p, const form *of)
     line(p, ".param ok0={1}");
     for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++) {
         check(p, &ranges[i], &count);
+    }
+    if (p->follows) {
+        check(p, &(range){"permittivity+1.25*permittivity_per_stretch*prestretch", "eps_pull", "1e-3", "1e9"}, &count);
     }
     check_law(p, of, &count);
     if (of->modulus) {
@@ -580,18 +586,19 @@ static void add_film(const dea_scene *scene, dea_part_parameter *list, size_t *c
     const dea_material *material = &scene->material;
     add_constants(material, list, count);
     add(list, count, "permittivity", "1", "relative permittivity at stretch 0", material->permittivity);
-    add(list, count, "permittivity_per_stretch", "1", "its slope over the stretch", material->permittivity_per_stretch);
+    add(list, count, "permittivity_per_stretch", "1",
+        material->permittivity_follows ? "its slope over the stretch, which it follows" : "its slope over the stretch",
+        material->permittivity_per_stretch);
     add(list, count, "density", "kg/m^3", "density of the film, 0: no inertia", or_zero(material->density));
     add(list, count, "electrode_mass", "kg/m^2", "mass per area of the electrodes", or_zero(scene->actuator.electrode_mass));
     add(list, count, "retardation", "s", "Kelvin-Voigt retardation time, 0: none", or_zero(material->retardation));
     for (size_t i = 0; i < material->prony_count || i < PART_BRANCHES; i++) {
-        const dea_prony none = {0.0, 1.0};
-        const dea_prony *branch = i < material->prony_count ? &material->prony[i] : &none;
+        const dea_prony branch = i < material->prony_count ? dea_material_branch(material, i) : (dea_prony){0.0, 1.0};
         char name[32];
         snprintf(name, sizeof name, "g%zu", i + 1);
-        add(list, count, name, "1", "share of the branch in the instantaneous modulus, 0: none", branch->g);
+        add(list, count, name, "1", "share of the branch in the instantaneous modulus, 0: none", branch.g);
         snprintf(name, sizeof name, "tau%zu", i + 1);
-        add(list, count, name, "s", "relaxation time of the branch", branch->tau);
+        add(list, count, name, "s", "relaxation time of the branch", branch.tau);
     }
 }
 
@@ -674,6 +681,7 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
               .kind = defaults->actuator.kind,
               .law = defaults->material.law,
               .constants = constants_in_use(&defaults->material),
+              .follows = defaults->material.permittivity_follows,
               .linear = model->linear != NULL,
               .branches = branches > PART_BRANCHES ? branches : PART_BRANCHES};
     p.elements = (dea_dynamics){.model = model,

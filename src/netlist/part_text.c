@@ -17,11 +17,32 @@ void dea_part_number(FILE *out, double value)
     fputs(dea_number_text(text, value, digits), out);
 }
 
+void dea_part_print(FILE *out, const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    for (const char *c = format; *c; c++) {
+        if (*c != '%') {
+            fputc(*c, out);
+        } else if (*++c == 'g') {
+            dea_part_number(out, va_arg(values, double));
+        } else if (*c == 's') {
+            fputs(va_arg(values, const char *), out);
+        } else if (*c == 'z') { /* %zu */
+            fprintf(out, "%zu", va_arg(values, size_t));
+            c++;
+        } else if (*c == 'd') {
+            fprintf(out, "%d", va_arg(values, int));
+        } else {
+            fputc(*c == 'c' ? va_arg(values, int) : *c, out);
+        }
+    }
+    va_end(values);
+}
+
 void dea_part_value(FILE *out, const char *name, double value)
 {
-    fprintf(out, ".param %s=", name);
-    dea_part_number(out, value);
-    fputc('\n', out);
+    dea_part_print(out, ".param %s=%g\n", name, value);
 }
 
 /* Places of the displacement in a term, up to MANY: what is worth a node. */

@@ -103,6 +103,8 @@ const char *dea_part_text_parameter(const dea_part_text *text, dea_expr ref, cha
 
 /* A number with as few digits as give it back. */
 void dea_part_number(FILE *out, double value);
+/* As fprintf() with %s, %zu, %d and %c, but %g is such a number. */
+void dea_part_print(FILE *out, const char *format, ...) DEA_PRINTF(2, 3);
 /* `.param name=value` */
 void dea_part_value(FILE *out, const char *name, double value);
 

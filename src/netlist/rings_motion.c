@@ -142,14 +142,11 @@ static void write_load(const dea_rings_motion_cards *c, const dea_rings_writer *
         fprintf(w->out, "GLOAD %s 0 u 0 {%s}\n", edge, dea_rings_parameter(w, c->load).text);
     }
     if (film->damping > 0.0) {
-        fprintf(w->out, "* mechanical resistance of the load [N s/m], whose inverse is the resistor\nRLOAD %s 0 ", edge);
-        dea_part_number(w->out, 1.0 / film->damping);
-        fputc('\n', w->out);
+        dea_part_print(w->out, "* mechanical resistance of the load [N s/m], whose inverse is the resistor\nRLOAD %s 0 %g\n",
+                       edge, 1.0 / film->damping);
     }
     if (film->point.force != 0.0) {
-        fprintf(w->out, "* force of the load onto the edge [N], outward\nILOAD 0 %s ", edge);
-        dea_part_number(w->out, film->point.force);
-        fputc('\n', w->out);
+        dea_part_print(w->out, "* force of the load onto the edge [N], outward\nILOAD 0 %s %g\n", edge, film->point.force);
     }
 }
 

@@ -13,11 +13,12 @@ void dea_rings_part_make(const dea_symbols *symbols, const dea_rings_numbers *nu
     dea_rings_moving_make(symbols, numbers, fixed_mesh, branches, &part->moving);
     part->moving.stops = true;
     const dea_expr l1 = ADD(NUM(1.0), dea_expr_node(pool, DEA_RINGS_E1)), l2 = ADD(NUM(1.0), dea_expr_node(pool, DEA_RINGS_E2));
+    const dea_symbols_factors electric = dea_symbols_electric(symbols, l1, l2);
     const dea_expr square = SQUARE(symbols->prestretch), r_a = MUL(symbols->frame_radius, symbols->coverage);
     part->frame_radius = symbols->frame_radius;
     part->field = MUL(SCALE(1e-6, DIV(MUL(symbols->layers, square), symbols->film_thickness)), MUL(l1, l2));
     const dea_expr size = SCALE(symbols->kind == DEA_DOT ? 2.0 * DEA_PI : -2.0 * DEA_PI, MUL(symbols->permittivity, DIV(square, symbols->film_thickness)));
-    part->force = MUL(MUL(size, r_a), MUL(l1, SQUARE(l2)));
+    part->force = MUL(MUL(MUL(size, electric.first), r_a), MUL(l1, SQUARE(l2)));
 }
 
 /* Rings on both sides of r_a, and that of the electrode there. */

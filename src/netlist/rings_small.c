@@ -2,6 +2,7 @@
 
 #include <ctype.h>
 
+#include "model/models.h"
 #include "netlist/export.h"
 
 /* Changes of the nominal stresses of a ring over its strains e_a from the bias [Pa]: with the voltage, and those that damper and
@@ -17,8 +18,10 @@ static moduli moduli_of(const dea_rings_small *s, size_t ring, const dea_membran
     const double field = s->voltage / film->point.film_thickness, l0 = film->point.film.prestretch;
     const double k = s->membrane->rings.rings[ring].electroded ? film->point.film.permittivity * field * field : 0.0;
     const double *l = at->stretch;
-    return (moduli){{l0 * (at->tangent[0][0] - k * l[1] * l[1]), l0 * (at->tangent[0][1] - 2.0 * k * l[0] * l[1]),
-                     l0 * (at->tangent[1][1] - k * l[0] * l[0])},
+    const dea_electric electric = dea_film_electric(&film->point.film, l[0] * l[1]);
+    const double second = k * electric.second, mixed = k * electric.first + second;
+    return (moduli){{l0 * (at->tangent[0][0] - second * l[1] * l[1]), l0 * (at->tangent[0][1] - mixed * l[0] * l[1]),
+                     l0 * (at->tangent[1][1] - second * l[0] * l[0])},
                     {l0 * at->slope[0][0] / l[0], l0 * at->slope[0][1] / l[0], l0 * at->slope[1][1] / l[1]}};
 }
 
@@ -26,9 +29,7 @@ static moduli moduli_of(const dea_rings_small *s, size_t ring, const dea_membran
 static void lever(FILE *out, const char *element, const char *into, size_t number, const char *control, size_t of, double value)
 {
     if (value != 0.0) {
-        fprintf(out, "G%c%zu_%zu 0 %s%zu %s%zu 0 ", toupper(*element), number, of, into, number, control, of);
-        dea_part_number(out, value);
-        fputc('\n', out);
+        dea_part_print(out, "G%c%zu_%zu 0 %s%zu %s%zu 0 %g\n", toupper(*element), number, of, into, number, control, of, value);
     }
 }
 
@@ -54,9 +55,8 @@ static void write_pair(FILE *out, char tag, const char into[2][2], const char fr
 {
     for (int a = 0; a < 2; a++) {
         for (int b = 0; b < 2; b++) {
-            fprintf(out, "G%c%c%c%zu 0 %s%zu %s%zu 0 ", tag, toupper(*into[a]), toupper(*from[b]), number, into[a], number, from[b], number);
-            dea_part_number(out, factor * w[a + b]);
-            fputc('\n', out);
+            dea_part_print(out, "G%c%c%c%zu 0 %s%zu %s%zu 0 %g\n",
+                           tag, toupper(*into[a]), toupper(*from[b]), number, into[a], number, from[b], number, factor * w[a + b]);
         }
     }
 }
@@ -106,9 +106,8 @@ static void write_ring(FILE *out, const dea_rings_small *s, size_t index, const 
             const double slope = a == 0 ? ring->radial[i] : ring->hoop[i];
             const size_t node = ring->first + i + 1;
             if (slope != 0.0) {
-                fprintf(out, "GF%c%zu_%zu v%zu 0 %s%zu 0 ", toupper(*stress_names[a]), number, node, node, stress_names[a], number);
-                dea_part_number(out, lever_size * slope);
-                fputc('\n', out);
+                dea_part_print(out, "GF%c%zu_%zu v%zu 0 %s%zu 0 %g\n",
+                               toupper(*stress_names[a]), number, node, node, stress_names[a], number, lever_size * slope);
             }
         }
     }
@@ -120,18 +119,15 @@ static void write_node(FILE *out, const dea_rings_small *s, size_t index, double
     fprintf(out, "* node %zu at R = %.6g m: mass [kg], displacement, transduction 2 phi U [N/V]\n", n,
             s->membrane->rings.radii[index]);
     if (s->membrane->masses[index] > 0.0) {
-        fprintf(out, "CM%zu v%zu 0 ", n, n);
-        dea_part_number(out, s->membrane->masses[index]);
-        fputc('\n', out);
+        dea_part_print(out, "CM%zu v%zu 0 %g\n", n, n, s->membrane->masses[index]);
     }
-    fprintf(out, "GU%zu 0 u%zu v%zu 0 1\nCU%zu u%zu 0 1\n", n, n, n, n, n);
-    fprintf(out, "GP%zu 0 v%zu film 0 ", n, n);
-    dea_part_number(out, transduction);
-    fprintf(out, "\nGI%zu film 0 v%zu 0 ", n, n);
-    dea_part_number(out, transduction);
-    fprintf(out, "\nGQ%zu 0 motion u%zu 0 ", n, n);
-    dea_part_number(out, transduction);
-    fputc('\n', out);
+    dea_part_print(out,
+                   "GU%zu 0 u%zu v%zu 0 1\n"
+                   "CU%zu u%zu 0 1\n"
+                   "GP%zu 0 v%zu film 0 %g\n"
+                   "GI%zu film 0 v%zu 0 %g\n"
+                   "GQ%zu 0 motion u%zu 0 %g\n",
+                   n, n, n, n, n, n, n, transduction, n, n, transduction, n, n, transduction);
 }
 
 static void write_port(FILE *out, const dea_dynamics *film, double capacitance)
@@ -162,25 +158,20 @@ void dea_rings_small_write(const dea_rings_small *small, FILE *out)
     fprintf(out, "* membrane as %zu moving nodes (degrees of disc and annulus: %zu, %zu) about its bias; the edge at r_a is node %zu\n",
             m->rings.node_count, m->rings.mesh.disc, m->rings.mesh.annulus, m->rings.edge + 1);
     for (size_t i = 0; i < m->film.branch_count; i++) {
-        fprintf(out, ".param tau%zu=", i + 1);
-        dea_part_number(out, m->film.branches[i].tau);
-        fprintf(out, "\n.param share%zu=", i + 1);
-        dea_part_number(out, m->film.branches[i].share);
-        fputc('\n', out);
+        dea_part_print(out, ".param tau%zu=%g\n.param share%zu=%g\n",
+                       i + 1, m->film.branches[i].tau, i + 1, m->film.branches[i].share);
     }
     write_port(out, &m->film, look.capacitance);
     for (size_t n = 0; n < m->rings.node_count; n++) {
         write_node(out, small, n, 2.0 * push[n] * small->voltage);
     }
     if (m->film.damping > 0.0) {
-        fprintf(out, "* mechanical resistance of the load [N s/m]\nRLOAD v%zu 0 ", m->rings.edge + 1);
-        dea_part_number(out, 1.0 / m->film.damping);
-        fputc('\n', out);
+        dea_part_print(out, "* mechanical resistance of the load [N s/m]\nRLOAD v%zu 0 %g\n",
+                       m->rings.edge + 1, 1.0 / m->film.damping);
     }
     if (m->film.point.load > 0.0) {
-        fprintf(out, "* spring of the load between edge and frame [N/m]\nGLOAD v%zu 0 u%zu 0 ", m->rings.edge + 1, m->rings.edge + 1);
-        dea_part_number(out, m->film.point.load);
-        fputc('\n', out);
+        dea_part_print(out, "* spring of the load between edge and frame [N/m]\nGLOAD v%zu 0 u%zu 0 %g\n",
+                       m->rings.edge + 1, m->rings.edge + 1, m->film.point.load);
     }
     for (size_t q = 0; q < m->rings.ring_count; q++) {
         write_ring(out, small, q, &look);

@@ -52,7 +52,7 @@ static double pressure_of(const dea_point *point, double voltage, double area, d
 {
     const double nominal = voltage / point->film_thickness * area;
     *field = fabs(nominal) * point->layers;
-    return point->film.permittivity * nominal * nominal;
+    return point->film.permittivity * dea_film_electric(&point->film, area).first * nominal * nominal;
 }
 
 static void tell_spot(const dea_membrane *m, const dea_rings_spot *spot, const dea_along_state *state, double *entry)

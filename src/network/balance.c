@@ -305,7 +305,7 @@ static dea_row row_of(const dea_balance *balance, double u)
                    .field = fabs(dea_tape_value(limits, FIELD)),
                    .capacitance = dea_tape_value(limits, CAPACITANCE),
                    .state = DEA_STATE_OK};
-    if (!(isfinite(row.strain) && isfinite(u) && isfinite(row.force) && isfinite(row.field))) {
+    if (!(isfinite(row.strain) && isfinite(u) && isfinite(row.force) && isfinite(row.field)) || !in_range(balance)) {
         return dea_row_failed();
     }
     row.charge = row.capacitance * dea_tape_value(limits, VOLTAGE);

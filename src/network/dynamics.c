@@ -71,7 +71,8 @@ bool dea_dynamics_relax(dea_dynamics *d, const dea_scene *scene)
         rest -= material->prony[i].g;
     }
     for (size_t i = 0; i < material->prony_count && rest > 0.0; i++) {
-        add_branch(d, scene->reduction.branches[i], (dea_branch){material->prony[i].g / rest, material->prony[i].tau});
+        const dea_prony branch = dea_material_branch(material, i);
+        add_branch(d, scene->reduction.branches[i], (dea_branch){branch.g / rest, branch.tau});
     }
     share_out(d);
     join_branches(d);
@@ -180,6 +181,10 @@ dea_status dea_dynamics_settle(const dea_scene *scene, const dea_model *model, d
                                   !(fabs(scene->load.force) > 0.0) && !scene->antagonist.there};
     d->damping = scene->load.damping > 0.0 ? scene->load.damping : 0.0;
     d->softens = !scene->reduction.softening;
+    const double shift = dea_material_shift(&scene->material);
+    if (!(shift > 0.0 && isfinite(shift))) {
+        return dea_fail(error, DEA_ERROR_USAGE, "the shift factors of the material do not reach the temperature %g K", scene->material.temperature);
+    }
     if (!dea_dynamics_relax(d, scene)) {
         return dea_fail(error, DEA_ERROR_USAGE, "the shares g of the branches sum to 1 or more");
     }
@@ -533,7 +538,8 @@ void dea_dynamics_lighten(dea_dynamics *d, double accuracy)
 bool dea_dynamics_inside(dea_dynamics *dynamics, double u)
 {
     const bool framed = u > -dynamics->radius && u < dynamics->point.frame_radius - dynamics->radius;
-    return framed && (!dynamics->port || dea_dynamics_edge(dynamics, u).capacitance > 0.0);
+    const bool charged = dynamics->port || dynamics->point.film.electrostriction != 0.0;
+    return framed && (!charged || dea_dynamics_edge(dynamics, u).capacitance > 0.0);
 }
 
 void dea_dynamics_start(dea_dynamics *dynamics, dea_moment *moment)

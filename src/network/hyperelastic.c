@@ -84,5 +84,6 @@ dea_expr dea_hyperelastic_force(const dea_symbols *symbols, dea_expr strain, dea
     const dea_expr stretch = ADD(one, e);
     const dea_expr cube = MUL(SQUARE(stretch), stretch);
     const dea_expr ratio = e == strain ? one : DIV(stretch, ADD(one, strain)); /* the area shrinks as 1/(1 + s) */
-    return MUL(MUL(dea_symbols_cross_section(symbols), rest), MUL(cube, ratio));
+    const dea_expr electric = dea_symbols_electric(symbols, stretch, stretch).first;
+    return MUL(MUL(dea_symbols_cross_section(symbols), MUL(electric, rest)), MUL(cube, ratio));
 }

@@ -131,7 +131,11 @@ bool dea_membrane_look_at(const dea_membrane *m, const double *u, dea_membrane_l
         if (!look_at_ring(m, r, u, at)) {
             return false;
         }
-        const double area = at->stretch[0] * at->stretch[1], content = ring->electroded ? ring->volume * area * area : 0.0;
+        const double area = at->stretch[0] * at->stretch[1], own = dea_film_electric(&m->film.point.film, area).own;
+        const double content = ring->electroded ? ring->volume * own * area * area : 0.0;
+        if (!(own > 0.0)) {
+            return false; /* there is no such film */
+        }
         at->capacitance = unit * content;
         sum += content;
     }
@@ -163,8 +167,8 @@ void dea_membrane_pull(const dea_membrane *m, double (*f)[2], double *force)
 /* Adds phi_n of one ring. */
 static void push_ring(const dea_membrane *m, const dea_membrane_look *look, size_t r, double *push)
 {
-    const double unit = square_of(m, 1.0), *l = look->rings[r].stretch;
-    const double f[2] = {-unit * l[0] * l[1] * l[1], -unit * l[0] * l[0] * l[1]};
+    const double *l = look->rings[r].stretch, k = square_of(m, 1.0) * dea_film_electric(&m->film.point.film, l[0] * l[1]).first;
+    const double f[2] = {-k * l[0] * l[1] * l[1], -k * l[0] * l[0] * l[1]};
     pull_ring(m, r, f, push);
 }
 
@@ -226,7 +230,8 @@ void dea_membrane_force(const dea_membrane *m, const dea_membrane_look *look, do
     memset(force, 0, m->rings.node_count * sizeof *force);
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         const dea_ring_look *at = &look->rings[r];
-        const double area = at->stretch[0] * at->stretch[1], pressure = square_at(m, look, r, voltage) * area;
+        const double area = at->stretch[0] * at->stretch[1];
+        const double pressure = square_at(m, look, r, voltage) * dea_film_electric(&m->film.point.film, area).first * area;
         double s[2];
         for (int a = 0; a < 2; a++) {
             s[a] = at->nominal[a] - pressure * at->stretch[1 - a] + (x ? x[r][a] / at->stretch[a] : 0.0);
@@ -238,14 +243,17 @@ void dea_membrane_force(const dea_membrane *m, const dea_membrane_look *look, do
 
 /* ds_a/dlambda_b of a ring: of the film, of its electrical part k lambda_a lambda_b^2, of x_a/lambda_a at constant x_a, and of a
  * damper. */
-static void ring_tangent(const dea_ring_look *at, double k, const double *x, double share, double t[2][2])
+static void ring_tangent(const dea_film *film, const dea_ring_look *at, double k, const double *x, double share, double t[2][2])
 {
+    const double area = at->stretch[0] * at->stretch[1];
+    const dea_electric electric = dea_film_electric(film, area);
     for (int a = 0; a < 2; a++) {
         const double l = at->stretch[a];
         for (int b = 0; b < 2; b++) {
-            const double electric = a == b ? k * at->stretch[1 - a] * at->stretch[1 - a] : 2.0 * k * at->stretch[0] * at->stretch[1];
+            const double other = at->stretch[1 - a];
+            const double softening = a == b ? k * electric.second * other * other : k * (electric.first + electric.second) * area;
             const double lever = a == b && x ? x[a] / (l * l) : 0.0;
-            t[a][b] = at->tangent[a][b] - electric - lever + share * at->slope[a][b] / l;
+            t[a][b] = at->tangent[a][b] - softening - lever + share * at->slope[a][b] / l;
         }
     }
 }
@@ -254,7 +262,7 @@ bool dea_membrane_elliptic(const dea_membrane *m, const dea_membrane_look *look,
 {
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         double t[2][2];
-        ring_tangent(&look->rings[r], square_at(m, look, r, voltage), x ? x[r] : NULL, share, t);
+        ring_tangent(&m->film.point.film, &look->rings[r], square_at(m, look, r, voltage), x ? x[r] : NULL, share, t);
         if (!(t[0][0] > 0.0)) {
             return false;
         }
@@ -287,7 +295,7 @@ void dea_membrane_stiffness(const dea_membrane *m, const dea_membrane_look *look
     memset(stiffness, 0, m->rings.node_count * m->rings.node_count * sizeof *stiffness);
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         double t[2][2];
-        ring_tangent(&look->rings[r], square_at(m, look, r, voltage), x ? x[r] : NULL, share, t);
+        ring_tangent(&m->film.point.film, &look->rings[r], square_at(m, look, r, voltage), x ? x[r] : NULL, share, t);
         assemble_ring(m, r, t, stiffness);
     }
     stiffness[m->rings.edge * (m->rings.node_count + 1)] += m->film.point.load;
@@ -482,7 +490,7 @@ static double edge_force(const dea_membrane *m, const dea_membrane_look *look, d
     const size_t r = dot ? inner : inner + 1;
     const double *l = look->rings[r].stretch;
     return (dot ? 1.0 : -1.0) * 2.0 * DEA_PI * m->rings.rings[r].radius * m->film.point.film_thickness * square_at(m, look, r, voltage) *
-           l[0] * l[1] * l[1];
+           dea_film_electric(&m->film.point.film, l[0] * l[1]).first * l[0] * l[1] * l[1];
 }
 
 /* Largest of values at the rings of an element, between them too where it could pass a limit: a polynomial leaves the range of its
@@ -518,8 +526,9 @@ static void fill_row(const dea_membrane *m, const dea_membrane_look *look, doubl
         const dea_ring_look *at = &look->rings[r];
         const double k = square_at(m, look, r, peak);
         area[r] = at->stretch[0] * at->stretch[1];
+        const double electric = dea_film_electric(&m->film.point.film, area[r]).first;
         for (int a = 0; a < 2; a++) {
-            loss[a][r] = k * area[r] * at->stretch[1 - a] - at->nominal[a];
+            loss[a][r] = k * electric * area[r] * at->stretch[1 - a] - at->nominal[a];
         }
         area[r] *= look->spread && peak > 0.0 ? fabs(dea_membrane_voltage(m, look, r, peak)) / peak : 1.0;
     }

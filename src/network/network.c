@@ -92,6 +92,13 @@ void dea_network_demand(dea_network *network, dea_expr range)
     append(network, &network->range, &network->range_count, range);
 }
 
+void dea_network_insulate(const dea_symbols *symbols, dea_network *network, dea_expr l1, dea_expr l2)
+{
+    if (dea_expr_constant(symbols->pool, symbols->electrostriction) != 0.0) {
+        dea_network_demand(network, dea_symbols_electric(symbols, l1, l2).own);
+    }
+}
+
 void dea_network_limit_area(const dea_symbols *symbols, dea_network *network)
 {
     dea_pool *pool = symbols->pool;
@@ -104,6 +111,7 @@ void dea_network_limit_area(const dea_symbols *symbols, dea_network *network)
     }
     const dea_expr rest = MUL(dea_symbols_nominal_field(symbols), SQUARE(symbols->prestretch));
     network->field = MUL(rest, area);
+    dea_network_insulate(symbols, network, area, one);
 }
 
 /* A scalar of the scene: symbol 0 where it is the axis, else its number. */
@@ -118,7 +126,7 @@ static bool given(const dea_pool *pool, dea_expr ref)
     return pool->terms[ref].varies || !isnan(dea_expr_constant(pool, ref));
 }
 
-/* Long-term share of the elastic constants, 1 - sum g_i where they are instantaneous. */
+/* dea_material_long_term_share(). */
 static dea_expr long_term_share(dea_pool *pool, const dea_scene *scene, const dea_axis *axis)
 {
     dea_expr share = NUM(1.0);
@@ -126,6 +134,12 @@ static dea_expr long_term_share(dea_pool *pool, const dea_scene *scene, const de
         for (size_t i = 0; i < scene->material.prony_count; i++) {
             share = SUB(share, scalar(pool, scene, axis, &scene->material.prony[i].g));
         }
+    }
+    const dea_expr temperature = scalar(pool, scene, axis, &scene->material.temperature);
+    const dea_expr slope = scalar(pool, scene, axis, &scene->material.modulus_slope);
+    if (given(pool, temperature) && given(pool, slope)) {
+        const dea_expr above = SUB(temperature, scalar(pool, scene, axis, &scene->material.modulus_reference));
+        share = MUL(share, ADD(NUM(1.0), MUL(slope, above)));
     }
     return share;
 }
@@ -258,6 +272,7 @@ dea_symbols dea_symbols_of(const dea_scene *scene, const dea_axis *axis, dea_poo
     const dea_expr slope = scalar(pool, scene, axis, &material->permittivity_per_stretch);
     const dea_expr relative = ADD(scalar(pool, scene, axis, &material->permittivity), MUL(slope, s.prestretch));
     s.permittivity = MUL(SCALE(DEA_EPSILON_0, relative), SQUARE(s.layers));
+    s.electrostriction = material->permittivity_follows ? DIV(slope, relative) : NUM(0.0);
     const dea_expr breakdown = scalar(pool, scene, axis, &material->breakdown);
     s.breakdown = given(pool, breakdown) ? breakdown : NUM(INFINITY);
     coat(scene, axis, &s);
@@ -282,10 +297,23 @@ dea_expr dea_symbols_pressure(const dea_symbols *symbols)
     return MUL(symbols->permittivity, SQUARE(DIV(symbols->voltage, symbols->film_thickness)));
 }
 
+dea_symbols_factors dea_symbols_electric(const dea_symbols *symbols, dea_expr l1, dea_expr l2)
+{
+    dea_pool *pool = symbols->pool;
+    if (dea_expr_constant(pool, symbols->electrostriction) == 0.0) {
+        return (dea_symbols_factors){NUM(1.0), NUM(1.0), NUM(1.0)};
+    }
+    const dea_expr mean = l1 == l2 ? l1 : SQRT(MUL(l1, l2));
+    const dea_expr one = NUM(1.0), rise = MUL(symbols->electrostriction, symbols->prestretch); /* of eps over that at rest */
+    const dea_expr own = ADD(one, MUL(rise, SUB(mean, one)));
+    return (dea_symbols_factors){own, ADD(own, SCALE(0.25, MUL(rise, mean))), ADD(own, SCALE(0.875, MUL(rise, mean)))};
+}
+
 dea_expr dea_symbols_stress_per_volt(const dea_symbols *symbols)
 {
     dea_pool *pool = symbols->pool;
-    return MUL(symbols->permittivity, SQUARE(DIV(SQUARE(symbols->prestretch), symbols->film_thickness)));
+    const dea_expr electric = dea_symbols_electric(symbols, NUM(1.0), NUM(1.0)).first;
+    return MUL(MUL(symbols->permittivity, electric), SQUARE(DIV(SQUARE(symbols->prestretch), symbols->film_thickness)));
 }
 
 dea_expr dea_symbols_capacitance(const dea_symbols *symbols)
@@ -344,6 +372,7 @@ static void place_edge(const dea_symbols *symbols, dea_network *network)
     dea_network_demand(network, symbols->coverage);
     dea_network_demand(network, SUB(one, symbols->coverage));
     dea_network_demand(network, symbols->permittivity);
+    dea_network_demand(network, dea_symbols_electric(symbols, one, one).first);
     dea_network_demand(network, modulus_at(pool, symbols->law, symbols->constants, one)); /* three times the shear modulus, twice over */
     dea_network_demand(network, form_at(symbols, symbols->prestretch, symbols->prestretch).room);
     if (symbols->skin) {

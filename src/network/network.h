@@ -23,7 +23,8 @@ typedef struct dea_symbols {
     const dea_law *law;                    /* of the film */
     dea_expr constants[DEA_LAW_CONSTANTS]; /* of it, long-term; those out of use 0 */
     dea_expr modulus;              /* Y [Pa]: the scene's, or dsigma/dlambda at the pre-stretch */
-    dea_expr permittivity;         /* absolute, times layers^2 [F/m] */
+    dea_expr permittivity;         /* absolute at the pre-stretch, times layers^2 [F/m] */
+    dea_expr electrostriction;     /* its slope over the mean stretch, over itself, NUM(0): it does not follow the strain [1] */
     dea_expr breakdown;            /* breakdown strength [V/m], +inf: none */
     const dea_law *skin;                        /* of the electrodes' skin, NULL: there is none */
     dea_expr skin_constants[DEA_LAW_CONSTANTS]; /* of it */
@@ -123,6 +124,8 @@ void dea_network_gather(dea_network *network);
 void dea_network_taut(dea_network *network, dea_expr tension);
 /* Something that is positive where the point makes sense. */
 void dea_network_demand(dea_network *network, dea_expr range);
+/* Demands a permittivity > 0 of the film under lambda_pre l1, lambda_pre l2 where it follows them. */
+void dea_network_insulate(const dea_symbols *symbols, dea_network *network, dea_expr l1, dea_expr l2);
 /* Sets the true field from the area that disc (dot) or annulus (lens) has at u: U lambda_pre^2/H times the area ratio. */
 void dea_network_limit_area(const dea_symbols *symbols, dea_network *network);
 
@@ -160,6 +163,11 @@ dea_expr dea_symbols_nominal_field(const dea_symbols *symbols);
 dea_expr dea_symbols_pressure(const dea_symbols *symbols);
 /* eps lambda_pre^4/H^2 [Pa/V^2], the electrostatic stress at the pre-stretch per U^2. */
 dea_expr dea_symbols_stress_per_volt(const dea_symbols *symbols);
+/* dea_electric of a film under the stretches lambda_pre l1, lambda_pre l2; numbers 1 where nothing follows. */
+typedef struct dea_symbols_factors {
+    dea_expr own, first, second;
+} dea_symbols_factors;
+dea_symbols_factors dea_symbols_electric(const dea_symbols *symbols, dea_expr l1, dea_expr l2);
 /* Capacitance at rest [F]: eps lambda_pre^2/H times pi r_a^2 (dot) or pi (r^2 - r_a^2) (lens). */
 dea_expr dea_symbols_capacitance(const dea_symbols *symbols);
 /* A_cross = 2 pi r_a H/lambda_pre^2 [m^2]. */

@@ -39,21 +39,24 @@ static strains strains_of(const dea_ring *ring, const double *u)
     return e;
 }
 
-/* Changes of s_a = P_a - k (lambda1 lambda2)^2/lambda_a from P_a at rest, and their slopes over the stretches. */
+/* Changes of s_a = P_a - k (lambda1 lambda2)^2/lambda_a from P_a at rest, and their slopes over the stretches; a permittivity that
+ * follows the strain scales k (dea_film_electric()). */
 static dea_biaxial stress_of(const dea_still *still, const dea_ring *ring, strains e, double share)
 {
     const dea_film *film = &still->point->film;
     const double k = ring->electroded ? share * still->pressure : 0.0;
     const double l1 = film->prestretch * (1.0 + e.e1), l2 = film->prestretch * (1.0 + e.e2);
+    const dea_electric electric = dea_film_electric(film, l1 * l2);
+    const double first = k * electric.first, second = k * electric.second;
     dea_biaxial s = dea_film_biaxial(film, e.e1, e.e2);
     if (ring->electroded && still->point->skin_share > 0.0) {
         dea_point_coat(still->point, e.e1, e.e2, &s);
     }
-    s.p1 -= k * l1 * l2 * l2;
-    s.p2 -= k * l1 * l1 * l2;
-    s.w11 -= k * l2 * l2;
-    s.w12 -= 2.0 * k * l1 * l2;
-    s.w22 -= k * l1 * l1;
+    s.p1 -= first * l1 * l2 * l2;
+    s.p2 -= first * l1 * l1 * l2;
+    s.w11 -= second * l2 * l2;
+    s.w12 -= (first + second) * l1 * l2;
+    s.w22 -= second * l1 * l1;
     return s;
 }
 
@@ -299,7 +302,7 @@ static double capacitance(const dea_still *still, const double *u)
         const dea_ring *ring = &still->rings.rings[q];
         const strains e = strains_of(ring, u);
         const double area = point->film.square * (1.0 + e.e1) * (1.0 + e.e2);
-        sum += ring->electroded ? ring->volume * area * area : 0.0;
+        sum += ring->electroded ? ring->volume * dea_film_electric(&point->film, area).own * area * area : 0.0;
     }
     return point->film.permittivity * sum / (point->film_thickness * point->film_thickness);
 }
@@ -321,7 +324,8 @@ void dea_still_fill(const dea_still *still, const double *u, dea_row *row)
     const dea_rings *rings = &still->rings;
     const double slack = fmax(radial[0], fmax(dea_rings_largest(rings, false, radial, NULL), dea_rings_largest(rings, false, hoop, NULL)));
     const strains *edge = &e[electrode_edge(&still->rings)];
-    const double pull = film->square * (1.0 + edge->e1) * (1.0 + edge->e2) * (1.0 + edge->e2); /* lambda_1 lambda_2^2/lambda_pre */
+    const double stretched = film->square * (1.0 + edge->e1) * (1.0 + edge->e2);
+    const double pull = stretched * (1.0 + edge->e2) * dea_film_electric(film, stretched).first; /* lambda_1 lambda_2^2/lambda_pre */
     const double force = 2.0 * DEA_PI * point->film_thickness * still->pressure * pull * dea_point_divide(point);
     dea_row_fill(row, point,
                  (dea_found){.strain = strain,

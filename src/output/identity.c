@@ -98,6 +98,9 @@ static void put_lists(FILE *out, const dea_scene *scene)
         put_numbers(out, "antagonist.material.constants", other->material.constants, other->own_material ? DEA_LAW_CONSTANTS : 0);
         put_number(out, "antagonist.material.permittivity", other->material.permittivity);
         put_number(out, "antagonist.material.permittivity.per_stretch", other->material.permittivity_per_stretch);
+        fprintf(out, "antagonist.material.permittivity.follows=%d\n", other->material.permittivity_follows ? 1 : 0);
+        put_number(out, "antagonist.material.modulus_slope.per_kelvin", other->material.modulus_slope);
+        put_number(out, "antagonist.material.modulus_slope.reference", other->material.modulus_reference);
         put_number(out, "antagonist.material.density", other->material.density);
         put_number(out, "antagonist.material.modulus", other->material.modulus);
         put_number(out, "antagonist.material.breakdown", other->material.breakdown);
@@ -105,8 +108,12 @@ static void put_lists(FILE *out, const dea_scene *scene)
         fprintf(out, "antagonist.material.moduli=%s\n", other->material.instantaneous ? "instantaneous" : "long-term");
     }
     put_numbers(out, "material.prony", &material->prony[0].g, 2 * material->prony_count);
+    put_numbers(out, "material.shift", material->shift.table[0], 2 * material->shift.count);
     put_numbers(out, "material.stretches", material->stretches, 2);
     fprintf(out, "material.moduli=%s\n", material->instantaneous ? "instantaneous" : "long-term");
+    if (material->permittivity_follows) {
+        fputs("material.permittivity.follows=strain\n", out);
+    }
     fprintf(out, "drive.waveform.kind=%d\n", (int)wave->kind);
     fprintf(out, "drive.waveform.choice=%zu\n", wave->choice);
     put_numbers(out, "drive.waveform.sines", &wave->sines[0].offset, wave->sine_count * sizeof wave->sines[0] / sizeof(double));

@@ -250,6 +250,20 @@ static void put_prony(grid *file)
     }
 }
 
+static void put_shift(grid *file)
+{
+    const dea_shift *shift = &file->scene->material.shift;
+    double temperatures[DEA_SHIFT_MOST], factors[DEA_SHIFT_MOST];
+    for (size_t i = 0; i < shift->count; i++) {
+        temperatures[i] = shift->table[i][0];
+        factors[i] = shift->table[i][1];
+    }
+    if (shift->count > 0) {
+        grid_keep(file, file->nc.nc_put_att_double(file->file, NC_GLOBAL, "shift_temperature_K", NC_DOUBLE, shift->count, temperatures));
+        grid_keep(file, file->nc.nc_put_att_double(file->file, NC_GLOBAL, "shift_factor", NC_DOUBLE, shift->count, factors));
+    }
+}
+
 /* Where the numbers come from. */
 static void put_provenance(grid *file, const char *engine)
 {
@@ -275,6 +289,7 @@ static void put_provenance(grid *file, const char *engine)
     put_listed_law(file, "", scene->material.law, scene->material.constants, scene->material.entry_count);
     put_listed_law(file, "electrode_", scene->electrode.law, scene->electrode.constants, scene->electrode.entry_count);
     put_prony(file);
+    put_shift(file);
     if (file->study->timed) {
         const dea_wave *wave = dea_wave_of(scene->drive.waveform.kind);
         put_text(file, NC_GLOBAL, "waveform", wave ? dea_wave_name(wave) : "none");

@@ -28,6 +28,7 @@ extern const dea_drawer dea_drawer_points, dea_drawer_runs, dea_drawer_modes, de
 
 struct dea_plot {
     const dea_scene *scene;
+    bool loops; /* as in the options */
     const dea_drawer *drawer;
     dea_gnuplot picture;
     dea_runs runs; /* of runs along time, frequency or radius */

@@ -121,18 +121,22 @@ static dea_status dots_open(dea_plot *plot, dea_error *error)
 
 static dea_status runs_open(dea_plot *plot, dea_error *error)
 {
-    return dea_runs_open(plot->scene, &plot->runs, error);
+    return dea_runs_open(plot->scene, plot->loops, &plot->runs, error);
 }
 
 dea_status dea_plot_begin(const dea_scene *scene, const char *path, const dea_plot_options *options, dea_plot **plot,
                           dea_error *error)
 {
     *plot = NULL;
+    if (options && options->loops && !dea_study_of(scene)->timed) {
+        return dea_fail(error, DEA_ERROR_USAGE, "loops are drawn of a transient, but the study is %s", dea_study_of(scene)->name);
+    }
     dea_plot *begun = calloc(1, sizeof *begun);
     if (!begun) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
     begun->scene = scene;
+    begun->loops = options && options->loops;
     const dea_study *study = dea_study_of(scene);
     begun->drawer = study->spread_drawer && dea_layout_of(scene).spread_count > 0 ? study->spread_drawer : study->drawer;
     dea_status status = begun->drawer->open(begun, error);

@@ -31,10 +31,11 @@ static void write_pair(FILE *script, double x, double y)
     fputc('\n', script);
 }
 
-static void add_entry(dea_legend *legend, dea_load load, const char *what, bool line, bool point)
+/* In the looks of a load. */
+static void add_entry(dea_legend *legend, dea_load load, const char *title, const char *what, bool line, bool point)
 {
     dea_legend_entry *entry = dea_legend_add(legend);
-    snprintf(entry->label, sizeof entry->label, "%s%s", loads[load].title, what);
+    snprintf(entry->label, sizeof entry->label, "%s%s", title, what);
     snprintf(entry->colour, sizeof entry->colour, "%s", loads[load].colour);
     entry->dash = line ? loads[load].dash : 0;
     entry->symbol = point ? loads[load].symbol : 0;
@@ -123,7 +124,7 @@ dea_status dea_plot_material(const dea_material *material, double to, const char
         return status;
     }
     for (int load = 0; load < DEA_LOAD_COUNT; load++) {
-        add_entry(&legend, (dea_load)load, "", true, false);
+        add_entry(&legend, (dea_load)load, loads[load].title, "", true, false);
     }
     status = dea_plot_pair(picture.canvas, material->name, 0.0, lay_legend(&legend, picture.canvas.width), &pair, error);
     if (status == DEA_OK) {
@@ -156,7 +157,7 @@ typedef struct panel {
 } panel;
 
 /* Opens axes with their titles. */
-static void write_panel(FILE *script, const panel *at, double from, double to, const char *across)
+static void write_panel(FILE *script, const panel *at, double from, double to, const char *across, const char *up)
 {
     fputs("set xrange [", script);
     dea_gnuplot_number(script, from);
@@ -164,7 +165,7 @@ static void write_panel(FILE *script, const panel *at, double from, double to, c
     dea_gnuplot_number(script, to);
     fputs("]\n", script);
     write_setting(script, "xlabel", across);
-    write_setting(script, "ylabel", "Engineering stress P [kPa]");
+    write_setting(script, "ylabel", up);
     dea_plot_place(script, at->picture->canvas.width, at->height, at->box);
 }
 
@@ -172,7 +173,7 @@ static void write_fit(const dea_fit *fit, const dea_fit_data *data, const panel 
 {
     FILE *script = at->picture->script;
     const double from = fmin(fit->stretch_min, 1.0), to = fmax(fit->stretch_max, 1.0);
-    write_panel(script, at, from, to, "Stretch λ");
+    write_panel(script, at, from, to, "Stretch λ", "Engineering stress P [kPa]");
     for (int load = 0; load < DEA_LOAD_COUNT; load++) {
         if (fit->count[load] > 0) {
             write_stress(script, fit->law, fit->constants, (dea_load)load, from, to);
@@ -209,49 +210,107 @@ static void write_time_tics(FILE *script, double first, double last)
     fputs(")\n", script);
 }
 
-static void write_relaxation_points(FILE *script, const dea_relaxation_data *data, double first)
+/* How a test is drawn: its axes, the factor to their unit, the curves and their names. */
+typedef struct drawn_test {
+    const char *across, *up;
+    double factor;
+    size_t curves;
+    const char *titles[2];
+} drawn_test;
+
+static const drawn_test drawn_tests[DEA_TESTS] = {
+    [DEA_TEST_RELAXATION] = {"Time since the end of the ramp t [s]", "Engineering stress P [kPa]", 1e-3, 1, {"uniaxial", NULL}},
+    [DEA_TEST_DYNAMIC] = {"Frequency f [Hz]", "Modulus [kPa]", 1e-3, 2, {"storage", "loss"}},
+    [DEA_TEST_CREEP] = {"Time since the end of the ramp t [s]", "Strain over the largest one", 1.0, 1, {"creep", NULL}},
+};
+
+/* Where a time or an angular frequency stands on the axis. */
+static double test_place(const dea_relaxation *fit, double at, double first)
 {
-    const size_t step = data->count / POINTS_MAX + 1;
-    fputs("$held0 << END\n", script);
-    for (size_t i = 0; i < data->count; i += step) {
-        write_pair(script, time_place(data->points[i].time, first), 1e-3 * data->points[i].stress);
-    }
-    fputs("END\n", script);
+    return fit->kind == DEA_TEST_DYNAMIC ? log10(0.5 * at / DEA_PI) : time_place(at, first);
 }
 
-static void write_relaxation_curve(FILE *script, const dea_relaxation *fit, double first)
+/* Data blocks $held<curve> and $relaxed<curve>; @p scale: of their numbers. */
+static void write_test_data(FILE *script, const dea_relaxation *fit, const dea_relaxation_data *data, double first, double scale)
 {
-    const double to = time_place(fit->time_max, first);
-    fputs("$relaxed0 << END\n", script);
-    for (int i = 0; i <= CURVE_STEPS; i++) {
-        const double place = to * i / CURVE_STEPS;
-        write_pair(script, place, 1e-3 * dea_relaxation_stress(fit, first * (pow(10.0, place) - 1.0)));
+    const dea_relaxation_point *points = data->points;
+    const bool swings = fit->kind == DEA_TEST_DYNAMIC;
+    const size_t step = data->count / POINTS_MAX + 1;
+    const double from = swings ? test_place(fit, points[0].time, first) : 0.0;
+    const double to = test_place(fit, points[data->count - 1].time, first);
+    for (size_t curve = 0; curve < drawn_tests[fit->kind].curves; curve++) {
+        fprintf(script, "$held%zu << END\n", curve);
+        for (size_t i = 0; i < data->count; i += step) {
+            write_pair(script, test_place(fit, points[i].time, first), scale * (curve == 0 ? points[i].stress : points[i].loss));
+        }
+        fprintf(script, "END\n$relaxed%zu << END\n", curve);
+        for (int i = 0; i <= CURVE_STEPS; i++) {
+            const double place = from + (to - from) * i / CURVE_STEPS, power = pow(10.0, place);
+            const double at = swings ? 2.0 * DEA_PI * power : first * (power - 1.0);
+            write_pair(script, place, scale * (curve == 0 ? dea_relaxation_stress(fit, at) : dea_relaxation_loss(fit, at)));
+        }
+        fputs("END\n", script);
     }
-    fputs("END\n", script);
+}
+
+/* Whole decades of the frequency. */
+static void write_frequency_tics(FILE *script, double from, double to)
+{
+    const char *before = "";
+    fputs("set xtics (", script);
+    for (double power = ceil(from - 1e-9); power <= to + 1e-9; power += 1.0) {
+        char label[DEA_NUMBER_LENGTH];
+        fprintf(script, "%s\"%s\" ", before, dea_number_text(label, pow(10.0, power), 3));
+        dea_gnuplot_number(script, power);
+        before = ", ";
+    }
+    fputs(")\n", script);
+}
+
+static double largest_of(const dea_relaxation_data *data)
+{
+    double largest = 0.0;
+    for (size_t i = 0; i < data->count; i++) {
+        largest = fmax(largest, data->points[i].stress);
+    }
+    return largest;
 }
 
 static void write_relaxation(const dea_relaxation *fit, const dea_relaxation_data *data, const panel *at)
 {
     FILE *script = at->picture->script;
+    const drawn_test *drawn = &drawn_tests[fit->kind];
+    const bool swings = fit->kind == DEA_TEST_DYNAMIC, creeps = fit->kind == DEA_TEST_CREEP;
     const double first = data->points[0].time > 0.0 ? data->points[0].time : data->points[1].time;
-    write_panel(script, at, 0.0, time_place(fit->time_max, first), "Time since the end of the ramp t [s]");
+    const double from = swings ? test_place(fit, first, first) : 0.0, to = test_place(fit, data->points[data->count - 1].time, first);
+    write_panel(script, at, from, to, drawn->across, drawn->up);
     fputs("set yrange [0:*]\n", script);
-    write_time_tics(script, first, fit->time_max);
-    write_relaxation_points(script, data, first);
-    write_relaxation_curve(script, fit, first);
-    write_measured(script, "plot ", "held", 0, DEA_LOAD_UNIAXIAL);
-    write_line(script, ", ", "relaxed", 0, DEA_LOAD_UNIAXIAL);
+    if (swings) {
+        write_frequency_tics(script, from, to);
+    } else {
+        write_time_tics(script, first, fit->time_max);
+    }
+    write_test_data(script, fit, data, first, creeps ? 1.0 / largest_of(data) : drawn->factor);
+    for (size_t curve = 0; curve < drawn->curves; curve++) {
+        write_measured(script, curve == 0 ? "plot " : ", ", "held", (int)curve, (dea_load)curve);
+        write_line(script, ", ", "relaxed", (int)curve, (dea_load)curve);
+    }
     fputc('\n', script);
 }
 
-/* What curves and points are, for the loads that were measured; a test of relaxation is uniaxial. */
-static void list_fit(const dea_fit *fit, bool held, dea_legend *legend)
+/* What curves and points are, for the loads and the curves of a test that were measured; a test of relaxation is uniaxial. */
+static void list_fit(const dea_fit *fit, const dea_relaxation *test, dea_legend *legend)
 {
+    const bool relaxes = test && test->kind == DEA_TEST_RELAXATION;
     for (int load = 0; load < DEA_LOAD_COUNT; load++) {
-        if ((fit && fit->count[load] > 0) || (held && load == DEA_LOAD_UNIAXIAL)) {
-            add_entry(legend, (dea_load)load, ", measured", false, true);
-            add_entry(legend, (dea_load)load, ", fit", true, false);
+        if ((fit && fit->count[load] > 0) || (relaxes && load == DEA_LOAD_UNIAXIAL)) {
+            add_entry(legend, (dea_load)load, loads[load].title, ", measured", false, true);
+            add_entry(legend, (dea_load)load, loads[load].title, ", fit", true, false);
         }
+    }
+    for (size_t curve = 0; test && !relaxes && curve < drawn_tests[test->kind].curves; curve++) {
+        add_entry(legend, (dea_load)curve, drawn_tests[test->kind].titles[curve], ", measured", false, true);
+        add_entry(legend, (dea_load)curve, drawn_tests[test->kind].titles[curve], ", fit", true, false);
     }
 }
 

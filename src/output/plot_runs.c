@@ -148,6 +148,7 @@ static void compose_transient(sheet *page, bool logarithmic)
     if (current) {
         current->peaks = true;
     }
+    compose_small(page, offsetof(dea_sample, film_voltage), "U_f", "V", true);
     compose_small(page, offsetof(dea_sample, focal_length), "f", "m", false);
     for (size_t i = 0; logarithmic && i < page->count; i++) {
         if (i == 0 || page->panels[i].peaks) {
@@ -298,7 +299,8 @@ static void write_symbols(const sheet *page, FILE *script, size_t run, size_t nu
         if (!is_along(page, x) || !isfinite(trace->y[i])) {
             continue;
         }
-        const int place = dea_series_mark(&page->series, run % page->series.groups, share_along(page, x));
+        const double share = page->runs->abscissa > 0 ? (double)i / (double)trace->count : share_along(page, x);
+        const int place = dea_series_mark(&page->series, run % page->series.groups, share);
         if (part->peaks ? i == peak : begun && place != before) {
             write_point(script, x, value_drawn(part, trace->y[i]));
         }
@@ -491,7 +493,7 @@ static void write_frame(const sheet *page, FILE *script, const dea_legend *legen
     const dea_scene *scene = page->series.scene;
     char label[DEA_LABEL_LENGTH] = "Frequency [Hz]";
     if (!page->response) {
-        snprintf(label, sizeof label, "Time [%s]", page->time.unit);
+        snprintf(label, sizeof label, page->runs->abscissa > 0 ? "Voltage U [%s]" : "Time [%s]", page->time.unit);
     }
     dea_plot_style(script);
     dea_plot_title(script, scene->title, page->canvas.width, page->height);
@@ -502,6 +504,22 @@ static void write_frame(const sheet *page, FILE *script, const dea_legend *legen
         dea_legend_draw(legend, script, page->canvas.width, page->height);
     }
     fputs("unset multiplot\nunset output\n", script);
+}
+
+/* Loops lie along the voltages of all runs. */
+static void measure_loops(sheet *page)
+{
+    dea_span span = {INFINITY, -INFINITY, false};
+    for (size_t run = 0; run < page->runs->count; run++) {
+        const dea_plot_trace *trace = &page->runs->runs[run].traces[0];
+        for (size_t i = 0; i < trace->count; i++) {
+            dea_span_take(&span, trace->x[i]);
+        }
+    }
+    page->time = dea_scale_choose(fmax(fabs(span.low), fabs(span.high)), "V");
+    page->along = (dea_span){INFINITY, -INFINITY, false};
+    dea_span_take(&page->along, page->time.factor * span.low);
+    dea_span_take(&page->along, page->time.factor * span.high);
 }
 
 /* What lies along x: frequency, or time, from the first row after zero where it is logarithmic. */
@@ -537,7 +555,11 @@ dea_status dea_plot_draw_runs(dea_plot *plot, dea_error *error)
                   .top = dea_plot_top(scene->title),
                   .canvas = picture->canvas};
     dea_legend legend = {.count = 0};
-    measure_along(&page, picture->log_x || (!page.response && scene->transient.logarithmic));
+    if (plot->loops) {
+        measure_loops(&page);
+    } else {
+        measure_along(&page, picture->log_x || (!page.response && scene->transient.logarithmic));
+    }
     if (page.response) {
         compose_pair(&page, offsetof(dea_response, displacement), offsetof(dea_response, displacement_phase),
                      "Displacement per volt", "m", "/V");

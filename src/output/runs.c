@@ -18,20 +18,30 @@ static double value_at(const dea_runs *runs, const void *point, size_t row, size
     return value;
 }
 
+/* Number of the column at an offset, SIZE_MAX where the layout has none. */
+static size_t column_at(const dea_layout *layout, size_t offset)
+{
+    for (size_t i = 0; i < layout->column_count; i++) {
+        if (layout->columns[i].offset == offset) {
+            return i;
+        }
+    }
+    return SIZE_MAX;
+}
+
 /* Columns that a picture of the study shows: those that the layout has, the first in the largest panel. */
 static void quantities_choose(const dea_scene *scene, dea_runs *runs)
 {
     const dea_study *study = dea_study_of(scene);
     for (size_t i = 0; i < study->drawn_count; i++) {
-        for (size_t k = 0; k < runs->layout.column_count; k++) {
-            if (runs->layout.columns[k].offset == study->drawn[i]) {
-                runs->quantities[runs->quantity_count++] = k;
-            }
+        const size_t column = column_at(&runs->layout, study->drawn[i]);
+        if (column != SIZE_MAX && (column != runs->abscissa || column == 0)) {
+            runs->quantities[runs->quantity_count++] = column;
         }
     }
 }
 
-dea_status dea_runs_open(const dea_scene *scene, dea_runs *runs, dea_error *error)
+dea_status dea_runs_open(const dea_scene *scene, bool loops, dea_runs *runs, dea_error *error)
 {
     *runs = (dea_runs){.layout = dea_layout_of(scene), .count = dea_scene_point_count(scene) * scene->model_count};
     if (runs->count > DEA_CURVES_MAX) {
@@ -41,6 +51,7 @@ dea_status dea_runs_open(const dea_scene *scene, dea_runs *runs, dea_error *erro
     if (runs->layout.rows < 2) {
         return dea_fail(error, DEA_ERROR_USAGE, "nothing to draw: each run is a single point");
     }
+    runs->abscissa = loops ? column_at(&runs->layout, offsetof(dea_sample, voltage)) : 0;
     quantities_choose(scene, runs);
     const bool filled = dea_study_of(scene)->phasors || runs->layout.rows > DEA_RUNS_POINTS;
     const size_t most = filled ? DEA_RUNS_POINTS : runs->layout.rows;
@@ -61,6 +72,16 @@ static void trace_add(dea_plot_trace *trace, double x, double y)
 {
     trace->x[trace->count] = x;
     trace->y[trace->count++] = y;
+}
+
+/* Keeps a quantity over the voltage: rows as they come, thinned evenly. */
+static void loop_take(const dea_runs *runs, dea_plot_trace *trace, const void *point, size_t column)
+{
+    const size_t rows = runs->layout.rows, stride = (rows - 1) / DEA_RUNS_POINTS + 1;
+    trace->count = 0;
+    for (size_t row = 0; row < rows; row += stride) {
+        trace_add(trace, value_at(runs, point, row, runs->abscissa), value_at(runs, point, row, column));
+    }
 }
 
 /* Keeps a quantity. Angles follow their predecessor: whole turns are added where they leap by more than half a turn, which the
@@ -186,7 +207,7 @@ static void spot_add(const dea_runs *runs, dea_run *run, const void *point, size
     for (size_t mark = 0; mark < DEA_MARKS; mark++) {
         if (dea_marks[mark].state == state && run->spot_count < DEA_SPOTS) {
             run->spots[run->spot_count++] =
-                (dea_spot){value_at(runs, point, row, 0), value_at(runs, point, row, runs->quantities[0]), mark};
+                (dea_spot){value_at(runs, point, row, runs->abscissa), value_at(runs, point, row, runs->quantities[0]), mark};
         }
     }
 }
@@ -220,7 +241,11 @@ void dea_runs_take(dea_runs *runs, size_t number, const void *point)
     for (size_t i = 0; i < runs->quantity_count; i++) {
         const size_t column = runs->quantities[i];
         const bool angle = strcmp(runs->layout.columns[column].unit, "degree") == 0;
-        trace_take(runs, &run->traces[i], point, column, angle ? 360.0 : 0.0);
+        if (runs->abscissa > 0) {
+            loop_take(runs, &run->traces[i], point, column);
+        } else {
+            trace_take(runs, &run->traces[i], point, column, angle ? 360.0 : 0.0);
+        }
         response = response && angle == (i % 2 == 1);
     }
     for (size_t i = 0; response && i + 1 < runs->quantity_count; i += 2) {

@@ -7,7 +7,7 @@
 #include "deaspice/scene.h"
 #include "output/series.h"
 
-enum { DEA_RUNS_QUANTITIES = 4, DEA_RUNS_POINTS = 2000, DEA_SPOTS = 32 };
+enum { DEA_RUNS_QUANTITIES = 5, DEA_RUNS_POINTS = 2000, DEA_SPOTS = 32 };
 
 /* A curve: kept points, NAN where it is broken. */
 typedef struct dea_plot_trace {
@@ -32,13 +32,14 @@ typedef struct dea_runs {
     size_t quantities[DEA_RUNS_QUANTITIES]; /* their columns in the layout, quantity_count of them; of a response in pairs of
                                                magnitude and phase */
     size_t quantity_count;
+    size_t abscissa; /* column over which they are drawn: the first, or the voltage, over which curves are loops */
     dea_run *runs; /* count of them, owned */
     size_t count;
     double *room; /* of all traces, owned */
 } dea_runs;
 
-/* Makes room for the runs of the scene's study; free with dea_runs_close(). DEA_ERROR_USAGE (too many), DEA_ERROR_MEMORY. */
-dea_status dea_runs_open(const dea_scene *scene, dea_runs *runs, dea_error *error);
+/* Makes room for the runs of the scene's study, @p loops: of a transient over its voltage; free with dea_runs_close(). DEA_ERROR_USAGE (too many), DEA_ERROR_MEMORY. */
+dea_status dea_runs_open(const dea_scene *scene, bool loops, dea_runs *runs, dea_error *error);
 /* Keeps what is drawn of run number @p number: models slowest, last axis fastest. */
 void dea_runs_take(dea_runs *runs, size_t number, const void *point);
 /* Number of the quantity whose column lies at @p offset of a row, SIZE_MAX where the study has none. */

@@ -49,17 +49,36 @@ static bool complain_law(const dea_arguments *arguments)
     return true;
 }
 
+/* Kind of the test that is given, DEA_TESTS: none. */
+static dea_test_kind test_of(const dea_arguments *arguments)
+{
+    dea_test_kind kind = DEA_TEST_RELAXATION;
+    while (kind < DEA_TESTS && !arguments->tests[kind]) {
+        kind++;
+    }
+    return kind;
+}
+
 static bool complain_mismatch(const dea_arguments *arguments)
 {
     if (complain_law(arguments)) {
         return true;
     }
-    const bool relaxation = arguments->relaxation != NULL;
-    if (!relaxation && arguments->operand_count == 0) {
+    const dea_test_kind kind = test_of(arguments);
+    const bool test = kind < DEA_TESTS;
+    size_t given = 0;
+    for (size_t i = 0; i < DEA_TESTS; i++) {
+        given += arguments->tests[i] != NULL;
+    }
+    if (!test && arguments->operand_count == 0) {
         dea_complain("fit needs a file; see deaspice fit --help");
-    } else if (!relaxation && (!isnan(arguments->ramp) || arguments->branches > 0)) {
-        dea_complain("--%s goes with --relaxation", isnan(arguments->ramp) ? "branches" : "ramp");
-    } else if (relaxation && arguments->operand_count == 0 && arguments->terms > 0) {
+    } else if (given > 1) {
+        dea_complain("the branches of a film come from one test: one of --relaxation, --dma and --creep");
+    } else if (!test && (!isnan(arguments->ramp) || arguments->branches > 0)) {
+        dea_complain(isnan(arguments->ramp) ? "--branches goes with --relaxation, --dma or --creep" : "--ramp goes with --relaxation or --creep");
+    } else if (kind == DEA_TEST_DYNAMIC && !isnan(arguments->ramp)) {
+        dea_complain("--ramp goes with --relaxation or --creep: a dynamic test has none");
+    } else if (test && arguments->operand_count == 0 && arguments->terms > 0) {
         dea_complain("--terms goes with data of stress over stretch");
     } else {
         return false;
@@ -94,10 +113,12 @@ static dea_status fit_stretch(const dea_arguments *arguments, work *w, dea_error
 
 static dea_status fit_relaxation(const dea_arguments *arguments, work *w, dea_error *error)
 {
+    w->relaxation.kind = test_of(arguments);
+    const char *path = arguments->tests[w->relaxation.kind];
     w->relaxation.ramp = isnan(arguments->ramp) ? 0.0 : arguments->ramp;
     w->relaxation.specimen = arguments->specimen;
-    dea_status status = dea_relaxation_read(arguments->relaxation, &w->relaxation, error);
-    tell_columns(arguments, arguments->relaxation, w->relaxation.columns);
+    dea_status status = dea_relaxation_read(path, &w->relaxation, error);
+    tell_columns(arguments, path, w->relaxation.columns);
     if (status == DEA_OK) {
         status = dea_fit_relaxation(&w->relaxation, arguments->branches, arguments->relative, &w->prony, error);
         w->prony_given = &w->prony;
@@ -141,11 +162,13 @@ static void warn(const work *w)
         dea_complain("warning: a tangent modulus of the fit is not positive from stretch %.4g on", w->law.unstable_stretch);
     }
     if (w->prony_given && w->prony.prony_count == 0) {
-        dea_complain("warning: the stress does not relax measurably; no branch");
+        dea_complain("warning: the film does not relax measurably; no branch");
     }
-    if (w->prony_given && w->prony.prony_count > 0 &&
-        w->prony.prony[w->prony.prony_count - 1].tau > w->prony.time_max - w->prony.time_min) {
+    if (w->prony_given && dea_relaxation_slow(&w->prony)) {
         dea_complain("warning: the slowest branch is slower than the test; the long-term share is extrapolated");
+    }
+    if (w->prony_given && dea_relaxation_fast(&w->prony)) {
+        dea_complain("warning: the fastest branch is faster than the highest frequency; the instantaneous modulus is extrapolated");
     }
 }
 
@@ -164,15 +187,18 @@ static void tell_relaxation(const dea_relaxation *fit)
         fprintf(stderr, "%8zu %12.6g %10.6f\n", i + 1, fit->prony[i].tau, fit->prony[i].g);
     }
     fprintf(stderr, "%8s %12s %10.6f\n", "rest", "long-term", fit->long_term);
-    fprintf(stderr, "%zu branch%s from %zu points, %.4g s to %.4g s: rms error %.3g %%; up to %zu tried, no further one: %s\n",
-            fit->prony_count, fit->prony_count == 1 ? "" : "es", fit->count, fit->time_min, fit->time_max,
-            100.0 * fit->residual_relative, fit->trial_count - 1, dea_relaxation_reason(fit));
+    const bool swings = fit->kind == DEA_TEST_DYNAMIC;
+    fprintf(stderr, "%zu branch%s from %zu points of a %s, %.4g %s to %.4g %s: rms error %.3g %%; up to %zu tried, no further one: %s\n",
+            fit->prony_count, fit->prony_count == 1 ? "" : "es", fit->count, dea_test_name(fit->kind),
+            swings ? 0.5 / DEA_PI / fit->time_max : fit->time_min, swings ? "Hz" : "s",
+            swings ? 0.5 / DEA_PI / fit->time_min : fit->time_max, swings ? "Hz" : "s", 100.0 * fit->residual_relative,
+            fit->trial_count - 1, dea_relaxation_reason(fit));
 }
 
 static dea_status work_out(const dea_arguments *arguments, work *w, dea_error *error)
 {
     dea_status status = arguments->operand_count > 0 ? fit_stretch(arguments, w, error) : DEA_OK;
-    if (status == DEA_OK && arguments->relaxation) {
+    if (status == DEA_OK && test_of(arguments) < DEA_TESTS) {
         status = fit_relaxation(arguments, w, error);
     }
     if (status == DEA_OK && (arguments->output || !arguments->plot)) {
@@ -221,8 +247,8 @@ const dea_command dea_command_fit = {
     .summary = "material constants from measured data",
     .help = "Usage: deaspice fit [OPTION]... [DATA]...\n"
             "\n"
-            "Fits a law to measured stress over stretch, Prony branches to measured\n"
-            "stress over time at a held stretch, or both, and prints them as a material for a\n"
+            "Fits a law to measured stress over stretch, Prony branches to a test of relaxation,\n"
+            "of creep, or of dynamic moduli, or both, and prints them as a material for a\n"
             "scene. DATA is a table (comma, semicolon, tab or blanks between the fields, decimal\n"
             "point or comma) whose header names columns with their units, others are left alone:\n"
             "stretch, strain or displacement; nominal stress or force; mode (uniaxial or\n"
@@ -240,6 +266,11 @@ const dea_command dea_command_fit = {
             "      --area AREA         its cross-section at rest, for a force, e.g. \"22 mm^2\"\n"
             "      --relaxation FILE   data of a relaxation test: time (since the end of the ramp, or\n"
             "                          with a displacement that shows the ramp) and stress or force\n"
+            "      --dma FILE          data of a dynamic test: frequency (Hz) or angular frequency\n"
+            "                          (rad/s), storage modulus, and loss modulus or tan delta\n"
+            "      --creep FILE        data of a creep test: time (since the end of the ramp) and\n"
+            "                          strain, stretch, displacement or compliance, small enough\n"
+            "                          to go with the stress; turned into branches of the modulus\n"
             "      --ramp TIME         duration of the ramp before the hold, e.g. \"2 s\"; default:\n"
             "                          what the displacement shows, else an ideal step\n"
             "      --branches N        Prony branches, 1 to 10; default: as many as an F test\n"

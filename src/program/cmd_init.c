@@ -29,7 +29,8 @@ typedef struct start {
     "material:\n"                                                                                                                \
     "  base: elastosil-2030       # deaspice materials lists what is built in; or a file, for example of deaspice fit\n"         \
     "  retardation: 1 ms          # damping of the film (Kelvin-Voigt)\n"                                                        \
-    "  # prony: [{g: 0.2, tau: 0.5 s}]   # relaxation: shares of the modulus and times\n"
+    "  # prony: [{g: 0.2, tau: 0.5 s}]   # relaxation: shares of the modulus and times\n"                                        \
+    "  # shift: {wlf: {C1: 17.4, C2: 51.6 K, reference: 20 degC}}   # of the times, at  temperature: 40 degC  beside material\n"
 
 static const start starts[] = {
     {"dot", "one operating point of a dot actuator",

@@ -66,6 +66,19 @@ static void print_law(const dea_material *material)
     }
 }
 
+/* What is known of other temperatures. */
+static void print_thermal(const dea_material *material)
+{
+    const dea_shift *shift = &material->shift;
+    if (shift->c1 > 0)
+        printf("%-22s WLF, C1 = %.9g, C2 = %.9g K, reference = %.9g K\n", "shift of the times", shift->c1, shift->c2, shift->reference);
+    for (size_t i = 0; i < shift->count; i++) {
+        printf("%-22s %.9g at %.9g K\n", "shift of the times", shift->table[i][1], shift->table[i][0]);
+    }
+    if (!isnan(material->modulus_slope))
+        printf("%-22s %.9g/K, reference = %.9g K\n", "slope of the moduli", material->modulus_slope, material->modulus_reference);
+}
+
 static void print_constants(const dea_material *material)
 {
     printf("%-22s %s\n", "name", material->name);
@@ -75,7 +88,8 @@ static void print_constants(const dea_material *material)
     if (material->stretches[1] > 0)
         printf("%-22s %.9g to %.9g\n", "data of stretches", material->stretches[0], material->stretches[1]);
     if (fabs(material->permittivity_per_stretch) > 0)
-        printf("%-22s %.9g %+.9g stretch\n", "permittivity", material->permittivity, material->permittivity_per_stretch);
+        printf("%-22s %.9g %+.9g %s\n", "permittivity", material->permittivity, material->permittivity_per_stretch,
+               material->permittivity_follows ? "stretch, that of the strained film" : "stretch");
     else
         print_number("permittivity", material->permittivity, "");
     print_optional("density", material->density, " kg/m^3");
@@ -84,6 +98,7 @@ static void print_constants(const dea_material *material)
     print_optional("breakdown", material->breakdown, " V/m");
     if (material->prony_count > 0)
         print_relaxation(material);
+    print_thermal(material);
 }
 
 /* What follows from the long-term constants at usual pre-stretches. */

@@ -102,6 +102,7 @@ const dea_command dea_command_merge = {
             "      --plot FILE       draw the result, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)\n"
             "      --size WxH        of the picture, for example 8.5x6cm (mm, cm, in, pt)\n"
             "      --log x|y|xy      draw these axes logarithmic\n"
+            "      --loops           draw a transient over its voltage: hysteresis loops\n"
             "      --engine E        as in the runs\n"
             "      --model M         as in the runs\n"
             "      --set KEY=VALUE   as in the runs\n"

@@ -62,7 +62,7 @@ const char *dea_omission_text(const dea_omission *omission, const dea_scene *sce
     dea_bound_text(omission->bound, bound);
     if (omission->part == DEA_PART_BRANCH) {
         snprintf(text, DEA_OMISSION_LENGTH, "branch %zu (tau %s%s, <= %s)", omission->branch + 1,
-                 dea_quantity_text(scene->material.prony[omission->branch].tau, "s", time), forms[omission->form], bound);
+                 dea_quantity_text(dea_material_branch(&scene->material, omission->branch).tau, "s", time), forms[omission->form], bound);
     } else if (omission->part == DEA_PART_RING) {
         snprintf(text, DEA_OMISSION_LENGTH, "mass from %.40s behind each corner of the voltage on (<= %s)",
                  dea_quantity_text(omission->from, "s", time), bound);

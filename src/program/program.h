@@ -55,7 +55,7 @@ typedef struct dea_arguments {
     const char *output;
     const char *format;
     const char *plot;
-    dea_plot_options picture; /**< --size, --log; zeroed: not given */
+    dea_plot_options picture; /**< --size, --log, --loops; zeroed: not given */
     size_t jobs; /**< 0: not given; "auto" is already the number of cores */
     bool quiet;
     bool full, no_truth;
@@ -65,7 +65,7 @@ typedef struct dea_arguments {
     const char *law;  /**< of a fit, or "auto"; NULL: yeoh */
     size_t terms;     /**< 0: not given */
     bool relative;
-    const char *relaxation; /**< NULL: not given */
+    const char *tests[DEA_TESTS]; /**< --relaxation, --dma, --creep; NULL: not given */
     double ramp;            /**< [s], NAN: not given */
     dea_specimen specimen;  /* of the fit's tables, 0: not given */
     size_t branches;        /**< 0: not given */

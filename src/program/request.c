@@ -18,7 +18,10 @@ bool dea_engine_named(const dea_scene *scene, const dea_engine *engine)
 bool dea_inputs_note(const dea_arguments *arguments, dea_files *files)
 {
     dea_error error = {0};
-    dea_status status = arguments->relaxation ? dea_files_note_path(files, arguments->relaxation, &error) : DEA_OK;
+    dea_status status = DEA_OK;
+    for (size_t i = 0; i < DEA_TESTS && status == DEA_OK; i++) {
+        status = arguments->tests[i] ? dea_files_note_path(files, arguments->tests[i], &error) : DEA_OK;
+    }
     for (size_t i = 0; i < arguments->operand_count && status == DEA_OK; i++) {
         status = dea_files_note_path(files, arguments->operands[i].path, &error);
     }

@@ -239,14 +239,81 @@ static dea_status permittivity_check(dea_reader *reader)
     const dea_scene *scene = reader->scene;
     const size_t constant = offsetof(dea_scene, material.permittivity);
     const size_t slope = offsetof(dea_scene, material.permittivity_per_stretch);
+    const bool follows = scene->material.permittivity_follows;
     const double value = dea_material_permittivity(&scene->material, scene->actuator.prestretch);
+    const double pull = dea_material_permittivity(&scene->material, (follows ? 1.25 : 1.0) * scene->actuator.prestretch);
     if (swept(reader, constant) || swept(reader, slope) || swept(reader, offsetof(dea_scene, actuator.prestretch)) ||
-        value > 0.0) {
+        (value > 0.0 && pull > 0.0)) {
         return DEA_OK;
+    }
+    if (value > 0.0) {
+        return dea_place_fail(dea_reader_place(reader, slope, "material"), reader->error, "material.permittivity.per_stretch",
+                              "%g: a film whose permittivity follows that shrinks under voltage at the pre-stretch %g; accepted: "
+                              "constant + 1.25 per_stretch prestretch > 0",
+                              scene->material.permittivity_per_stretch, scene->actuator.prestretch);
     }
     return dea_place_fail(dea_reader_place(reader, slope, "material"), reader->error, "material.permittivity",
                           "falls to %g at the pre-stretch %g; accepted: a permittivity > 0 there", value,
                           scene->actuator.prestretch);
+}
+
+/* Each law of the temperature has all its numbers. */
+static dea_status thermal_check(dea_reader *reader)
+{
+    const dea_material *material = &reader->scene->material;
+    const dea_shift *shift = &material->shift;
+    const struct {
+        const char *path;
+        double value;
+        bool needed;
+    } numbers[] = {
+        {"material.shift.wlf.C1", shift->c1, !isnan(shift->c2) || !isnan(shift->reference)},
+        {"material.shift.wlf.C2", shift->c2, !isnan(shift->c1)},
+        {"material.shift.wlf.reference", shift->reference, !isnan(shift->c1)},
+        {"material.modulus_slope.per_kelvin", material->modulus_slope, !isnan(material->modulus_reference)},
+        {"material.modulus_slope.reference", material->modulus_reference, !isnan(material->modulus_slope)},
+    };
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        if (numbers[i].needed && isnan(numbers[i].value)) {
+            return dea_reader_missing(reader, "material", numbers[i].path);
+        }
+    }
+    return DEA_OK;
+}
+
+/* A temperature is one that the material says something about. */
+static dea_status temperature_check(dea_reader *reader)
+{
+    const dea_material *material = &reader->scene->material;
+    const dea_shift *shift = &material->shift;
+    const size_t offset = offsetof(dea_scene, material.temperature);
+    const dea_given *given = dea_reader_given(reader, offset);
+    const dea_place *place = dea_reader_place(reader, offset, "");
+    if (!given->node) {
+        return DEA_OK;
+    }
+    if (isnan(shift->c1) && shift->count == 0 && isnan(material->modulus_slope)) {
+        return dea_place_fail(place, reader->error, "temperature", "changes nothing: the material has no shift and no modulus_slope; accepted: "
+                              "one of them, e.g. modulus_slope: {per_kelvin: 0.2 %%/K, reference: 20 degC}");
+    }
+    if (given->swept || swept(reader, offsetof(dea_scene, material.shift.c2)) || swept(reader, offsetof(dea_scene, material.shift.reference)) ||
+        swept(reader, offsetof(dea_scene, material.modulus_slope)) || swept(reader, offsetof(dea_scene, material.modulus_reference))) {
+        return DEA_OK;
+    }
+    const double factor = dea_material_shift(material);
+    if (isnan(factor) && shift->count > 0) {
+        return dea_place_fail(place, reader->error, "temperature", "out of the table of shift factors (%g K); accepted: %g to %g K",
+                              material->temperature, shift->table[0][0], shift->table[shift->count - 1][0]);
+    }
+    if (!(factor > 0.0 && isfinite(factor))) {
+        return dea_place_fail(place, reader->error, "temperature", "at or below the pole of the WLF law, or so near that no factor is left (%g K); "
+                              "accepted: above reference - C2, %g K", material->temperature, shift->reference - shift->c2);
+    }
+    if (!(dea_material_stiffening(material) > 0.0)) {
+        return dea_place_fail(place, reader->error, "temperature", "leaves the film no modulus (%g K, %g of it); accepted: 1 + per_kelvin (T - reference) > 0",
+                              material->temperature, dea_material_stiffening(material));
+    }
+    return DEA_OK;
 }
 
 dea_status dea_material_finish(dea_reader *reader)
@@ -257,7 +324,7 @@ dea_status dea_material_finish(dea_reader *reader)
         sum += swept(reader, offsetof(dea_scene, material.prony) + i * sizeof(dea_prony)) ? 0.0 : material->prony[i].g;
     }
     if (sum < 1.0) {
-        return DEA_OK;
+        return thermal_check(reader);
     }
     const size_t first = offsetof(dea_scene, material.prony);
     return dea_place_fail(dea_reader_place(reader, first, "material"), reader->error, "material.prony",
@@ -318,6 +385,7 @@ dea_status dea_reader_finish(dea_reader *reader)
     status = status ? status : thickness_check(reader);
     status = status ? status : permittivity_check(reader);
     status = status ? status : dea_material_finish(reader);
+    status = status ? status : temperature_check(reader);
     status = status ? status : optics_check(reader);
     status = status ? status : dea_models_finish(reader);
     status = status ? status : dea_antagonist_finish(reader);

@@ -254,7 +254,9 @@ static dea_status base_read(dea_reader *reader, const dea_ref *ref, const dea_no
     }
     const dea_material *builtin = dea_material_find(node->text);
     if (builtin) {
+        const double temperature = reader->scene->material.temperature; /* the scene's, not the film's */
         reader->scene->material = *builtin;
+        reader->scene->material.temperature = temperature;
         return DEA_OK;
     }
     if (!strpbrk(node->text, "./")) {
@@ -308,8 +310,67 @@ dea_status dea_read_permittivity(dea_reader *reader, const dea_ref *ref, const d
     const dea_status status = dea_read_scalar(reader, ref, node);
     if (!status) {
         reader->scene->material.permittivity_per_stretch = 0.0;
+        reader->scene->material.permittivity_follows = false;
     }
     return status;
+}
+
+dea_status dea_read_follows(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    static const char *const words[] = {"prestretch", "strain", NULL};
+    size_t index = 0;
+    const dea_status status = dea_reader_word(reader, ref, node, words, &index);
+    reader->scene->material.permittivity_follows = !status && index == 1;
+    return status;
+}
+
+/* One number of a row of the table of shift factors. */
+static dea_status shift_number(dea_reader *reader, const dea_node *node, bool factor, double *value)
+{
+    const dea_key key = {.path = "material.shift",
+                         .unit = factor ? "1" : "K",
+                         .high = factor ? INFINITY : 1e4,
+                         .open = true,
+                         .kinds = DEA_KEY_BOTH,
+                         .accepted = factor ? "a factor > 0, e.g. [[20 degC, 1], [40 degC, 0.1]]"
+                                            : "temperatures that rise, above 0 and below 10,000 K, e.g. [[20 degC, 1], [40 degC, 0.1]]"};
+    const dea_ref ref = {.key = key, .path = "material.shift"};
+    const dea_status status = dea_reader_number(reader, &ref, node, value);
+    return status || factor || value == reader->scene->material.shift.table[0] || value[0] > value[-2]
+               ? status
+               : dea_reader_refuse(reader, &ref, node, "not above the one before");
+}
+
+static dea_status shift_table(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    dea_shift *shift = &reader->scene->material.shift;
+    if (node->kind != DEA_NODE_SEQUENCE || node->count < 2 || node->count > DEA_SHIFT_MOST) {
+        const bool list = node->kind == DEA_NODE_SEQUENCE;
+        return dea_reader_refuse(reader, ref, node, !list ? "not a table" : node->count < 2 ? "less than two rows" : "more than 64 rows");
+    }
+    for (const dea_node *row = node->first; row; row = row->next, shift->count++) {
+        if (row->kind != DEA_NODE_SEQUENCE || row->count != 2) {
+            return dea_reader_refuse(reader, ref, row, "not a pair of a temperature and a factor");
+        }
+        dea_status status = shift_number(reader, row->first, false, &shift->table[shift->count][0]);
+        status = status ? status : shift_number(reader, row->last, true, &shift->table[shift->count][1]);
+        if (status) {
+            return status;
+        }
+    }
+    return DEA_OK;
+}
+
+/* A table takes the place of the law of the base, and a law that of its table. */
+dea_status dea_read_shift(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    dea_shift *shift = &reader->scene->material.shift;
+    shift->count = 0;
+    if (node->kind == DEA_NODE_MAPPING) {
+        return dea_reader_children(reader, ref->path, node);
+    }
+    shift->c1 = shift->c2 = shift->reference = NAN;
+    return shift_table(reader, ref, node);
 }
 
 static dea_status branch_read(dea_reader *reader, size_t index, const dea_node *node)

@@ -95,6 +95,8 @@ dea_status dea_read_electrode(dea_reader *reader, const dea_ref *ref, const dea_
 dea_status dea_read_source(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_stretches(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_permittivity(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_shift(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_status dea_read_follows(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_prony(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_moduli(dea_reader *reader, const dea_ref *ref, const dea_node *node);
 dea_status dea_read_waveform(dea_reader *reader, const dea_ref *ref, const dea_node *node);

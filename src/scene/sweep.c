@@ -251,7 +251,7 @@ static void axis_describe(const axis_reader *self)
     dea_ref_column(&self->ref, self->ref.key.words, axis->column);
     axis->offset = dea_ref_offset(&self->ref);
     axis->changes_film = strncmp(axis->key, "material.", 9) == 0 || axis->offset == offsetof(dea_scene, actuator.prestretch) ||
-                         axis->offset == offsetof(dea_scene, actuator.layers);
+                         axis->offset == offsetof(dea_scene, actuator.layers) || axis->offset == offsetof(dea_scene, material.temperature);
 }
 
 static dea_status axis_read(const axis_reader *self)

@@ -381,7 +381,7 @@ static const dea_column figures[] = {
 };
 
 static const size_t drawn[] = {offsetof(dea_sample, strain), offsetof(dea_sample, voltage), offsetof(dea_sample, current),
-                               offsetof(dea_sample, focal_length)};
+                               offsetof(dea_sample, film_voltage), offsetof(dea_sample, focal_length)};
 
 /* ---- running */
 

@@ -98,6 +98,7 @@ static ut_system *small_build(void)
         {"C", "A.s", true},     {"V", "W.A-1", true},    {"ohm", "V.A-1", true},
         {"F", "C.V-1", true},   {"Hz", "s-1", true},     {"min", "60 s", false},
         {"h", "3600 s", false}, {"rad", NULL, false},    {"deg", "0.017453292519943295 rad", false},
+        {"K", NULL, false},     {"kelvin", "K", false},  {"percent", "0.01", false},
     };
     ut_system *system = ut_new_system();
     for (size_t i = 0; system && i < sizeof symbols / sizeof *symbols; i++) {
@@ -137,7 +138,7 @@ static const spelling *spelling_find(const char *text)
 {
     static const spelling signs[] = {
         {"\xC2\xB5", "u"},  {"\xCE\xBC", "u"}, {"\xCE\xA9", "ohm"}, {"\xE2\x84\xA6", "ohm"}, {"\xC2\xB2", "^2"},
-        {"\xC2\xB3", "^3"}, {"\xC2\xB7", "."}, {"Ohm", "ohm"},      {"\xC2\xB0", "deg"},
+        {"\xC2\xB3", "^3"}, {"\xC2\xB7", "."}, {"Ohm", "ohm"},      {"\xC2\xB0", "deg"}, {"%", "percent"},
     };
     for (size_t i = 0; i < sizeof signs / sizeof *signs; i++) {
         if (strncmp(text, signs[i].written, strlen(signs[i].written)) == 0) {
@@ -147,11 +148,13 @@ static const spelling *spelling_find(const char *text)
     return NULL;
 }
 
-/* Spells a unit in ASCII; false where it does not fit. */
+/* Spells a unit in ASCII, 1/MPa as MPa-1; false where it does not fit. */
 static bool unit_spell(const char *text, char out[UNIT_LENGTH])
 {
+    static const char over[] = "1/";
+    const size_t begin = strncmp(text, over, strlen(over)) == 0 && !strpbrk(text + strlen(over), "*./^ ") ? strlen(over) : 0;
     size_t used = 0;
-    for (size_t at = 0; text[at];) {
+    for (size_t at = begin; text[at];) {
         const spelling *sign = spelling_find(text + at);
         const size_t length = sign ? strlen(sign->meant) : 1;
         if (used + length >= UNIT_LENGTH) {
@@ -160,6 +163,9 @@ static bool unit_spell(const char *text, char out[UNIT_LENGTH])
         memcpy(out + used, sign ? sign->meant : text + at, length);
         used += length;
         at += sign ? strlen(sign->written) : 1;
+    }
+    if (begin > 0 && used + 2 < UNIT_LENGTH) {
+        used += (size_t)snprintf(out + used, UNIT_LENGTH - used, "-1");
     }
     out[used] = '\0';
     return true;
@@ -372,6 +378,13 @@ static bool is_comment(const char *written)
     return written[0] == '#' || strncmp(written, "//", 2) == 0;
 }
 
+static const double ice_point = 27315.0; /* 0 degC, in hundredths of a kelvin: 20 degC becomes the very number of 293.15 K */
+
+static bool is_celsius(const char *written)
+{
+    return strcmp(written, "degC") == 0 || strcmp(written, "\xC2\xB0\x43") == 0;
+}
+
 static bool unit_apply(dea_units *units, const char *written, const char *unit, double *value, char reason[DEA_REASON_LENGTH])
 {
     const bool plain = strcmp(unit, "1") == 0;
@@ -387,6 +400,9 @@ static bool unit_apply(dea_units *units, const char *written, const char *unit, 
     } else if (!plain && !written[0]) {
         snprintf(reason, DEA_REASON_LENGTH, "needs a unit");
         return false;
+    } else if (strcmp(unit, DEA_UNIT_TEMPERATURE) == 0 && is_celsius(written)) {
+        *value = (100.0 * *value + ice_point) / 100.0;
+        return true;
     } else if (!plain && !factor_find(units, written, unit, &factor, reason)) {
         return false;
     }

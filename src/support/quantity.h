@@ -14,6 +14,9 @@ dea_units *dea_units_open(void);
 /* NULL is fine. */
 void dea_units_close(dea_units *units);
 
+/* The unit of temperatures, which may be given in degC too; that of their differences is "kelvin". */
+#define DEA_UNIT_TEMPERATURE "K"
+
 /* Reads "30 mm" as a number of @p unit ("1": a bare number or a percentage). On false, @p reason says why not. */
 bool dea_quantity_read(dea_units *units, const char *text, const char *unit, double *value, char reason[DEA_REASON_LENGTH]);
 /* Factor from the bare @p unit, as a table's header has it ("kV", "%"), to @p target; false where it is no such unit. */

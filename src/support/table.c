@@ -290,13 +290,16 @@ static bool form_find(dea_table *t, line *first)
     return false;
 }
 
-/* Letters and digits of a name in small letters, one blank for all that stands between. */
+/* Letters and digits of a name in small letters, one blank for all that stands between; an apostrophe is a prime (E'). */
 static void plain_name(const char *text, size_t length, char out[DEA_TABLE_FIELD])
 {
+    static const char prime[] = "prime";
     size_t used = 0;
     for (size_t i = 0; i < length && used + 2 < DEA_TABLE_FIELD; i++) {
         const unsigned char letter = (unsigned char)text[i];
-        if (isalnum(letter) || letter >= 0x80) {
+        if (letter == '\'' && used + strlen(prime) + 2 < DEA_TABLE_FIELD) {
+            used += (size_t)snprintf(out + used, DEA_TABLE_FIELD - used, "%s", prime);
+        } else if (isalnum(letter) || letter >= 0x80) {
             out[used++] = (char)tolower(letter);
         } else if (used > 0 && out[used - 1] != ' ') {
             out[used++] = ' ';
@@ -359,6 +362,10 @@ static heading heading_read(const dea_table *t, const char *text)
     if (!mark && h.wanted == t->wanted_count) {
         const char *joint = strrchr(text, '_'), *blank = strrchr(text, ' ');
         mark = joint > blank || !blank ? joint : blank;
+    }
+    if (mark && *mark == '/' && wanted_find(t, text, (size_t)(mark - text)) == t->wanted_count) { /* omega_rad/s */
+        const char *joint = strchr(text, '_');
+        mark = joint && joint < mark ? joint : mark;
     }
     if (mark) {
         h.wanted = wanted_find(t, text, (size_t)(mark - text));
@@ -507,6 +514,25 @@ static dea_status take_by_unit(dea_table *t, const heading *headings, const dea_
     return DEA_OK;
 }
 
+/* Where a unit does not fit a column, but another that may have the same name, it is that one: a frequency in rad/s. */
+static void turn_to_unit(const dea_table *t, heading *h)
+{
+    double factor;
+    if (!h->unit[0] || converts(t, h->wanted, h->unit, &factor)) {
+        return;
+    }
+    const char *name = t->wanted[h->wanted].name;
+    for (size_t i = 0; i < t->wanted_count; i++) {
+        const char *const *alias = t->wanted[i].aliases;
+        for (; alias && *alias; alias++) {
+            if (i != h->wanted && strcmp(*alias, name) == 0 && converts(t, i, h->unit, &factor)) {
+                h->wanted = i;
+                return;
+            }
+        }
+    }
+}
+
 static dea_status take_columns(dea_table *t, const dea_field *names, const dea_field *units)
 {
     heading headings[DEA_TABLE_FIELDS];
@@ -515,7 +541,11 @@ static dea_status take_columns(dea_table *t, const dea_field *names, const dea_f
         if (!headings[i].unit[0] && units) {
             unit_take(&headings[i], units[i].text, strlen(units[i].text));
         }
-        const dea_status status = headings[i].wanted < t->wanted_count ? note_column(t, i, &headings[i], &names[i]) : DEA_OK;
+        const bool named = headings[i].wanted < t->wanted_count;
+        if (named) {
+            turn_to_unit(t, &headings[i]);
+        }
+        const dea_status status = named ? note_column(t, i, &headings[i], &names[i]) : DEA_OK;
         if (status != DEA_OK) {
             return status;
         }

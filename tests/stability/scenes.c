@@ -43,14 +43,16 @@ static double density_factor(const stability_units *u)
 static double factor_of(const stability_units *u, const char *unit)
 {
     const double displacement = u->length / voltage_factor(u);
-    const double charge = capacitance_factor(u) * voltage_factor(u);
+    const double charge = capacitance_factor(u) * voltage_factor(u), force = u->stress * u->thickness * u->length;
     const struct {
         const char *unit;
         double factor;
     } list[] = {{"1", 1.0},
                 {"degree", 1.0},
                 {"m", u->length},
-                {"N", u->stress * u->thickness * u->length},
+                {"N", force},
+                {"J", force * u->length},
+                {"Pa", u->stress},
                 {"V/m", field_factor(u)},
                 {"V", voltage_factor(u)},
                 {"s", u->time},

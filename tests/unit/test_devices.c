@@ -1,4 +1,4 @@
-/* Films as they are built: stacks of layers, skins of electrodes. Judges are one film alone, figures from elsewhere, the energy in
+/* Films as they are built: stacks of layers, skins of electrodes, a permittivity that follows the strain. Judges are one film alone, figures from elsewhere, the energy in
  * long double, and other engines. */
 #include "scenes.h"
 
@@ -180,17 +180,19 @@ typedef struct energy_film {
     long double skin;    /* t mu [N/m] */
     long double voltage; /* [V] */
     long double load;    /* stiffness of a spring at the edge [N/m] */
+    bool follows;        /* eps_r = 2.76 - 0.28 sqrt(lambda_1 lambda_2), else 2.8 */
 } energy_film;
 
 /* W and the skin's W_e over their volumes less U^2 C/2 [J]. */
 static long double energy_at(const energy_film *f, long double u)
 {
-    const long double pi = acosl(-1.0L), pre = 1.2L, r = 0.03L, a = 0.015L, h = 1e-4L, epsilon = 2.8L * 8.8541878128e-12L;
+    const long double pi = acosl(-1.0L), pre = 1.2L, r = 0.03L, a = 0.015L, h = 1e-4L, vacuum = 8.8541878128e-12L;
     const long double disc = 1.0L + u / a, radial = 1.0L - u / (r - a), hoop = 1.0L + u / (r + a);
     const long double inside = pi * a * a, outside = pi * (r * r - a * a); /* of pre-stretched film */
     const long double elastic = (inside * yeoh(pre * disc, pre * disc) + outside * yeoh(pre * radial, pre * hoop)) * h / (pre * pre);
     const long double skin = 0.5L * f->skin * (f->dot ? inside * invariant(disc, disc) : outside * invariant(radial, hoop));
     const long double area = f->dot ? disc * disc : radial * hoop;
+    const long double epsilon = vacuum * (f->follows ? 2.76L - 0.28L * pre * sqrtl(area) : 2.8L);
     const long double capacitance = epsilon * pre * pre / h * (f->dot ? inside : outside) * area * area;
     return elastic + skin + 0.5L * f->load * u * u - 0.5L * capacitance * f->voltage * f->voltage;
 }
@@ -216,7 +218,7 @@ static void a_skinned_film_of_rings_rests_where_its_energy_is_least(void **state
 {
     (void)state;
     for (size_t e = 0; e < ENGINES; e++) {
-        const energy_film dot = {true, 25e-6L * 20e3L, 4500.0L, 0.0L}, lens = {false, 25e-6L * 20e3L, 4500.0L, 0.0L};
+        const energy_film dot = {true, 25e-6L * 20e3L, 4500.0L, 0.0L, false}, lens = {false, 25e-6L * 20e3L, 4500.0L, 0.0L, false};
         assert_relative(row_of(FILM("dot", "") PAPER SKIN STILL, "ring", engines[e]).displacement, rest_of(&dot, 0.0L, 2e-3L), 1e-9);
         assert_relative(row_of(FILM("lens", "") PAPER SKIN STILL, "ring", engines[e]).displacement, rest_of(&lens, -2e-3L, 0.0L), 1e-9);
     }
@@ -370,7 +372,7 @@ static void a_film_against_a_spring_rests_where_its_energy_is_least(void **state
 {
     (void)state;
     for (size_t e = 0; e < ENGINES; e++) {
-        const energy_film dot = {true, 0.0L, 4500.0L, 500.0L}, lens = {false, 0.0L, 4500.0L, 500.0L};
+        const energy_film dot = {true, 0.0L, 4500.0L, 500.0L, false}, lens = {false, 0.0L, 4500.0L, 500.0L, false};
         const double out = row_of(FILM("dot", "") PAPER "load: {stiffness: 500 N/m}\n" STILL, "ring", engines[e]).displacement;
         const double in = row_of(FILM("lens", "") PAPER "load: {stiffness: 500 N/m}\n" STILL, "ring", engines[e]).displacement;
         assert_relative(out, rest_of(&dot, 0.0L, 2e-3L), 1e-9);
@@ -463,6 +465,213 @@ static void a_heavy_load_makes_the_membrane_a_spring(void **state)
     dea_scene_free(&scene);
 }
 
+#define PERMITTIVITY(follows) "{constant: 2.76, per_stretch: -0.28, follows: " follows "}"
+#define FOLLOWED "material: {base: elastosil-2030, yeoh: {C1: 178426 Pa, C2: -6023 Pa, C3: 4234 Pa}, permittivity: " PERMITTIVITY("strain") "}\n"
+#define HELD "material: {base: elastosil-2030, yeoh: {C1: 178426 Pa, C2: -6023 Pa, C3: 4234 Pa}, permittivity: " PERMITTIVITY("prestretch") "}\n"
+
+static void a_permittivity_that_follows_costs_the_printed_strain(void **state)
+{
+    (void)state;
+    for (size_t e = 0; e < ENGINES; e++) {
+        const dea_row followed = row_of(FILM("dot", "") FOLLOWED STILL "accuracy: 1e-8\n", "field", engines[e]);
+        assert_printed(followed.strain, 0.0364111198, 10);
+        assert_printed(1e6 * followed.charge, 1.128546676, 9);
+        assert_printed(row_of(FILM("dot", "") HELD STILL "accuracy: 1e-8\n", "field", engines[e]).strain, 0.0381750588, 10);
+    }
+}
+
+static void a_film_of_rings_rests_where_its_electrical_energy_lets_it(void **state)
+{
+    (void)state;
+    for (size_t e = 0; e < ENGINES; e++) {
+        const energy_film dot = {true, 0.0L, 4500.0L, 0.0L, true}, lens = {false, 0.0L, 4500.0L, 0.0L, true};
+        assert_relative(row_of(FILM("dot", "") FOLLOWED STILL, "ring", engines[e]).displacement, rest_of(&dot, 0.0L, 2e-3L), 1e-9);
+        assert_relative(row_of(FILM("lens", "") FOLLOWED STILL, "ring", engines[e]).displacement, rest_of(&lens, -2e-3L, 0.0L), 1e-9);
+    }
+}
+
+/* F = U^2/2 dC/du, from the capacitances of equilibria on both sides; of the membrane no one displacement has that, and `lame` has a part of it
+ * in its softening. */
+static void electrostriction_is_the_slope_of_the_capacitance(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lumped", "coverage", "ring", "constant_force"};
+    for (size_t m = 0; m < sizeof models / sizeof *models; m++) {
+        for (int lens = 0; lens <= (int)dea_model_find(models[m])->lens; lens++) {
+            dea_scene scene;
+            dea_row rows[3];
+            read_scene(lens ? FILM("lens", "") FOLLOWED STILL : FILM("dot", "") FOLLOWED STILL, models[m], &scene);
+            scene.accuracy = 1e-10;
+            for (int i = 0; i < 3; i++) {
+                scene.drive.voltage = 3999.0 + i;
+                rows[i] = solve_direct(&scene, models[m]);
+            }
+            const double slope = (rows[2].capacitance - rows[0].capacitance) / (rows[2].displacement - rows[0].displacement);
+            assert_relative(rows[1].force, 0.5 * 4000.0 * 4000.0 * slope, 1e-6);
+            dea_scene_free(&scene);
+        }
+    }
+}
+
+static void engines_agree_on_permittivities_that_follow(void **state)
+{
+    (void)state;
+    for (size_t m = 0; m < dea_model_count(); m++) {
+        const dea_model *model = dea_model_at(m);
+        for (int lens = 0; lens <= (int)model->lens; lens++) {
+            const char *text = lens ? FILM("lens", ", layers: 2") FOLLOWED SKIN STILL : FILM("dot", ", layers: 2") FOLLOWED SKIN STILL;
+            const char *held = lens ? FILM("lens", ", layers: 2") HELD SKIN STILL : FILM("dot", ", layers: 2") HELD SKIN STILL;
+            const dea_row wanted = row_of(text, model->name, "direct");
+            assert_true(fabs(wanted.strain) < 0.99 * fabs(row_of(held, model->name, "direct").strain));
+            for (size_t e = 1; e < ENGINES; e++) {
+                if (can(text, model->name, engines[e])) {
+                    const dea_row row = row_of(text, model->name, engines[e]);
+                    assert_relative(row.strain, wanted.strain, 1e-7);
+                    assert_relative(row.force, wanted.force, 1e-7);
+                    assert_relative(row.charge, wanted.charge, 1e-7);
+                }
+            }
+        }
+    }
+}
+
+/* Beside a force and a second film, and where the edge is held. */
+static void engines_agree_on_pulled_permittivities_that_follow(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lumped", "lame", "coverage", "ring", "field"};
+    static const char *const pulled[] = {
+        FILM("dot", "") FOLLOWED STILL "load: {force: 0.05 N}\nantagonist: {actuator: {kind: lens, film_thickness: 50 um}, drive: {voltage: 2 kV}}\n",
+        FILM("lens", "") FOLLOWED STILL "load: {force: -0.05 N}\nantagonist: {actuator: {kind: dot}, drive: {voltage: 3 kV}}\n",
+        FILM("lens", "") FOLLOWED "drive: {voltage: 4 kV}\nstudy: {force: {displacement: {from: -0.4 mm, to: 0.4 mm, points: 3}}}\n"};
+    for (size_t m = 0; m < 5; m++) {
+        for (size_t p = 0; p < 3; p++) {
+            run(pulled[p], models[m], "direct", &one);
+            for (size_t e = 1; e < ENGINES; e++) {
+                if (!can(pulled[p], models[m], engines[e])) {
+                    continue;
+                }
+                run(pulled[p], models[m], engines[e], &other);
+                const dea_row *wanted = (const dea_row *)one.bytes, *rows = (const dea_row *)other.bytes;
+                for (size_t i = 0; i < one.rows; i++) {
+                    assert_relative(rows[i].displacement, wanted[i].displacement, 1e-7);
+                    assert_relative(rows[i].force, wanted[i].force, 1e-7);
+                    assert_relative(rows[i].charge, wanted[i].charge, 1e-7);
+                }
+            }
+        }
+    }
+}
+
+#define YIELDING "material: {base: elastosil-2030, density: 1080 kg/m^3, retardation: 0.1 ms, prony: [{g: 0.1, tau: 2 ms}], permittivity: " \
+    PERMITTIVITY("strain") "}\n"
+
+/* In time engines agree, the energy balances, and at the end the film is where statics has it. */
+static void a_film_whose_permittivity_follows_keeps_its_energy(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lumped", "lame", "coverage", "ring", "field"};
+    for (size_t m = 0; m < 5; m++) {
+        for (int lens = 0; lens < 2; lens++) {
+            const char *text = lens ? FILM("lens", "") YIELDING SWITCHED("1 MOhm") "accuracy: 1e-5\nstudy: {transient: {until: 60 ms, every: 1 ms}}\n"
+                                    : FILM("dot", "") YIELDING SWITCHED("1 MOhm") "accuracy: 1e-5\nstudy: {transient: {until: 60 ms, every: 1 ms}}\n";
+            const char *still = lens ? FILM("lens", "") YIELDING "drive: {voltage: 4 kV}\nstudy: {sweep: {}}\n"
+                                     : FILM("dot", "") YIELDING "drive: {voltage: 4 kV}\nstudy: {sweep: {}}\n";
+            const double rest = row_of(still, models[m], "direct").displacement;
+            dea_scene scene;
+            read_scene(text, models[m], &scene);
+            run(text, models[m], "ida", &one);
+            const dea_layout layout = dea_layout_of(&scene);
+            assert_true(dea_layout_summary(&layout, one.bytes)->residual < 1e-4);
+            assert_near(((const dea_sample *)one.bytes)[60].displacement, rest, 2e-5 * fabs(rest));
+            dea_scene_free(&scene);
+        }
+    }
+}
+
+static void engines_agree_on_moving_permittivities(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lame", "ring"};
+    const char *text = FILM("dot", "") YIELDING SWITCHED("1 MOhm") MOVED;
+    for (size_t m = 0; m < 2; m++) {
+        run(text, models[m], "ida", &one);
+        run(text, models[m], "ngspice", &other);
+        const dea_sample *wanted = (const dea_sample *)one.bytes, *rows = (const dea_sample *)other.bytes;
+        for (size_t i = 0; i < one.rows; i++) {
+            assert_near(rows[i].displacement, wanted[i].displacement, 2e-5 * wanted[40].displacement);
+            assert_near(rows[i].charge, wanted[i].charge, 4e-5 * wanted[40].charge);
+        }
+    }
+}
+
+static void engines_agree_on_shaken_permittivities(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lumped", "lame", "coverage", "ring", "field"};
+    for (size_t m = 0; m < 5; m++) {
+        for (int lens = 0; lens < 2; lens++) {
+            const char *text = lens ? FILM("lens", "") YIELDING "drive: {series_resistance: 1 MOhm}\n" SHAKEN
+                                    : FILM("dot", "") YIELDING "drive: {series_resistance: 1 MOhm}\n" SHAKEN;
+            run(text, models[m], "direct", &one);
+            run(text, models[m], "ngspice", &other);
+            const dea_response *wanted = (const dea_response *)one.bytes, *rows = (const dea_response *)other.bytes;
+            for (size_t i = 0; i < one.rows; i++) {
+                assert_relative(rows[i].displacement, wanted[i].displacement, 1e-6);
+                assert_relative(rows[i].impedance, wanted[i].impedance, 1e-6);
+            }
+        }
+    }
+}
+
+/* eps(l) + l eps'/4 <= 0: the film would shrink under voltage; and no film has a permittivity below 0. */
+static void a_film_that_voltage_shrinks_is_refused(void **state)
+{
+    (void)state;
+    static const char *const words[][2] = {
+        {"{constant: 2.76, per_stretch: -1.84, follows: strain}", "test:2:128: material.permittivity.per_stretch: -1.84"},
+        {"{constant: 2.76, per_stretch: -2.4, follows: strain}", "test:2:128: material.permittivity: falls to -0.12"},
+        {"{constant: 2.76, per_stretch: -0.28, follows: strian}", "did you mean strain?"},
+    };
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        char text[1024];
+        dea_scene scene;
+        dea_error error = {0};
+        snprintf(text, sizeof text, "%smaterial: {base: elastosil-2030, yeoh: {C1: 178426 Pa, C2: -6023 Pa, C3: 4234 Pa}, permittivity: %s}\n" STILL,
+                 FILM("dot", ""), words[i][0]);
+        assert_int_equal(dea_scene_parse(text, strlen(text), "test", ".", NULL, 0, "ring", &scene, &error), DEA_ERROR_SCENE);
+        if (!strstr(error.message, words[i][1])) {
+            fail_msg("%s", error.message);
+        }
+    }
+    const char *swept = FILM("dot", "") FOLLOWED "drive: {voltage: 4500 V}\nstudy: {sweep: {material.permittivity.per_stretch: [-1.9, -0.28]}}\n";
+    for (size_t e = 0; e < ENGINES; e++) {
+        run(swept, "ring", engines[e], &one);
+        assert_int_equal(((const dea_row *)one.bytes)[0].state, DEA_STATE_FAILED);
+        assert_int_equal(((const dea_row *)one.bytes)[1].state, DEA_STATE_OK);
+    }
+}
+
+/* A force draws the film to where its permittivity, 3.2 - 1.5 lambda, would be below 0. */
+static void a_film_drawn_past_its_permittivity_has_no_numbers(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lumped", "lame", "coverage", "ring", "field"};
+    const char *drawn = "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.3, film_thickness: 100 um, prestretch: 1.2}\n"
+                        "material: {neo_hookean: {mu: 60 kPa}, permittivity: {constant: 3.2, per_stretch: -1.5, follows: strain}}\n"
+                        "drive: {voltage: 1 kV}\nstudy: {sweep: {load.force: [0.3 N, 2 N]}}\nload: {force: 2 N}\n";
+    for (size_t m = 0; m < 5; m++) {
+        for (size_t e = 0; e < ENGINES; e++) {
+            if (can(drawn, models[m], engines[e])) {
+                run(drawn, models[m], engines[e], &one);
+                const dea_row *rows = (const dea_row *)one.bytes;
+                assert_true(rows[0].state == DEA_STATE_OK && rows[0].capacitance > 0.0);
+                assert_true(rows[1].state == DEA_STATE_FAILED && isnan(rows[1].strain));
+            }
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -483,6 +692,16 @@ int main(void)
         cmocka_unit_test(a_heavy_load_makes_the_membrane_a_spring),
         cmocka_unit_test(sheets_are_one_resistance_of_the_same_loss),
         cmocka_unit_test(sheets_add_to_the_series_resistance),
+        cmocka_unit_test(a_permittivity_that_follows_costs_the_printed_strain),
+        cmocka_unit_test(a_film_of_rings_rests_where_its_electrical_energy_lets_it),
+        cmocka_unit_test(electrostriction_is_the_slope_of_the_capacitance),
+        cmocka_unit_test(engines_agree_on_permittivities_that_follow),
+        cmocka_unit_test(engines_agree_on_pulled_permittivities_that_follow),
+        cmocka_unit_test(a_film_whose_permittivity_follows_keeps_its_energy),
+        cmocka_unit_test(engines_agree_on_moving_permittivities),
+        cmocka_unit_test(engines_agree_on_shaken_permittivities),
+        cmocka_unit_test(a_film_that_voltage_shrinks_is_refused),
+        cmocka_unit_test(a_film_drawn_past_its_permittivity_has_no_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
 #include "scenes.h"
 
 #include <stdlib.h>
+#include <unistd.h>
 
 /* The paper's film without mass, the last of its accuracy and engine; the caller frees it. */
 static dea_status parse(const char *drive, const char *model, const char *transient, dea_scene *scene, dea_error *error)
@@ -113,12 +114,151 @@ static void a_film_stretched_past_its_chains_names_them(void **state)
                         "Jm = 10 is too small for the pre-stretch 3, where I1 - 3 is 15.0123: the chains are straight at 10");
 }
 
+/* A film too stiff to move: its capacitance stays. */
+#define STIFF "{yeoh: {C1: 178426 TPa, C2: -6023 TPa, C3: 4234 TPa}, permittivity: 2.8, retardation: 1 us}"
+
+static void read_limited(const char *material, const char *drive, const char *model, const char *transient, dea_scene *scene)
+{
+    char text[1500];
+    dea_error error = {0};
+    snprintf(text, sizeof text,
+             "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+             "material: %s\ndrive: {%s}\nmodel: %s\nstudy: {transient: {%s}}\n",
+             material, drive, model, transient);
+    if (dea_scene_parse(text, strlen(text), "t", ".", NULL, 0, NULL, scene, &error) != DEA_OK) {
+        fail_msg("%s: %s", text, error.message);
+    }
+}
+
+/* One capacitor C with its leakage G behind R, under a source of U that gives at most I. */
+typedef struct limited {
+    double u, i, r, g, c;
+} limited;
+
+/* At the limit C U' = I - G U; from U - R I on C U' = (U_s - U)/R - G U. */
+static double charged(const limited *of, double t, double *current)
+{
+    const double slow = of->c / of->g, top = of->i / of->g, knee = of->u - of->r * of->i;
+    const double at = -slow * log1p(-knee / top);
+    if (t < at) {
+        *current = of->i;
+        return -top * expm1(-t / slow);
+    }
+    const double total = 1.0 / of->r + of->g, end = of->u / of->r / total;
+    const double voltage = end + (knee - end) * exp(-(t - at) * total / of->c);
+    *current = (of->u - voltage) / of->r;
+    return voltage;
+}
+
+static void a_source_at_its_limit_charges_a_stiff_film_evenly(void **state)
+{
+    (void)state;
+    const limited of = {.u = 3000.0, .i = 50e-6, .r = 10e6, .g = 1e-9, .c = 2.8 * 8.8541878128e-12 * acos(-1.0) * 0.015 * 0.015 * 1.44 / 1e-4};
+    for (int sign = -1; sign < 2; sign += 2) {
+        char drive[300];
+        dea_scene scene;
+        snprintf(drive, sizeof drive,
+                 "waveform: {step: {on: 0 s, voltage: %d V, rise: 0 s}}, series_resistance: 10 MOhm, leakage_resistance: 1 GOhm, "
+                 "current_limit: 50 uA", sign * 3000);
+        read_limited(STIFF, drive, "coverage", "until: 40 ms, every: 0.7 ms", &scene);
+        const size_t rows = dea_layout_of(&scene).rows;
+        for (size_t e = 1; e < 3; e++) {
+            dea_sample *samples = solve(&scene, engines[e]);
+            size_t limits = 0;
+            for (size_t i = 0; i < rows; i++) {
+                double current;
+                const double voltage = charged(&of, samples[i].time, &current);
+                assert_true(fabs(samples[i].film_voltage - sign * voltage) < 1e-6 * of.u);
+                assert_true(fabs(samples[i].current - sign * current) < 1e-5 * of.i);
+                assert_true(fabs(samples[i].current) <= of.i * (1.0 + 1e-15));
+                limits += (fabs(samples[i].current) > of.i * (1.0 - 1e-15)) == (current == of.i);
+            }
+            assert_int_equal(limits, rows);
+            const dea_layout layout = dea_layout_of(&scene);
+            assert_true(dea_layout_summary(&layout, samples)->residual < 1e-5);
+            free(samples);
+        }
+        dea_scene_free(&scene);
+    }
+}
+
+/* Charged and discharged at the limit, with mass and a film that gives way; a sine that the limit clips. */
+static void engines_agree_on_limited_films(void **state)
+{
+    (void)state;
+    static const char film[] = "{base: elastosil-2030, density: 1080 kg/m^3, retardation: 0.3 ms}";
+    static const char *const drives[] = {
+        "waveform: {step: {on: 1 ms, off: 25 ms, voltage: 4 kV}}, series_resistance: 5 MOhm, current_limit: 100 uA",
+        "waveform: {sine: {amplitude: 3 kV, frequency: 50 Hz}}, series_resistance: 20 MOhm, leakage_resistance: 1 GOhm, "
+        "current_limit: 120 uA"};
+    static const char *const models[] = {"lame", "ring"};
+    for (size_t k = 0; k < 2; k++) {
+        dea_scene scene;
+        read_limited(film, drives[k], models[k], "until: 40 ms, every: 0.2 ms", &scene);
+        const dea_layout layout = dea_layout_of(&scene);
+        dea_sample *ida = solve(&scene, "ida"), *ngspice = solve(&scene, "ngspice");
+        double most = 0.0;
+        for (size_t i = 0; i < layout.rows; i++) {
+            assert_true(fabs(ida[i].strain - ngspice[i].strain) < 2e-6 * 0.03);
+            assert_true(fabs(ida[i].film_voltage - ngspice[i].film_voltage) < 2e-5 * 3000.0);
+            assert_true(fabs(ida[i].current - ngspice[i].current) < 2e-5 * 1e-4);
+            most = fmax(most, fabs(ida[i].strain));
+        }
+        assert_true(most > 0.004);
+        assert_true(dea_layout_summary(&layout, ida)->residual <= 1e-5);
+        assert_true(dea_layout_summary(&layout, ngspice)->residual <= 1e-5);
+        free(ida);
+        free(ngspice);
+        dea_scene_free(&scene);
+    }
+}
+
+/* The script of a picture holds voltage and strain in pairs, in V and percent, on the way up and on the way down. */
+static void loops_lie_over_the_voltage(void **state)
+{
+    (void)state;
+    char path[] = "/tmp/loopsXXXXXX.gp", line[200];
+    const int made = mkstemps(path, 3);
+    assert_true(made >= 0);
+    close(made);
+    dea_scene scene;
+    dea_error error = {0};
+    dea_plot *plot;
+    assert_int_equal(parse("waveform: {points: [[0 s, 0 V], [10 ms, 900 V], [20 ms, 0 V]]}", "lumped", "until: 20 ms, every: 5 ms", &scene, &error), DEA_OK);
+    dea_sample *samples = solve(&scene, "direct");
+    const dea_plot_options options = {.loops = true};
+    assert_int_equal(dea_plot_begin(&scene, path, &options, &plot, &error), DEA_OK);
+    dea_plot_points(plot, 0, samples, 1);
+    assert_int_equal(dea_plot_finish(plot, true, &error), DEA_OK);
+    FILE *script = fopen(path, "r");
+    size_t found = 0;
+    while (script && fgets(line, sizeof line, script)) {
+        double voltage, strain;
+        if (sscanf(line, "%lf %lf", &voltage, &strain) == 2 && found < 5) {
+            assert_true(fabs(voltage - samples[found].voltage) < 1e-9 * 900.0);
+            assert_true(fabs(strain - 100.0 * samples[found].strain) < 1e-9);
+            found++;
+        }
+    }
+    assert_int_equal(found, 5);
+    assert_true(samples[3].strain > samples[1].strain && fabs(samples[3].voltage - samples[1].voltage) < 1e-9);
+    fclose(script);
+    remove(path);
+    free(samples);
+    scene.study = DEA_STUDY_SWEEP;
+    assert_int_equal(dea_plot_begin(&scene, path, &options, &plot, &error), DEA_ERROR_USAGE);
+    dea_scene_free(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(logarithmic_samples_see_a_film_relax_over_decades),
         cmocka_unit_test(capacitance_over_time_is_that_of_the_stretched_disc),
         cmocka_unit_test(a_film_stretched_past_its_chains_names_them),
+        cmocka_unit_test(a_source_at_its_limit_charges_a_stiff_film_evenly),
+        cmocka_unit_test(engines_agree_on_limited_films),
+        cmocka_unit_test(loops_lie_over_the_voltage),
         cmocka_unit_test(field_energy_is_half_of_charge_times_voltage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -443,7 +443,7 @@ static dea_relaxation_data film_test(int branches, double ramp, int count, bool 
     for (int i = zero ? -1 : 0; i < count; i++) {
         const double time = i < 0 ? 0.0 : 0.1 * pow(1e4, (double)i / (count - 1));
         const double stress = film_stress(branches, ramp, time) * (noise > 0.0 ? 1.0 + noise * normal(seed) : 1.0);
-        assert_int_equal(dea_relaxation_add(&data, (dea_relaxation_point){time, stress}, NULL), DEA_OK);
+        assert_int_equal(dea_relaxation_add(&data, (dea_relaxation_point){.time = time, .stress = stress}, NULL), DEA_OK);
     }
     return data;
 }
@@ -633,7 +633,7 @@ static void scattered_points_never_give_shares_beyond_the_whole(void **state)
         const int count = 3 + run % 20;
         for (int i = 0; i < count; i++) {
             const double stress = 1e4 * (deviate(&seed) + 3.0 / (1.0 + time));
-            assert_int_equal(dea_relaxation_add(&data, (dea_relaxation_point){time, stress}, NULL), DEA_OK);
+            assert_int_equal(dea_relaxation_add(&data, (dea_relaxation_point){.time = time, .stress = stress}, NULL), DEA_OK);
             time += 0.01 + 3.0 * deviate(&seed);
         }
         dea_relaxation fit;
@@ -656,7 +656,7 @@ static dea_relaxation_data seconds_of(const double *stresses, size_t count)
 {
     dea_relaxation_data data = {0};
     for (size_t i = 0; i < count; i++) {
-        assert_int_equal(dea_relaxation_add(&data, (dea_relaxation_point){(double)i, stresses[i]}, NULL), DEA_OK);
+        assert_int_equal(dea_relaxation_add(&data, (dea_relaxation_point){.time = (double)i, .stress = stresses[i]}, NULL), DEA_OK);
     }
     return data;
 }
@@ -725,7 +725,7 @@ static void ramp_inside_the_data_is_told(void **state)
         dea_relaxation_data data = {.ramp = 2.0};
         for (int i = 0; i < 60; i++) {
             const double time = 0.2 * i, clean = time < 2.0 ? 2e4 * time : 2e4 + 2e4 * exp(2.0 - time);
-            assert_int_equal(dea_relaxation_add(&data, (dea_relaxation_point){time, clean + 300.0 * noisy * normal(&seed)}, NULL), DEA_OK);
+            assert_int_equal(dea_relaxation_add(&data, (dea_relaxation_point){.time = time, .stress = clean + 300.0 * noisy * normal(&seed)}, NULL), DEA_OK);
         }
         dea_relaxation fit;
         dea_error error = {0};
@@ -745,7 +745,7 @@ static void noise_about_zero_is_a_measurement(void **state)
     for (int i = 0; i < 60; i++) {
         const double stress = 2e4 * (0.01 + 0.99 * exp(-0.2 * i)) + 300.0 * normal(&seed);
         below += stress < 0.0;
-        assert_int_equal(dea_relaxation_add(&data, (dea_relaxation_point){i, stress}, NULL), DEA_OK);
+        assert_int_equal(dea_relaxation_add(&data, (dea_relaxation_point){.time = i, .stress = stress}, NULL), DEA_OK);
     }
     dea_relaxation fit;
     assert_true(below > 0);
@@ -759,7 +759,7 @@ static void clock_that_was_not_set_to_zero_is_refused(void **state)
     (void)state;
     dea_relaxation_data data = {0};
     for (int i = 0; i < 6; i++) {
-        assert_int_equal(dea_relaxation_add(&data, (dea_relaxation_point){1000.0 + i, 1e4 + 1e3 * exp(-i)}, NULL), DEA_OK);
+        assert_int_equal(dea_relaxation_add(&data, (dea_relaxation_point){.time = 1000.0 + i, .stress = 1e4 + 1e3 * exp(-i)}, NULL), DEA_OK);
     }
     dea_relaxation fit;
     dea_error error = {0};

@@ -53,6 +53,8 @@ static const fact facts[] = {
     {"lens-optics", 1, 1.5, 0, offsetof(dea_sample, focal_length), 0.0196392117142},
     {"lens-optics", 2, 1, 1.5, MEAN_STRAIN, -0.0764934225188},
     {"lens-optics", 2, 1.5, 0, offsetof(dea_sample, focal_length), 0.017060358758},
+    {"constant-current", 0, 0.01, 0, offsetof(dea_sample, charge), 4.999988888889e-07}, /* I t, less half of the rise to the limit */
+    {"constant-current", 0, 0.04, 0, offsetof(dea_sample, film_voltage), 4500.0},
     {"switch-on", 2, 0.001, 0, offsetof(dea_sample, strain), 0.0741705}, /* by a method of lines */
     {"switch-on", 2, 0.002, 0, offsetof(dea_sample, strain), 0.0518654},
     {"switch-on", 2, 0.004, 0, offsetof(dea_sample, strain), 0.0610839},
@@ -215,6 +217,12 @@ static void sine_through_10_MOhm_moves_film_and_charge(void **state)
     assert_int_equal(check_example("sine-supply"), 2);
 }
 
+static void a_source_at_its_limit_charges_evenly(void **state)
+{
+    (void)state;
+    assert_int_equal(check_example("constant-current"), 2);
+}
+
 static void liquid_lens_focuses_as_its_aperture_shrinks(void **state)
 {
     (void)state;
@@ -286,6 +294,7 @@ int main(void)
         cmocka_unit_test(protocol_of_the_paper_gives_its_mean_strains),
         cmocka_unit_test(vhb_creeps_on_three_branches),
         cmocka_unit_test(sine_through_10_MOhm_moves_film_and_charge),
+        cmocka_unit_test(a_source_at_its_limit_charges_evenly),
         cmocka_unit_test(liquid_lens_focuses_as_its_aperture_shrinks),
         cmocka_unit_test(switch_on_of_the_membrane_peaks_below_that_of_the_linear_network),
         cmocka_unit_test(fast_lens_settles_within_175_microseconds),

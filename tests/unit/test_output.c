@@ -866,7 +866,7 @@ static void long_runs_make_small_pictures(void **state)
 static dea_plot_trace *trace_make(const dea_scene *scene, dea_runs *runs, size_t quantity, const void *point)
 {
     dea_error error = {0};
-    assert_int_equal(dea_runs_open(scene, runs, &error), DEA_OK);
+    assert_int_equal(dea_runs_open(scene, false, runs, &error), DEA_OK);
     dea_runs_take(runs, 0, point);
     return &runs->runs[0].traces[quantity];
 }

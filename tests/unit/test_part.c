@@ -651,6 +651,42 @@ static void a_part_of_any_law_stands_where_the_model_does(void **state)
     child_end(&run);
 }
 
+/* Its slope is a parameter as the permittivity is; charge and displacement tell force and capacitance. */
+static void a_part_whose_permittivity_follows_the_strain_stands_where_the_model_does(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lumped", "lame", "coverage", "ring", "field"};
+    enum { MODELS = 5, PARTS = 2 * MODELS };
+    dea_row wanted[PARTS];
+    child_run run;
+    FILE *file = begin_circuit();
+    fputs("va a 0 4000\n.options reltol=1e-7\n.op\n", file);
+    for (int i = 0; i < PARTS; i++) {
+        char name[32];
+        dea_scene scene = paper_scene(i % 2 ? DEA_LENS : DEA_DOT, 1.2, 0.5, 4000.0);
+        scene.material.permittivity_follows = true;
+        scene.material.permittivity = 2.76;
+        scene.material.permittivity_per_stretch = -0.28;
+        wanted[i] = solve_direct(&scene, models[i / 2]);
+        scene.material.permittivity_per_stretch = -0.5; /* the default, which the instance does not keep */
+        snprintf(name, sizeof name, "film%d", i);
+        assert_int_equal(dea_part_write(&scene, dea_model_find(models[i / 2]), name, dea_dialect_find("ngspice"), file, NULL),
+                         DEA_OK);
+        fprintf(file, ".save v(x%d.u) v(x%d.q) v(x%d.bad)\nx%d a 0 e%d %s permittivity_per_stretch=-0.28\n", i, i, i, i, i, name);
+    }
+    run_circuit(file, &run);
+    for (int i = 0; i < PARTS; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "v(x%d.u)", i);
+        assert_relative(1e-6 * child_value(&run, name, 0), wanted[i].displacement, 2e-6);
+        snprintf(name, sizeof name, "v(x%d.q)", i);
+        assert_relative(1e-9 * child_value(&run, name, 0), wanted[i].charge, 2e-6);
+        snprintf(name, sizeof name, "v(x%d.bad)", i);
+        assert_true(child_value(&run, name, 0) == 0.0);
+    }
+    child_end(&run);
+}
+
 /* Past the voltage at which softening beats the springs there is no equilibrium, whatever the simulator finds. */
 static void a_film_past_pull_in_is_flagged(void **state)
 {
@@ -1168,6 +1204,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(options_of_the_circuit_change_no_answer),
         cmocka_unit_test(parameters_out_of_range_are_flagged_and_move_nothing),
         cmocka_unit_test(a_part_of_any_law_stands_where_the_model_does),
+        cmocka_unit_test(a_part_whose_permittivity_follows_the_strain_stands_where_the_model_does),
         cmocka_unit_test(a_film_past_pull_in_is_flagged),
         cmocka_unit_test(a_spring_on_the_edge_is_the_load_of_a_scene),
         cmocka_unit_test(a_force_and_a_film_on_the_edge_are_those_of_a_scene),

@@ -1,5 +1,5 @@
 /* The film along its radius: the disc is uniform, lambda_1 = lambda_2 = lambda_pre (1 + s), the annulus as its model has it. True
- * stresses lambda_a P_a - eps E^2, E = U lambda_1 lambda_2/H and with what its skin holds where electroded. */
+ * stresses lambda_a P_a - eps E^2, E = U lambda_1 lambda_2/H, where electroded with what its skin holds and electrostriction adds. */
 #include "engine/direct/direct.h"
 
 #include <math.h>
@@ -22,7 +22,8 @@ static void fill_stretched(const film *f, dea_stretches l, bool outside, dea_sta
     const dea_point *point = f->point;
     const double pre = point->film.prestretch, area = l.radial * l.hoop, nominal = dea_point_nominal_field(point);
     const bool electroded = outside == (point->kind == DEA_LENS);
-    const double pressure = electroded ? point->film.permittivity * nominal * nominal * area * area : 0.0;
+    const double k = point->film.permittivity * dea_film_electric(&point->film, area).first * nominal * nominal;
+    const double pressure = electroded ? k * area * area : 0.0;
     const double e1 = l.radial / pre - 1.0, e2 = l.hoop / pre - 1.0;
     dea_biaxial s = dea_film_biaxial(&point->film, e1, e2);
     if (electroded && point->skin_share > 0.0) {

@@ -86,18 +86,19 @@ static station station_at(const dea_point *point, bool electroded, double xi, do
     const dea_film *film = &point->film;
     const dea_biaxial skin = skin_at(point, electroded, l1, l2);
     const dea_stress s = film->law->stress(film->constants, l1, l2);
-    const double over = 1.0 / film->w11;
+    const dea_electric electric = dea_film_electric(film, l1 * l2);
+    const double over = 1.0 / film->w11, second = k * electric.second;
     return (station){.xi = xi,
                      .w11 = s.w11 * over,
                      .w12 = s.w12 * over,
                      .w22 = s.w22 * over,
                      .t1 = s.p1 / l1 * over,
                      .t2 = s.p2 / l2 * over,
-                     .k11 = (k * l2 * l2 - skin.w11) * over,
-                     .k12 = (2.0 * k * l1 * l2 - skin.w12) * over,
-                     .k22 = (k * l1 * l1 - skin.w22) * over,
-                     .c1 = l1 * l2 * l2,
-                     .c2 = l1 * l1 * l2};
+                     .k11 = (second * l2 * l2 - skin.w11) * over,
+                     .k12 = ((k * electric.first + second) * l1 * l2 - skin.w12) * over,
+                     .k22 = (second * l1 * l1 - skin.w22) * over,
+                     .c1 = electric.first * l1 * l2 * l2,
+                     .c2 = electric.first * l1 * l1 * l2};
 }
 
 static double nominal(const dea_radial *m)
@@ -386,7 +387,7 @@ static dea_per_volt answer_on(const dea_radial *m, const mesh *grid, double omeg
     const double complex f = dot ? -slope * disc.c1 : 0.0;
     const double complex share = (d * driven.u + f - driven.t) / (free_one.t - d * free_one.u);
     const double complex u = driven.u + share * free_one.u;
-    const double complex change = dot ? l * l * l * u : -(driven.c + share * free_one.c); /* the integral runs inwards */
+    const double complex change = dot ? disc.c1 * u : -(driven.c + share * free_one.c); /* the integral runs inwards */
     const double unit = 4.0 * DEA_PI * point->film.permittivity * radius * radius / point->film_thickness;
     return (dea_per_volt){.displacement = radius * u, .charge = m->rest.capacitance + point->voltage * unit * change};
 }

@@ -1,4 +1,4 @@
-/* A ring by ARKODE: Verner's explicit Runge-Kutta method of order 6, from sample to sample. (Fehlberg's of order 8 cannot see the
+/* A swing by ARKODE: Verner's explicit Runge-Kutta method of order 6, from sample to sample. (Fehlberg's of order 8 cannot see the
  * error of a pure integral, and the module ERKStep of SUNDIALS 6 takes the last stage of either for the first of the next step.)
  * In an audited run the energies are unknowns too, and where means are wanted the integral of the displacement. */
 #include <math.h>
@@ -43,32 +43,32 @@ static int rates(sunrealtype time, N_Vector w, N_Vector wp, void *user)
     const dea_flight *flight = run->flight;
     const sunrealtype *unknowns = NV_DATA_S(w);
     sunrealtype *out = NV_DATA_S(wp);
-    const dea_turn turn = dea_ring_turn(flight->ring, time, 0.0);
+    const dea_turn turn = dea_rotation_turn(flight->swing, time, 0.0);
     double y[DEA_MOTION_MOST], f[DEA_MOTION_MOST];
-    dea_ring_state(flight->ring, turn, unknowns, y);
+    dea_rotation_state(flight->swing, turn, unknowns, y);
     if (!dea_motion_rates(&flight->motion, time, y, f)) {
         return 1;
     }
-    dea_ring_rates(flight->ring, turn, unknowns, f, out);
+    dea_rotation_rates(flight->swing, turn, unknowns, f, out);
     if (run->audited > 0) {
         powers(run, time, y, out + flight->motion.count);
     }
     if (run->integrated > 0) {
-        out[flight->motion.count + run->audited] = y[0] * flight->ring->omega;
+        out[flight->motion.count + run->audited] = y[0] * flight->swing->omega;
     }
     return 0;
 }
 
 /* Longest step [s]: samples cut steps, and where they alone did, a tighter tolerance would change nothing that a comparison of
- * two runs could see. In a frame that does not turn, no more than a part of the ring either. */
+ * two runs could see. In a frame that does not turn, no more than a part of the swing either. */
 static double longest_step(const dea_flight *flight)
 {
-    const dea_ring *ring = flight->ring;
+    const dea_rotation *swing = flight->swing;
     const double tolerance = flight->tolerance;
     const double lines = flight->motion.segment->step;
     double sampled = flight->scene->transient.every * pow(tolerance / flight->loosest, 1.0 / 7.0);
     sampled = lines > 0.0 ? fmin(sampled, lines) : sampled;
-    return ring->turns ? sampled : fmin(sampled, fmin(1.2, 6.0 * pow(tolerance, 1.0 / 7.0)) / ring->omega);
+    return swing->turns ? sampled : fmin(sampled, fmin(1.2, 6.0 * pow(tolerance, 1.0 / 7.0)) / swing->omega);
 }
 
 static bool begin(explicit_run *run)
@@ -84,7 +84,7 @@ static bool begin(explicit_run *run)
     }
     sun->N_VConst(0.0, run->w);
     sun->N_VConst(flight->tolerance, run->tolerance);
-    dea_ring_unknowns(flight->ring, dea_ring_turn(flight->ring, 0.0, 0.0), flight->y, NV_DATA_S(run->w));
+    dea_rotation_unknowns(flight->swing, dea_rotation_turn(flight->swing, 0.0, 0.0), flight->y, NV_DATA_S(run->w));
     for (int i = 0; i < run->audited; i++) {
         NV_DATA_S(run->tolerance)[n + i] = 1e-4 * flight->scene->accuracy;
     }
@@ -92,7 +92,7 @@ static bool begin(explicit_run *run)
     return run->ark != NULL;
 }
 
-/* True where the ring will take more steps than there are, told from those so far; they get longer as it decays. */
+/* True where the swing will take more steps than there are, told from those so far; they get longer as it decays. */
 static bool endless(const explicit_run *run, double to, double time)
 {
     dea_flight *flight = run->flight;
@@ -100,7 +100,7 @@ static bool endless(const explicit_run *run, double to, double time)
     if (steps < enough) {
         return false;
     }
-    const double rest = fmin(to - time, 3.0 / flight->ring->decay);
+    const double rest = fmin(to - time, 3.0 / flight->swing->decay);
     return !dea_flight_affords(flight, 0.7 * steps * rest / time);
 }
 
@@ -144,7 +144,7 @@ static void integrate(explicit_run *run, double before, double time)
     for (size_t i = 0; i < flight->scene->transient.average_count; i++) {
         const dea_window *window = &flight->scene->transient.averages[i];
         if (window->from < middle && middle < window->to) {
-            flight->trace->integrals[i] += (whole - run->integral) * motion->size[0] / flight->ring->omega;
+            flight->trace->integrals[i] += (whole - run->integral) * motion->size[0] / flight->swing->omega;
         }
     }
     run->integral = whole;
@@ -160,7 +160,7 @@ static double current_at(void *user, double time)
     if (flight->integrator.sun->DEA_ARK(GetDky)(run->ark, at, 0, run->between) != ARK_SUCCESS) {
         return 0.0;
     }
-    dea_ring_state(flight->ring, dea_ring_turn(flight->ring, at, 0.0), NV_DATA_S(run->between), y);
+    dea_rotation_state(flight->swing, dea_rotation_turn(flight->swing, at, 0.0), NV_DATA_S(run->between), y);
     const dea_moment moment = dea_motion_moment(&flight->motion, at, y);
     return dea_dynamics_current(flight->motion.dynamics, &moment);
 }

@@ -1,5 +1,6 @@
 #include "engine/ida/flight.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,8 +21,8 @@ dea_status dea_flight_open(const dea_sundials *sun, const dea_scene *scene, dea_
     *flight = (dea_flight){.scene = scene, .signal = signal, .rows = dea_layout_of(scene).rows};
     flight->peaks = dea_peak_is_known(scene, dynamics, signal);
     dea_motion_open(dynamics, signal, &flight->motion);
-    flight->ring = calloc(1, sizeof *flight->ring);
-    if (!flight->ring) {
+    flight->swing = calloc(1, sizeof *flight->swing);
+    if (!flight->swing) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while IDA starts");
     }
     return dea_flight_integrator(sun, flight, error);
@@ -33,7 +34,7 @@ void dea_flight_close(dea_flight *flight)
         flight->integrator.sun->N_VDestroy(flight->between);
     }
     dea_integrator_close(&flight->integrator);
-    free(flight->ring);
+    free(flight->swing);
     *flight = (dea_flight){0};
 }
 
@@ -101,7 +102,7 @@ static dea_state stand_still(dea_flight *flight, double time)
 dea_state dea_flight_step(dea_flight *flight, double time, const double *w)
 {
     dea_trace *trace = flight->trace;
-    dea_ring_state(flight->ring, dea_ring_turn(flight->ring, time, 0.0), w, flight->y);
+    dea_rotation_state(flight->swing, dea_rotation_turn(flight->swing, time, 0.0), w, flight->y);
     const dea_moment at = dea_motion_moment(&flight->motion, time, flight->y);
     if (dea_motion_inside(&flight->motion, at.u)) {
         trace->largest_u = fmax(trace->largest_u, fabs(at.u));
@@ -125,6 +126,7 @@ dea_state dea_flight_step(dea_flight *flight, double time, const double *w)
 
 /* Next to its limit a source counts as there: such shares of the drop at the limit are rounding. */
 static const double at_limit = 1e-9;
+enum { HALVES = 60 }; /* of a step that find the time */
 
 /* How far the drop over the resistance is past that at which the source gives its limit, over that; NAN without a state. */
 static double excess_at(const dea_flight *flight, double time, dea_flight_state *at, void *user)
@@ -147,16 +149,14 @@ double dea_flight_cut(dea_flight *flight, double before, double time, dea_flight
         return time;
     }
     double low = before, high = time;
-    while (high - low > 4e-16 * high) { /* halves end next to each other */
+    for (int i = 0; i < HALVES && high - low > DBL_EPSILON * high; i++) {
         const double middle = 0.5 * (low + high);
         *(excess_at(flight, middle, at, user) * first > 0.0 ? &low : &high) = middle;
-        if (middle <= low && middle >= high) {
-            break;
-        }
     }
-    flight->cut = high < time;
+    const double begin = flight->motion.segment->from;
+    flight->cut = high < time && begin + high > begin + before; /* late in a run a very short time is none */
     flight->cut_at = high;
-    return high;
+    return flight->cut ? high : time;
 }
 
 bool dea_flight_affords(dea_flight *flight, double steps)
@@ -165,7 +165,7 @@ bool dea_flight_affords(dea_flight *flight, double steps)
     if (steps <= left) {
         return true;
     }
-    dea_fail(&flight->why, DEA_ERROR_ENGINE, "the ring takes %.2g more steps of SUNDIALS at a tolerance of %.1g, %.2g are left",
+    dea_fail(&flight->why, DEA_ERROR_ENGINE, "the swing takes %.2g more steps of SUNDIALS at a tolerance of %.1g, %.2g are left",
              steps, flight->tolerance, left);
     return false;
 }
@@ -196,15 +196,15 @@ static bool jump(dea_flight *flight)
 /* Runge-Kutta's states between steps are too coarse to cut at. */
 static bool suits(const dea_flight *flight)
 {
-    const dea_ring *ring = flight->ring;
+    const dea_rotation *swing = flight->swing;
     if (isfinite(flight->motion.dynamics->limit)) {
         return false;
     }
     const bool linear = flight->motion.dynamics->linear && flight->motion.q < 0;
-    return ring->light && !(linear && ring->turns) && ring->fastest <= 5.0 * ring->omega;
+    return swing->light && !(linear && swing->turns) && swing->fastest <= 5.0 * swing->omega;
 }
 
-/* Radians of a ring up to which a line costs Runge-Kutta no more than a start of its own. */
+/* Radians of a swing up to which a line costs Runge-Kutta no more than a start of its own. */
 static const double short_line = 20.0;
 
 double dea_flight_short_line(dea_flight *flight)
@@ -215,26 +215,26 @@ double dea_flight_short_line(dea_flight *flight)
         return 0.0;
     }
     flight->motion.segment = &whole;
-    dea_ring_find(&flight->motion, flight->ring);
+    dea_rotation_find(&flight->motion, flight->swing);
     flight->motion.segment = first;
-    return suits(flight) ? short_line / flight->ring->omega : 0.0;
+    return suits(flight) ? short_line / flight->swing->omega : 0.0;
 }
 
-/* How long a ring is worth an explicit method in the segment [s]: until it is smaller than what the tolerance sees, if its
+/* How long a swing is worth an explicit method in the segment [s]: until it is smaller than what the tolerance sees, if its
  * periods are no more than a run can take and nothing else is much faster. */
 static double explicit_time(const dea_flight *flight)
 {
-    const dea_ring *ring = flight->ring;
+    const dea_rotation *swing = flight->swing;
     const dea_segment *segment = flight->motion.segment;
     const double width = segment->to - segment->from;
     if (!suits(flight)) {
         return 0.0;
     }
     if (segment->corner) {
-        return width; /* they never let the ring die */
+        return width; /* they never let the swing die */
     }
-    const double life = fmin(width, log(10.0 / flight->tolerance) / ring->decay);
-    return ring->turns || ring->omega * life < 1e6 ? life : 0.0;
+    const double life = fmin(width, log(10.0 / flight->tolerance) / swing->decay);
+    return swing->turns || swing->omega * life < 1e6 ? life : 0.0;
 }
 
 /* The segment, or what it is up to where it is cut. */
@@ -244,14 +244,14 @@ static dea_state fly_part(dea_flight *flight)
     if (!jump(flight) || (flight->trace->count == 0 && !dea_flight_record(flight, 0.0, flight->y))) {
         return DEA_STATE_PULL_IN;
     }
-    dea_ring_find(&flight->motion, flight->ring);
+    dea_rotation_find(&flight->motion, flight->swing);
     const double turning = explicit_time(flight);
     if (turning > 0.0) {
         const dea_state state = dea_flight_explicit(flight, turning);
         if (state != DEA_STATE_OK || turning >= segment->to - segment->from) {
             return state;
         }
-        dea_ring_stop(flight->ring);
+        dea_rotation_stop(flight->swing);
     }
     return dea_flight_implicit(flight, turning);
 }

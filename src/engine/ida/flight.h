@@ -1,13 +1,13 @@
 /* One run of a transient at one tolerance. Every segment of the voltage, cut where a source comes to its limit or from it, is a
  * problem of its own, solved
  *
- *   - by IDA (variable order BDF) in general, in the turning frame of a ring where the network is linear;
- *   - by an explicit Runge-Kutta method (ARKODE) while a light ring lives in a film that is not linear, or under a
+ *   - by IDA (variable order BDF) in general, in the turning frame of a swing where the network is linear;
+ *   - by an explicit Runge-Kutta method (ARKODE) while a light swing lives in a film that is not linear, or under a
  *     voltage that varies: BDF would crawl through its periods. */
 #ifndef DEA_IDA_FLIGHT_H
 #define DEA_IDA_FLIGHT_H
 
-#include "engine/ida/ring.h"
+#include "engine/ida/rotation.h"
 #include "engine/ida/sundials.h"
 #include "network/peak.h"
 
@@ -25,7 +25,7 @@ typedef struct dea_flight {
     const dea_scene *scene; /* borrowed, as signal */
     const dea_signal *signal;
     dea_motion motion;
-    dea_ring *ring;            /* owned */
+    dea_rotation *swing;            /* owned */
     dea_integrator integrator; /* owned */
     N_Vector between;          /* owned: w between two steps */
     size_t rows;

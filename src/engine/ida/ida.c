@@ -33,9 +33,6 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
     if (model->membrane && dea_study_of(scene)->timed && dea_load_stalls(scene)) {
         return dea_load_stalled;
     }
-    if (model->membrane && scene->drive.current_limit > 0.0) {
-        return "its rings of film take no current limit";
-    }
     return scene->accuracy < 1e-9 ? "its answers are good to 1e-9, the scene wants more" : NULL;
 }
 

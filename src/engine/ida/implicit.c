@@ -18,13 +18,13 @@ static int residual(sunrealtype time, N_Vector w, N_Vector wp, N_Vector r, void 
     const sunrealtype *unknowns = NV_DATA_S(w);
     const sunrealtype *slope = NV_DATA_S(wp);
     sunrealtype *out = NV_DATA_S(r);
-    const dea_turn turn = dea_ring_turn(flight->ring, time, 0.0);
+    const dea_turn turn = dea_rotation_turn(flight->swing, time, 0.0);
     double y[DEA_MOTION_MOST], f[DEA_MOTION_MOST];
-    dea_ring_state(flight->ring, turn, unknowns, y);
+    dea_rotation_state(flight->swing, turn, unknowns, y);
     if (!dea_motion_rates(&flight->motion, time, y, f)) {
         return 1; /* a trial step too far: IDA takes a shorter one */
     }
-    dea_ring_rates(flight->ring, turn, unknowns, f, out);
+    dea_rotation_rates(flight->swing, turn, unknowns, f, out);
     for (int i = 0; i < flight->motion.count; i++) {
         out[i] = (i == 0 && flight->motion.algebraic ? 0.0 : slope[i]) - out[i];
     }
@@ -38,8 +38,8 @@ static int jacobian(sunrealtype time, sunrealtype cj, N_Vector w, N_Vector wp, N
     const int n = flight->motion.count;
     sunrealtype *data = SM_DATA_D(matrix);
     (void)wp, (void)r, (void)work1, (void)work2, (void)work3;
-    if (flight->ring->turns) {
-        memcpy(data, flight->ring->jacobian, (size_t)(n * n) * sizeof *data);
+    if (flight->swing->turns) {
+        memcpy(data, flight->swing->jacobian, (size_t)(n * n) * sizeof *data);
     } else {
         dea_motion_jacobian(&flight->motion, time, NV_DATA_S(w), data);
     }
@@ -79,24 +79,25 @@ static const double *unknowns_at(const dea_flight *flight, double time, int deri
 static void take_current(const dea_flight *flight, double time, dea_turn turn, const double *w, dea_moment *moment)
 {
     const dea_motion *motion = &flight->motion;
-    const dea_ring *ring = flight->ring;
+    const dea_rotation *swing = flight->swing;
     double step, rate[DEA_MOTION_MOST], y[DEA_MOTION_MOST];
     if (motion->q < 0 || flight->integrator.sun->IDAGetLastStep(flight->integrator.ida, &step) != IDA_SUCCESS ||
-        step * motion->signal->largest < motion->dynamics->series * motion->size[motion->q]) {
-        return;
+        step * motion->signal->largest < motion->dynamics->series * motion->size[motion->q] ||
+        dea_dynamics_excess(motion->dynamics, moment->source - moment->voltage) >= 0.0) {
+        return; /* at its limit the source gives that */
     }
-    const double around[2] = {ring->turns ? -ring->omega * w[1] : 0.0, ring->turns ? ring->omega * w[0] : 0.0};
+    const double around[2] = {swing->turns ? -swing->omega * w[1] : 0.0, swing->turns ? swing->omega * w[0] : 0.0};
     const double *slope = unknowns_at(flight, time, 1);
     if (!slope) {
         return;
     }
     memcpy(rate, slope, (size_t)motion->count * sizeof *rate);
-    for (int i = 0; ring->turns && i < 2; i++) {
+    for (int i = 0; swing->turns && i < 2; i++) {
         rate[i] += around[i];
     }
-    dea_ring_state(ring, turn, rate, y);
+    dea_rotation_state(swing, turn, rate, y);
     moment->charging = true;
-    moment->charge_slope = (y[motion->q] - (ring->turns ? ring->center[motion->q] : 0.0)) * motion->size[motion->q];
+    moment->charge_slope = (y[motion->q] - (swing->turns ? swing->center[motion->q] : 0.0)) * motion->size[motion->q];
 }
 
 /* Where a damper alone sets the velocity of the last sample, the force that drives it is a small difference: IDA's own slope of u
@@ -121,8 +122,8 @@ static dea_state take_samples(dea_flight *flight, double time, bool last)
         if (!w) {
             return at <= time ? DEA_STATE_FAILED : DEA_STATE_OK;
         }
-        const dea_turn turn = dea_ring_turn(flight->ring, fmin(at, time), 0.0);
-        dea_ring_state(flight->ring, turn, w, y);
+        const dea_turn turn = dea_rotation_turn(flight->swing, fmin(at, time), 0.0);
+        dea_rotation_state(flight->swing, turn, w, y);
         if (!dea_flight_record(flight, at, y)) {
             return DEA_STATE_PULL_IN;
         }
@@ -147,15 +148,15 @@ static double gauss_at(int g)
     return g < NODES / 2 ? gauss[NODES / 2 - 1 - g] : gauss[g - NODES / 2];
 }
 
-/* What a quadrature over a step adds up: at a time, its ring turned on by an angle, with that weight [s]. */
+/* What a quadrature over a step adds up: at a time, its swing turned on by an angle, with that weight [s]. */
 typedef void visit(const dea_flight *flight, double time, double angle, const double *w, double weight, double *sum);
 
 static void audit_at(const dea_flight *flight, double time, double angle, const double *w, double weight, double *sum)
 {
     (void)sum;
     double y[DEA_MOTION_MOST], z[DEA_RELAXED_MAX];
-    const dea_turn turn = dea_ring_turn(flight->ring, time, angle);
-    dea_ring_state(flight->ring, turn, w, y);
+    const dea_turn turn = dea_rotation_turn(flight->swing, time, angle);
+    dea_rotation_state(flight->swing, turn, w, y);
     dea_moment moment = dea_motion_moment(&flight->motion, time, y);
     take_current(flight, time, turn, w, &moment);
     dea_motion_branches(&flight->motion, y, z);
@@ -165,11 +166,11 @@ static void audit_at(const dea_flight *flight, double time, double angle, const 
 static void displacement_at(const dea_flight *flight, double time, double angle, const double *w, double weight, double *sum)
 {
     double y[DEA_MOTION_MOST];
-    dea_ring_state(flight->ring, dea_ring_turn(flight->ring, time, angle), w, y);
+    dea_rotation_state(flight->swing, dea_rotation_turn(flight->swing, time, angle), w, y);
     *sum += weight * y[0] * flight->motion.size[0];
 }
 
-/* Powers that turn with the ring, P = sum p_k e^{ik omega t}, |k| <= 2, with p_k smooth over the step of half width a: at each
+/* Powers that turn with the swing, P = sum p_k e^{ik omega t}, |k| <= 2, with p_k smooth over the step of half width a: at each
  * node t_g all p_k follow from PHASES turned states, and with int_-1^1 P_l(x) e^{iqx} dx = 2 i^l j_l(q) the weight of phase phi_j
  * is
  *
@@ -195,7 +196,7 @@ static void project(double x, double q, double *real, double *imaginary)
 static void visit_turns(const dea_flight *flight, double from, double to, visit *at, double *sum)
 {
     const double half = 0.5 * (to - from);
-    const double kappa = flight->ring->omega * half;
+    const double kappa = flight->swing->omega * half;
     for (int g = 0; g < NODES; g++) {
         const double x = node_at(g);
         const double time = from + half * (1.0 + x);
@@ -219,10 +220,10 @@ static void visit_turns(const dea_flight *flight, double from, double to, visit 
     }
 }
 
-/* Part of a step: by Gauss's rule where it resolves the ring. */
+/* Part of a step: by Gauss's rule where it resolves the swing. */
 static void visit_step(const dea_flight *flight, double from, double to, visit *at, double *sum)
 {
-    const double angle = flight->ring->turns ? 0.5 * flight->ring->omega * (to - from) : 0.0;
+    const double angle = flight->swing->turns ? 0.5 * flight->swing->omega * (to - from) : 0.0;
     if (angle > NODES) {
         visit_turns(flight, from, to, at, sum);
         return;
@@ -256,7 +257,7 @@ static bool state_at(void *user, double time, double *y)
     const dea_flight *flight = user;
     const double *w = unknowns_at(flight, time, 0);
     if (w) {
-        dea_ring_state(flight->ring, dea_ring_turn(flight->ring, time, 0.0), w, y);
+        dea_rotation_state(flight->swing, dea_rotation_turn(flight->swing, time, 0.0), w, y);
     }
     return w != NULL;
 }
@@ -272,34 +273,34 @@ static double current_at(void *user, double time)
         return 0.0;
     }
     memcpy(w, there, (size_t)flight->motion.count * sizeof *w);
-    const dea_turn turn = dea_ring_turn(flight->ring, at, 0.0);
-    dea_ring_state(flight->ring, turn, w, y);
+    const dea_turn turn = dea_rotation_turn(flight->swing, at, 0.0);
+    dea_rotation_state(flight->swing, turn, w, y);
     dea_moment moment = dea_motion_moment(&flight->motion, at, y);
     take_current(flight, at, turn, w, &moment);
     return dea_dynamics_current(flight->motion.dynamics, &moment);
 }
 
-/* Sees the current over a step: in a frame that turns, radian by radian while the tolerance sees the ring. */
+/* Sees the current over a step: in a frame that turns, radian by radian while the tolerance sees the swing. */
 static void see_current(dea_flight *flight, double before, double time)
 {
-    const dea_ring *ring = flight->ring;
+    const dea_rotation *swing = flight->swing;
     const double begin = flight->motion.segment->from;
     const double *w = NV_DATA_S(flight->integrator.y);
-    const bool lives = ring->turns && hypot(w[0], w[1]) > flight->tolerance;
-    const double parts = lives ? ceil(ring->omega * (time - before)) : 1.0;
+    const bool lives = swing->turns && hypot(w[0], w[1]) > flight->tolerance;
+    const double parts = lives ? ceil(swing->omega * (time - before)) : 1.0;
     for (double i = 0.0; i < parts && flight->peaks; i++) {
         const double from = before + (time - before) * (i / parts), to = before + (time - before) * ((i + 1.0) / parts);
         dea_peak_search(&flight->trace->peak, begin + from, begin + to, current_at, flight);
     }
 }
 
-/* Highest order of BDF behind an explicit method. From order 3 on BDF lets the tail of a ring grow while a step is a part of its
+/* Highest order of BDF behind an explicit method. From order 3 on BDF lets the tail of a swing grow while a step is a part of its
  * period, and may crawl through all that is left, a step a radian. Order 2 never does; of its steps, relaxation takes about
  * 4/tolerance^(1/3). */
 static int best_order(const dea_flight *flight, double from)
 {
     const dea_segment *segment = flight->motion.segment;
-    const double radians = flight->ring->omega * (segment->to - segment->from - from);
+    const double radians = flight->swing->omega * (segment->to - segment->from - from);
     return from > 0.0 && radians > 4.0 / cbrt(flight->tolerance) ? 2 : 5;
 }
 
@@ -310,12 +311,12 @@ static bool begin(dea_flight *flight, double from)
     double f[DEA_MOTION_MOST];
     double *w = NV_DATA_S(m->y);
     double *slope = NV_DATA_S(m->yp);
-    const dea_turn turn = dea_ring_turn(flight->ring, from, 0.0);
-    dea_ring_unknowns(flight->ring, turn, flight->y, w);
+    const dea_turn turn = dea_rotation_turn(flight->swing, from, 0.0);
+    dea_rotation_unknowns(flight->swing, turn, flight->y, w);
     if (!dea_motion_rates(&flight->motion, from, flight->y, f)) {
         return false;
     }
-    dea_ring_rates(flight->ring, turn, w, f, slope);
+    dea_rotation_rates(flight->swing, turn, w, f, slope);
     if (flight->motion.algebraic) {
         slope[0] = dea_motion_moment(&flight->motion, from, flight->y).v / flight->motion.size[0];
     }

@@ -6,7 +6,8 @@
  *
  * IDA finds lambda_1 behind the edge itself, from the continuity of s1; KINSOL finds the edge, from d2 = 0 at the frame. Unknowns
  * are scaled by the load, so that no tolerance depends on its size. The capacitance of the annulus of a lens,
- * (2 pi eps R_a^2/H) int (lambda_1 lambda_2)^2 exp(2 x) dx, is summed over IDA's own steps. */
+ * (2 pi eps R_a^2/H) int (lambda_1 lambda_2)^2 exp(2 x) dx, is summed over IDA's own steps. A permittivity that follows the strain
+ * puts its factors (dea_film_electric()) before k and that integrand. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -57,7 +58,7 @@ struct dea_shooting {
     double tolerance;
     double least_stress; /* of the last integration [Pa] */
     double largest_area; /* largest lambda_1 lambda_2 of the electroded region [1] */
-    double edge_force;   /* lambda_1 lambda_2^2 of the electroded side at r_a [1] */
+    double edge_force;   /* lambda_1 lambda_2^2 of the electroded side at r_a, over k its stress [1] */
     double radial;       /* lambda_1 behind r_a [1] */
     limits limits;       /* at the end of the last step */
     panel end;           /* and there */
@@ -108,10 +109,11 @@ static int residual(sunrealtype x, N_Vector y, N_Vector yp, N_Vector r, void *us
     if (isnan(shear)) {
         return 1; /* a trial step too far, or past the end of the energy: IDA takes a shorter one */
     }
-    const double difference = (d1 - d2) * (shear + s->annulus_k * l1 * l2); /* s1 - s2 */
+    const double k = s->annulus_k * dea_film_electric(film, l1 * l2).first;
+    const double difference = (d1 - d2) * (shear + k * l1 * l2); /* s1 - s2 */
     out[SIGMA] = slope[SIGMA] + difference / s->stress;
     out[HOOP] = slope[HOOP] - (v[RADIAL] - v[HOOP]);
-    out[RADIAL] = (stress_change(s, ANNULUS, d1, d2) - s->annulus_k * l1 * l2 * l2) / s->stress - v[SIGMA];
+    out[RADIAL] = (stress_change(s, ANNULUS, d1, d2) - k * l1 * l2 * l2) / s->stress - v[SIGMA];
     return 0;
 }
 
@@ -136,13 +138,14 @@ static limits limits_at(const dea_shooting *s, double x)
     const sunrealtype *v = NV_DATA_S(s->integrator.y), *slope = NV_DATA_S(s->integrator.yp);
     const double l1 = s->point->film.prestretch + s->strain * v[RADIAL], l1_slope = s->strain * slope[RADIAL];
     const double l2 = s->point->film.prestretch + s->strain * v[HOOP], l2_slope = s->strain * slope[HOOP];
-    const double k = s->annulus_k;
+    const dea_electric electric = dea_film_electric(&s->point->film, l1 * l2);
+    const double k = s->annulus_k * electric.first, k_slope = s->annulus_k * electric.second;
     const dea_stress stress = stress_at(s, ANNULUS, l1, l2);
     const double hoop = stress.p2 - k * l2 * l1 * l1;
     return (limits){.x = x,
                     .stress = fmin(stress.p1 - k * l1 * l2 * l2, hoop),
                     .hoop = hoop,
-                    .hoop_slope = (stress.w12 - 2.0 * k * l1 * l2) * l1_slope + (stress.w22 - k * l1 * l1) * l2_slope,
+                    .hoop_slope = (stress.w12 - (k + k_slope) * l1 * l2) * l1_slope + (stress.w22 - k_slope * l1 * l1) * l2_slope,
                     .area = l1 * l2,
                     .area_slope = l1_slope * l2 + l1 * l2_slope};
 }
@@ -182,7 +185,8 @@ static panel panel_at(const dea_shooting *s, double x)
     const double l1 = s->point->film.prestretch + s->strain * v[RADIAL];
     const double l2 = s->point->film.prestretch + s->strain * v[HOOP];
     const double area = l1 * l2, growth = s->strain * (slope[RADIAL] * l2 + l1 * slope[HOOP]), weight = exp(2.0 * x);
-    return (panel){x, area * area * weight, 2.0 * area * (growth + area) * weight};
+    const dea_electric electric = dea_film_electric(&s->point->film, area);
+    return (panel){x, electric.own * area * area * weight, 2.0 * area * (electric.first * growth + electric.own * area) * weight};
 }
 
 /* Adds the step to @p x by the trapezoidal rule with its end correction, h/2 (q0 + q1) + h^2/12 (q0' - q1'). */
@@ -194,22 +198,29 @@ static void add_charge(dea_shooting *s, double x)
     s->end = to;
 }
 
+/* Nominal stress of the voltage in the uniform disc. */
+static double disc_pull(const dea_shooting *s, double l)
+{
+    return s->disc_k * dea_film_electric(&s->point->film, l * l).first * l * l * l;
+}
+
 /* Jump of lambda_1 at the edge by its own Newton steps, only to start IDA's search near its goal. */
 static double jump_guess(const dea_shooting *s, double l)
 {
     const double edge = l - s->point->film.prestretch;
-    const double load = (s->disc_k - s->annulus_k) * l * l * l;
-    const double at_edge = stress_change(s, DISC, edge, edge) + load_stress(s, edge);
+    const double at_edge = stress_change(s, DISC, edge, edge) + load_stress(s, edge) - disc_pull(s, l);
     double jump = 0.0;
     double sound = 0.0; /* last place within the energy */
     for (int i = 0; i < 60; i++) {
-        const double slope = stress_at(s, ANNULUS, l - jump, l).w11 - s->annulus_k * l * l;
+        const dea_electric electric = dea_film_electric(&s->point->film, (l - jump) * l);
+        const double slope = stress_at(s, ANNULUS, l - jump, l).w11 - s->annulus_k * electric.second * l * l;
         if (isnan(slope) && jump != sound) { /* a step went past the end of the energy */
             jump = 0.5 * (sound + jump);
             continue;
         }
         sound = jump;
-        const double excess = stress_change(s, ANNULUS, edge - jump, edge) - at_edge + load + s->annulus_k * jump * l * l;
+        const double pull = s->annulus_k * electric.first * (l - jump) * l * l;
+        const double excess = stress_change(s, ANNULUS, edge - jump, edge) - at_edge - pull;
         const double most = 0.25 * (l - jump); /* lambda_1 moves by a quarter at most: the first root is meant */
         jump += slope > 0.0 ? fmax(-most, fmin(most, excess / slope)) : copysign(most, excess);
         if (fabs(jump - sound) <= 1e-9 * fabs(jump)) {
@@ -225,7 +236,7 @@ static bool start(dea_shooting *s, double edge)
     dea_integrator *m = &s->integrator;
     const dea_sundials *sun = m->sun;
     const double l = s->point->film.prestretch + edge;
-    const double sigma = stress_change(s, DISC, edge, edge) + load_stress(s, edge) - s->disc_k * l * l * l;
+    const double sigma = stress_change(s, DISC, edge, edge) + load_stress(s, edge) - disc_pull(s, l);
     sunrealtype *v = NV_DATA_S(m->y);
     v[SIGMA] = sigma / s->stress;
     v[HOOP] = edge / s->strain;
@@ -237,12 +248,10 @@ static bool start(dea_shooting *s, double edge)
         sun->IDAGetConsistentIC(m->ida, m->y, m->yp) != IDA_SUCCESS) {
         return false;
     }
-    const double l1 = s->point->film.prestretch + s->strain * v[RADIAL];
-    const bool lens = s->point->kind == DEA_LENS;
-    s->least_stress = stress_at(s, DISC, l, l).p1 - s->disc_k * l * l * l;
-    s->largest_area = lens ? l1 * l : l * l;
-    s->radial = l1;
-    s->edge_force = lens ? l1 * l * l : l * l * l;
+    s->radial = s->point->film.prestretch + s->strain * v[RADIAL];
+    s->least_stress = stress_at(s, DISC, l, l).p1 - disc_pull(s, l);
+    s->largest_area = s->point->kind == DEA_LENS ? s->radial * l : l * l;
+    s->edge_force = dea_film_electric(&s->point->film, s->largest_area).first * s->largest_area * l;
     s->charge = 0.0;
     s->end = panel_at(s, 0.0);
     s->limits = limits_at(s, 0.0);
@@ -406,7 +415,7 @@ static double least_s11(const dea_shooting *s, place a, place b)
         const double l2 = s->point->film.prestretch + a.edge + weight * (b.edge - a.edge);
         const double l1 = a.radial + weight * (b.radial - a.radial);
         const double k = lens ? s->pressure * (a.share + weight * (b.share - a.share)) : 0.0;
-        least = fmin(least, stress_at(s, ANNULUS, l1, l2).w11 - k * l2 * l2);
+        least = fmin(least, stress_at(s, ANNULUS, l1, l2).w11 - k * dea_film_electric(&s->point->film, l1 * l2).second * l2 * l2);
     }
     return least;
 }
@@ -539,7 +548,8 @@ static dea_found found_at(const dea_shooting *s, double edge)
 /* What the film exerts on an edge that is held under a share of the load, outward [N]. At rest it is uniform. */
 static double force_on_edge(dea_shooting *s, double share, double edge)
 {
-    const double l = s->point->film.prestretch, push = dea_point_sign(s->point) * share * s->pressure * l * l * l;
+    const double l = s->point->film.prestretch;
+    const double push = dea_point_sign(s->point) * share * s->pressure * dea_point_electric(s->point).first * l * l * l;
     const double pull = lame_stiffness(s->point) * edge - push;
     s->stress = fabs(push) + s->point->film.w11 * fabs(edge);
     s->strain = fabs(edge);
@@ -557,7 +567,8 @@ static double held_at(dea_shooting *s, double edge, double *push)
 {
     const double held = -force_on_edge(s, 0.0, edge), l = s->point->film.prestretch + edge;
     const bool dot = s->point->kind == DEA_DOT;
-    *push = dot ? lever_of(s->point) * s->pressure * l * l * l : force_on_edge(s, 1.0, edge) + held;
+    const double first = dea_film_electric(&s->point->film, l * l).first;
+    *push = dot ? lever_of(s->point) * s->pressure * first * l * l * l : force_on_edge(s, 1.0, edge) + held;
     if (dot) {
         s->pull -= *push / lever_of(s->point);
     }

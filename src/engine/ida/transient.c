@@ -17,7 +17,7 @@ static const double safety = 9.0;
 static const double doubt = 1.5;       /* most that an error is taken for, over the difference of two runs */
 static const double first_share = 0.1; /* from one tolerance to the next */
 static const double least_tolerance = 1e-14;
-static const double tight = 1e-11; /* a tolerance that sees every ring that rounding leaves */
+static const double tight = 1e-11; /* a tolerance that sees every swing that rounding leaves */
 /* Accuracies near the engine's best, where two runs share some of their error, so that their difference must lie further below. */
 static const double fine = 1e-8, margin = 0.3, first_bar = 0.15;
 /* A loose step may carry a film out of its frame that turns back just before it: an end of the motion counts from this tolerance on,
@@ -90,8 +90,8 @@ static gap difference(const dea_flight *flight, const dea_scales *scales, const 
     return g;
 }
 
-/* Local tolerance with which a run is likely to be good enough: errors of an explicit method add up over a ring. A corner of a slow
- * voltage sets off a ring of a velocity like the film's own, 1/(omega T) of its displacement, which no looser run would see. */
+/* Local tolerance with which a run is likely to be good enough: errors of an explicit method add up over a swing. A corner of a slow
+ * voltage sets off a swing of a velocity like the film's own, 1/(omega T) of its displacement, which no looser run would see. */
 static double first_tolerance(const dea_flight *flight, const dea_scales *scales, double accuracy)
 {
     const dea_dynamics *d = flight->motion.dynamics;
@@ -274,7 +274,7 @@ dea_status dea_transient_solve(const dea_sundials *sun, const dea_scene *scene, 
 {
     dea_dynamics dynamics;
     *summary = dea_summary_failed();
-    dea_status status = dea_lapack_load(error); /* for the ring, see ring.c */
+    dea_status status = dea_lapack_load(error); /* for the swing, see swing.c */
     if (status != DEA_OK) {
         return status;
     }

@@ -31,10 +31,7 @@ static void write_ramp(FILE *out, const dea_mobility_piece *p, const dea_segment
     const double parts = brief ? p->parts : 1.0;
     for (double part = 1.0; part <= parts; part++) {
         const double time = part == parts ? end : from + (end - from) * (part / parts);
-        fputc(' ', out);
-        dea_part_number(out, time - p->from);
-        fputc(' ', out);
-        dea_part_number(out, dea_segment_voltage(p->signal, segment, time));
+        dea_part_print(out, " %g %g", time - p->from, dea_segment_voltage(p->signal, segment, time));
     }
 }
 
@@ -53,9 +50,7 @@ void dea_deck_source(FILE *out, const dea_mobility_piece *p, const char *node)
         dea_curve_cards_write(&cards);
         return;
     }
-    fprintf(out, "VSOURCE %s 0 ", node);
-    fputs("pwl(0 ", out);
-    dea_part_number(out, dea_segment_voltage(p->signal, segment, p->from));
+    dea_part_print(out, "VSOURCE %s 0 pwl(0 %g", node, dea_segment_voltage(p->signal, segment, p->from));
     for (size_t i = p->segment; i < p->signal->count && p->signal->segments[i].from < p->to; i++) {
         write_ramp(out, p, &p->signal->segments[i]);
     }
@@ -102,13 +97,10 @@ static void write_analysis(const writer *w)
     /* rounding of the velocity: of that of a ring, or where no mass holds it, of differences of u over a step */
     const double ring = p->mass > 0.0 ? 1e-14 * sqrt(p->force * p->scale / p->mass) : 1e-11 * speed;
     const double noise = w->mobility->displaced ? 0.0 : ring;
-    fprintf(w->out, ".options method=trap trtol=1e30 itl4=50 pivtol=1e-60 pivrel=%s reltol=", w->mobility->displaced ? "0.3" : "1");
-    dea_part_number(w->out, p->tolerance);
-    fputs(" vntol=", w->out);
-    dea_part_number(w->out, p->loose * (1e-11 * fmin(speed, p->scale) + noise));
-    fputs(" abstol=", w->out);
-    dea_part_number(w->out, p->loose * current_tolerance(w));
-    fputs(" chgtol=1e-30\n.save", w->out);
+    dea_part_print(w->out,
+                   ".options method=trap trtol=1e30 itl4=50 pivtol=1e-60 pivrel=%s reltol=%g vntol=%g abstol=%g chgtol=1e-30\n"
+                   ".save",
+                   w->mobility->displaced ? "0.3" : "1", p->tolerance, p->loose * (1e-11 * fmin(speed, p->scale) + noise), p->loose * current_tolerance(w));
     for (size_t i = 1; i < vectors.count; i++) {
         const char *name = vectors.names[i];
         const char *mark = strchr(name, '#');
@@ -118,13 +110,7 @@ static void write_analysis(const writer *w)
             fprintf(w->out, " v(%s)", name);
         }
     }
-    fputs("\n.tran ", w->out);
-    dea_part_number(w->out, p->mass > 0.0 ? 0.01 * p->step : p->step);
-    fputc(' ', w->out);
-    dea_part_number(w->out, p->to - p->from);
-    fputs(" 0 ", w->out);
-    dea_part_number(w->out, p->step);
-    fputs(" uic\n.end\n", w->out);
+    dea_part_print(w->out, "\n.tran %g %g 0 %g uic\n.end\n", p->mass > 0.0 ? 0.01 * p->step : p->step, p->to - p->from, p->step);
 }
 
 static void write_piece(writer *w)

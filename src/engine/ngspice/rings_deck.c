@@ -34,8 +34,7 @@ static void write_states(FILE *out, const char *card, const dea_membrane *membra
     for (size_t i = 0; i < dea_rings_states(membrane); i++) {
         fprintf(out, "%s%s v(%s)", i % NAMES ? "" : "\n", i % NAMES ? "" : card, dea_rings_state_node(membrane, i).text);
         if (values) {
-            fputc('=', out);
-            dea_part_number(out, values[i]);
+            dea_part_print(out, "=%g", values[i]);
         }
     }
     fputc('\n', out);
@@ -45,19 +44,11 @@ static void write_states(FILE *out, const char *card, const dea_membrane *membra
  * corner at the print interval, with a first step of the Euler rule behind it: that interval is short. All nodes are of size 1. */
 static void write_analysis(FILE *out, const dea_mobility_piece *p)
 {
-    fputs(".options method=trap trtol=1e30 itl4=50 pivtol=1e-60 reltol=", out);
-    dea_part_number(out, p->tolerance);
-    fputs(" vntol=", out);
-    dea_part_number(out, p->loose * 1e-11);
-    fputs(" abstol=", out);
-    dea_part_number(out, p->loose * 1e-10);
-    fputs(" chgtol=1e-30\n.tran ", out);
-    dea_part_number(out, 0.01 * p->step);
-    fputc(' ', out);
-    dea_part_number(out, p->to - p->from);
-    fputs(" 0 ", out);
-    dea_part_number(out, p->step);
-    fputs(" uic\n.end\n", out);
+    dea_part_print(out,
+                   ".options method=trap trtol=1e30 itl4=50 pivtol=1e-60 reltol=%g vntol=%g abstol=%g chgtol=1e-30\n"
+                   ".tran %g %g 0 %g uic\n"
+                   ".end\n",
+                   p->tolerance, p->loose * 1e-11, p->loose * 1e-10, 0.01 * p->step, p->to - p->from, p->step);
 }
 
 dea_status dea_rings_deck_write(const char *network, const dea_membrane *membrane, const dea_mobility_piece *piece,

@@ -140,13 +140,8 @@ static dea_status write_deck(const dea_rings_line *line, const line_job *job, si
     if (status == DEA_OK) {
         fputs("* exact membrane as a network of rings\n", out);
         status = dea_rings_line_write(line, dea_dialect_at(0), out, error);
-        fputs("VINDEX k 0 0\n.options itl1=100 itl2=100 gminsteps=0 srcsteps=0 reltol=", out);
-        dea_part_number(out, fmin(1e-7, job->accuracy));
-        fputs(" vntol=", out);
-        dea_part_number(out, 1e-11 * strain);
-        fputs(" abstol=", out);
-        dea_part_number(out, 1e-11 * strain);
-        fputs("\n.save", out);
+        dea_part_print(out, "VINDEX k 0 0\n.options itl1=100 itl2=100 gminsteps=0 srcsteps=0 reltol=%g vntol=%g abstol=%g\n.save",
+                       fmin(1e-7, job->accuracy), 1e-11 * strain, 1e-11 * strain);
         for (size_t n = 1; n < line->mesh.disc + line->mesh.annulus; n++) {
             fprintf(out, " v(xline%zu.u%zu)", line->number, n);
         }

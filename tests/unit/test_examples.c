@@ -371,12 +371,12 @@ static void antagonists_share_the_way_of_each(void **state)
 {
     (void)state;
     run_example("antagonists");
-    const dea_row *still = row_at("field", 0.0, 0.0), *pushed = row_at("field", 0.0, 4500.0), *pulled = row_at("field", 4500.0, 0.0);
+    const dea_row *still = row_at("ring", 0.0, 0.0), *pushed = row_at("ring", 0.0, 4500.0), *pulled = row_at("ring", 4500.0, 0.0);
     const double alone = 0.0450329722, lens = -0.0374163; /* physics, section 3 */
     assert_true(still->strain == 0.0);
     assert_true(0.4 * alone < pushed->strain && pushed->strain < 0.5 * alone);
     assert_true(0.55 * lens < pulled->strain && pulled->strain < 0.45 * lens);
-    const dea_row *both = row_at("field", 4500.0, 4500.0);
+    const dea_row *both = row_at("ring", 4500.0, 4500.0);
     assert_true(pulled->strain < both->strain && both->strain < pushed->strain);
     assert_true(both->second_field > 5e7);
 }

@@ -45,6 +45,10 @@ typedef struct dea_point {
 DEA_API void dea_film_prepare(const dea_scene *scene, dea_film *film);
 /** Sets geometry and voltage of @p point from the scene; its film stays as it is. */
 DEA_API void dea_point_place(const dea_scene *scene, dea_point *point);
+/** True where anything but its film acts on the edge of a scene at this place of its axes: only models with an edge can do it. */
+DEA_API bool dea_scene_is_loaded(const dea_scene *scene);
+/** True where a steady force or a second film moves the edge of a scene without its voltage, whatever the place of its axes. */
+DEA_API bool dea_scene_is_pulled(const dea_scene *scene);
 /** True where all numbers of the point are in their ranges (a grid can hold a corner that is not). */
 DEA_API bool dea_point_valid(const dea_point *point);
 

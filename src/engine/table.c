@@ -1,3 +1,4 @@
+#include "deaspice/model.h"
 #include "engine/engines.h"
 #include "study/study.h"
 
@@ -22,6 +23,8 @@ const char *dea_engine_refuses(const dea_engine *engine, const dea_scene *scene,
         return study->engine_fails;
     if (!dea_study_takes(study, model))
         return study->model_lacks;
+    if (!model->edge && dea_scene_is_loaded(scene))
+        return "the model has no edge that a load or a second film acts on";
     if (study->timed && scene->transient.points > 0 && !engine->profiles)
         return "its transients have no profiles";
     if (model->membrane && scene->drive.current_limit > 0.0)

@@ -1,4 +1,6 @@
 /* From the scene to one static point. */
+#include <stddef.h>
+
 #include "geometry/second.h"
 #include "model/models.h"
 
@@ -99,6 +101,21 @@ void dea_point_place(const dea_scene *scene, dea_point *point)
     point->force = isnan(scene->load.force) ? 0.0 : scene->load.force;
     place_second(scene, &point->second);
     place_skin(&scene->electrode, point);
+}
+
+bool dea_scene_is_pulled(const dea_scene *scene)
+{
+    bool swept = false;
+    for (size_t i = 0; i < scene->axis_count; i++) {
+        swept = swept || scene->axes[i].offset == offsetof(dea_scene, load.force);
+    }
+    return swept || fabs(scene->load.force) > 0.0 || scene->antagonist.there;
+}
+
+bool dea_scene_is_loaded(const dea_scene *scene)
+{
+    const dea_edge_load *load = &scene->load;
+    return load->stiffness > 0.0 || load->mass > 0.0 || load->damping > 0.0 || dea_scene_is_pulled(scene);
 }
 
 bool dea_point_valid(const dea_point *point)

@@ -668,12 +668,14 @@ static bool hold(const dea_point *point, double strain, dea_hold *hold)
     if (!(pre + edge > step)) {
         return false;
     }
-    const double up = held_at(&full, &still, edge + step, &above, &side);
-    const double down = held_at(&full, &still, edge - step, &below, &side);
-    const double over = 0.5 / (step * dea_point_divide(point) / pre);
     hold->held = held_at(&full, &still, edge, &hold->push, &d);
-    hold->held_slope = (up - down) * over;
-    hold->push_slope = (above - below) * over;
+    hold->held_slope = hold->push_slope = 0.0;
+    if (!hold->plain) {
+        const double over = 0.5 / (step * dea_point_divide(point) / pre);
+        const double up = held_at(&full, &still, edge + step, &above, &side), down = held_at(&full, &still, edge - step, &below, &side);
+        hold->held_slope = (up - down) * over;
+        hold->push_slope = (above - below) * over;
+    }
     const bool there = isfinite(hold->held) && isfinite(hold->push) && isfinite(miss_from(&full, edge, d, &x));
     if (there) {
         hold->found = found_of(point, edge, &x);

@@ -237,7 +237,7 @@ static bool hold(const dea_point *point, double strain, dea_hold *hold)
     linear(point, &l);
     const double square = point->voltage * point->voltage, u = strain * dea_point_divide(point);
     const double stiffness = l.stiffness + l.beside - point->load, softening = l.softening * square;
-    *hold = (dea_hold){found_at(point, strain, false), stiffness * u, stiffness, l.force * square - softening * u, -softening};
+    *hold = (dea_hold){false, found_at(point, strain, false), stiffness * u, stiffness, l.force * square - softening * u, -softening};
     return stiffness > 0.0;
 }
 

@@ -26,9 +26,9 @@ typedef struct edge_forces {
     dea_found found, second;
 } edge_forces;
 
-static bool look(const parties *p, double strain, edge_forces *f)
+static bool look(const parties *p, double strain, bool plain, edge_forces *f)
 {
-    dea_hold one, other = {0};
+    dea_hold one = {.plain = plain}, other = {.plain = plain};
     const dea_holder *h = p->holder;
     if (!h->hold(h->user, p->point, strain, &one) || (p->second && !h->hold(h->user, p->second, strain, &other))) {
         return false;
@@ -49,7 +49,7 @@ static dea_path_place place_at(const void *user, double x)
     const parties *p = user;
     const double none = (double)NAN, sign = p->toward;
     edge_forces f;
-    if (!look(p, p->base + sign * x, &f)) {
+    if (!look(p, p->base + sign * x, false, &f)) {
         return (dea_path_place){none, none, none, none};
     }
     const double slope = sign * p->radius / p->begin;
@@ -90,7 +90,7 @@ static bool grow(parties *p, bool driven)
     edge_forces f;
     double x = 0.0;
     p->driven = driven;
-    if (!look(p, p->base, &f)) {
+    if (!look(p, p->base, false, &f)) {
         return false;
     }
     const double weight = driven ? f.push : f.load, slope = driven ? f.held_slope - f.load_slope : f.held_slope;
@@ -139,7 +139,7 @@ void dea_loaded_solve(const dea_holder *holder, const dea_point *point, dea_row 
     const dea_point second = dea_point_second(point);
     parties p = parties_of(holder, point, &second);
     edge_forces f;
-    if (!grow(&p, false) || !grow(&p, true) || !look(&p, p.base, &f)) {
+    if (!grow(&p, false) || !grow(&p, true) || !look(&p, p.base, true, &f)) {
         dea_row_refuse(row, DEA_STATE_PULL_IN);
         return;
     }
@@ -153,7 +153,7 @@ void dea_loaded_hold(const dea_holder *holder, const dea_point *point, double di
     const double room = point->frame_radius - p.radius;
     edge_forces f;
     dea_row_refuse(row, displacement > -p.radius && displacement < room ? DEA_STATE_PULL_IN : DEA_STATE_FAILED);
-    if (row->state == DEA_STATE_PULL_IN && look(&p, displacement / p.radius, &f)) {
+    if (row->state == DEA_STATE_PULL_IN && look(&p, displacement / p.radius, true, &f)) {
         fill(&p, &f, row);
         row->force = f.push + f.load - f.held;
     }
@@ -196,6 +196,8 @@ void dea_model_solve(const dea_model *model, const dea_point *point, double accu
 {
     if (point->force == 0.0 && !point->second.there) {
         model->solve(point, accuracy, row);
+    } else if (!model->hold) {
+        dea_row_refuse(row, DEA_STATE_FAILED); /* it has no edge */
     } else {
         const dea_holder holder = holder_of(&model);
         dea_loaded_solve(&holder, point, row);

@@ -124,7 +124,7 @@ static bool hold(const dea_point *point, double strain, dea_hold *hold)
     linear(point, &l);
     const dea_found found = found_at(point, strain, false);
     const double stiffness = l.stiffness + l.beside - point->load;
-    *hold = (dea_hold){found, stiffness * strain * dea_point_divide(point), stiffness, found.force, 0.0};
+    *hold = (dea_hold){false, found, stiffness * strain * dea_point_divide(point), stiffness, found.force, 0.0};
     return stiffness > 0.0;
 }
 

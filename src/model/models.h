@@ -159,6 +159,7 @@ typedef struct dea_found {
 
 /* A film whose edge is held at a strain. */
 typedef struct dea_hold {
+    bool plain; /* set by the caller: slopes are not wanted, and 0 where they cost anything */
     dea_found found;
     double held, held_slope; /* what the film without voltage pulls inward [N], and its slope over u [N/m] */
     double push, push_slope; /* what the voltage adds outward [N], [N/m] */

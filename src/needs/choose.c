@@ -32,7 +32,7 @@ static dea_row row_of(const dea_scene *scene, const dea_model *model)
     return dea_probe_row(scene, model, still_share * scene->model_error);
 }
 
-/* Relative error of the strain; infinite where the states differ. */
+/* Error of the strain relative to dea_probe_scale(); infinite where the states differ. */
 static double static_error(const dea_scene *scene, const dea_model *model, const dea_model *truth)
 {
     const dea_row row = row_of(scene, model), wanted = row_of(scene, truth);
@@ -42,7 +42,7 @@ static double static_error(const dea_scene *scene, const dea_model *model, const
     if (isnan(wanted.strain) || row.strain == wanted.strain) {
         return 0.0;
     }
-    return fabs(row.strain - wanted.strain) / fabs(wanted.strain);
+    return fabs((row.strain - wanted.strain) / dea_probe_scale(scene, truth, still_share * scene->model_error, wanted.strain));
 }
 
 /* ---- in time: the static error up to the largest voltage of the run, and where that is small the runs themselves. A film swings
@@ -260,8 +260,7 @@ static dea_status probe(standard *s, candidate *list, size_t count, double enoug
 static bool fits(const dea_scene *scene, const dea_engine *engine, const dea_model *model)
 {
     const bool kind = (model->lens || scene->actuator.kind == DEA_DOT) && dea_study_takes(dea_study_of(scene), model);
-    const bool loaded = scene->load.stiffness > 0.0 || scene->load.mass > 0.0;
-    return kind && (model->edge || !loaded) && dea_crew_of(scene, engine, model).count > 0;
+    return kind && dea_crew_of(scene, engine, model).count > 0;
 }
 
 /* Models that fit, the cheapest first, and of those that cost the same the nearest to the membrane: the last of the table. */

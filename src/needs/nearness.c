@@ -26,7 +26,7 @@ static void compare(const dea_scene *scene, const dea_model *model, const dea_mo
     if (isnan(strain) || isnan(wanted) || wanted == 0.0) {
         return;
     }
-    const double deviation = strain / wanted - 1.0;
+    const double deviation = (strain - wanted) / dea_probe_scale(scene, truth, accuracy, wanted);
     nearness->low = nearness->compared > 0 ? fmin(nearness->low, deviation) : deviation;
     nearness->high = nearness->compared > 0 ? fmax(nearness->high, deviation) : deviation;
     nearness->compared++;

@@ -24,7 +24,7 @@ static const double rounding = 1e-12; /* of a stand-in's answer, relative to its
 
 /* Of a membrane the ring stands in, for its mass alone: it swings in many modes. What a mass changes of a slow motion goes with the inverse
  * square of the resonance, which the ring has up to five times too high. */
-static const double safe_membrane = 4.0, safe_resonance = 2.0;
+static const double safe_membrane = 4.0, safe_resonance = 4.0;
 
 enum { MANY_BRANCHES = 8 };
 

@@ -1,5 +1,7 @@
 #include "needs/probes.h"
 
+#include <math.h>
+
 #include "scene/line.h"
 
 static size_t probes_of_axis(const dea_axis *axis, size_t most)
@@ -27,6 +29,14 @@ dea_scene dea_probe_scene(const dea_scene *scene, size_t most, size_t probe)
         probe /= count;
     }
     return here;
+}
+
+double dea_probe_scale(const dea_scene *scene, const dea_model *truth, double accuracy, double strain)
+{
+    dea_scene still = *scene;
+    still.drive.voltage = 0.0;
+    const double rest = dea_scene_is_pulled(scene) ? dea_probe_row(&still, truth, accuracy).strain : 0.0;
+    return copysign(fmax(fabs(strain), fabs(rest)), strain); /* of a NAN and a number the number */
 }
 
 dea_row dea_probe_row(const dea_scene *scene, const dea_model *model, double accuracy)

@@ -11,5 +11,8 @@ size_t dea_probe_count(const dea_scene *scene, size_t most);
 dea_scene dea_probe_scene(const dea_scene *scene, size_t most, size_t probe);
 /* The model's own static answer there. */
 dea_row dea_probe_row(const dea_scene *scene, const dea_model *model, double accuracy);
+/* What a model's error of a strain is told relative to: the strain, or with its sign that of a film at rest that something else than
+ * its voltage pulls, if that is larger. */
+double dea_probe_scale(const dea_scene *scene, const dea_model *truth, double accuracy, double strain);
 
 #endif

@@ -105,7 +105,8 @@ static void put_lists(FILE *out, const dea_scene *scene)
         put_number(out, "antagonist.material.modulus", other->material.modulus);
         put_number(out, "antagonist.material.breakdown", other->material.breakdown);
         put_numbers(out, "antagonist.material.prony", &other->material.prony[0].g, 2 * other->material.prony_count);
-        fprintf(out, "antagonist.material.moduli=%s\n", other->material.instantaneous ? "instantaneous" : "long-term");
+        fprintf(out, "antagonist.material.moduli=%s\nantagonist.material.permittivity.follows=%d\n",
+                other->material.instantaneous ? "instantaneous" : "long-term", other->material.permittivity_follows ? 1 : 0);
     }
     put_numbers(out, "material.prony", &material->prony[0].g, 2 * material->prony_count);
     put_numbers(out, "material.shift", material->shift.table[0], 2 * material->shift.count);

@@ -16,16 +16,27 @@
 /* Numbers below this share of a column's largest reference value are compared with that instead of with themselves. */
 static const double negligible = 1e-9;
 
+/* True of statics where something else moves the edge than the voltage of the film: a displacement is then the difference of two, and
+ * right relative to the larger of it and the rest without that voltage. */
+static bool is_pulled(const dea_scene *scene)
+{
+    return !dea_study_of(scene)->along && dea_scene_is_pulled(scene);
+}
+
 /* Columns that engines must agree on. */
 static void choose_columns(dea_comparison *comparison)
 {
+    static const size_t ways[] = {offsetof(dea_row, strain), offsetof(dea_row, displacement), offsetof(dea_row, area_strain)};
     const dea_study *study = dea_study_of(comparison->scene);
+    const bool pulled = is_pulled(comparison->scene);
     for (size_t i = 0; i < study->compared_count; i++) {
         const dea_study_column *known = &study->compared[i];
         for (size_t k = 0; k < comparison->layout.column_count; k++) {
             if (comparison->layout.columns[k].offset == known->offset) {
                 const double allowance = study->timed ? dea_scales_allowance(known->offset) : 1.0;
-                comparison->columns[comparison->column_count++] = (dea_compared){k, known->measure, known->head, allowance};
+                const bool way = pulled && (known->offset == ways[0] || known->offset == ways[1] || known->offset == ways[2]);
+                const dea_measure measure = way ? DEA_OVER_PEAK : known->measure;
+                comparison->columns[comparison->column_count++] = (dea_compared){k, measure, known->head, allowance};
             }
         }
     }
@@ -62,6 +73,22 @@ static double peak_of(const dea_comparison *comparison, const char *point, size_
     return peak;
 }
 
+/* The film of a point without its voltage. */
+static dea_row rest_of(const dea_comparison *comparison, size_t number)
+{
+    dea_scene here = *comparison->scene;
+    dea_point point;
+    dea_row rest = dea_row_failed();
+    dea_axes_place(&here, number);
+    here.drive.voltage = 0.0;
+    dea_film_prepare(&here, &point.film);
+    dea_point_place(&here, &point);
+    if (dea_point_valid(&point)) {
+        dea_model_solve(here.models[0], &point, here.accuracy, &rest);
+    }
+    return rest;
+}
+
 /* What the columns of a point of the reference count by. */
 static dea_status find_peaks(const dea_comparison *comparison, size_t number, const char *point, double peaks[DEA_COMPARED_COLUMNS])
 {
@@ -76,9 +103,12 @@ static dea_status find_peaks(const dea_comparison *comparison, size_t number, co
         }
         of = dea_scales_of(&scales, (const dea_sample *)(const void *)point, comparison->layout.rows);
     }
+    const bool pulled = is_pulled(comparison->scene);
+    const dea_row rest = pulled ? rest_of(comparison, number) : dea_row_failed();
     for (size_t c = 0; c < comparison->column_count; c++) {
+        const double without = pulled ? fabs(value_of(comparison, (const char *)&rest, c)) : comparison->least[c];
         peaks[c] = moving ? value_of(comparison, (const char *)&of, c)
-                          : fmax(peak_of(comparison, point, c), comparison->least[c]);
+                          : fmax(peak_of(comparison, point, c), without);
     }
     return DEA_OK;
 }

@@ -11,7 +11,8 @@ static const char *const texts[DEA_STUDIES] = {
     [DEA_STUDY_TRANSIENT] = "drive: {waveform: {step: {on: 0 s, voltage: 3 kV}}}\nstudy: {transient: {until: 1 s}}\n",
     [DEA_STUDY_AC] = "drive: {}\nstudy: {ac: {from: 1 Hz, to: 1 kHz, bias: 3 kV}}\n",
     [DEA_STUDY_MODES] = "drive: {}\nstudy: {modes: {bias: 3 kV}}\n",
-    [DEA_STUDY_PROFILE] = "drive: {voltage: 3 kV}\nstudy: {profile: {}}\n"};
+    [DEA_STUDY_PROFILE] = "drive: {voltage: 3 kV}\nstudy: {profile: {}}\n",
+    [DEA_STUDY_FORCE] = "drive: {voltage: 3 kV}\nstudy: {force: {displacement: {from: 0 mm, to: 0.5 mm}}}\n"};
 
 static dea_scene scene_read(dea_study_kind study, const char *rest)
 {

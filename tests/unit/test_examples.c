@@ -371,12 +371,12 @@ static void antagonists_share_the_way_of_each(void **state)
 {
     (void)state;
     run_example("antagonists");
-    const dea_row *still = row_at("field", 0.0, 0.0), *pushed = row_at("field", 0.0, 4500.0), *pulled = row_at("field", 4500.0, 0.0);
+    const dea_row *still = row_at("ring", 0.0, 0.0), *pushed = row_at("ring", 0.0, 4500.0), *pulled = row_at("ring", 4500.0, 0.0);
     const double alone = 0.0450329722, lens = -0.0374163; /* physics, section 3 */
     assert_true(still->strain == 0.0);
     assert_true(0.4 * alone < pushed->strain && pushed->strain < 0.5 * alone);
     assert_true(0.55 * lens < pulled->strain && pulled->strain < 0.45 * lens);
-    const dea_row *both = row_at("field", 4500.0, 4500.0);
+    const dea_row *both = row_at("ring", 4500.0, 4500.0);
     assert_true(pulled->strain < both->strain && both->strain < pushed->strain);
     assert_true(both->second_field > 5e7);
 }
@@ -449,6 +449,27 @@ static size_t run_rows(const char *name, void (*row)(char *const *cells, size_t 
     }
     assert_int_equal(fclose(file), 0);
     return rows;
+}
+
+/* displacement: at 0 the electrostatic force at rest, M lambda_pre^3 R_a 2 pi H of the exact film too; it falls as the film is let go,
+ * to 0 where the free film rests. */
+static void take_force(char *const *cells, size_t count)
+{
+    const double voltage = strtod(cells[0], NULL), moved = strtod(cells[1], NULL), force = strtod(cells[2], NULL);
+    const double nominal = voltage / 1e-4, push = 2.0 * DEA_PI * 1e-4 * 2.8 * 8.8541878128e-12 * nominal * nominal * 1.44 * 0.015;
+    assert_int_equal(count, 7);
+    assert_true(force <= push * (1.0 + 1e-9));
+    if (moved == 0.0) {
+        assert_relative(force, push, 1e-12);
+    } else if (voltage == 4500.0) {
+        assert_true((force > 0.0) == (moved < 0.0450329722 * 0.015));
+    }
+}
+
+static void a_blocked_dot_pushes_with_its_electrostatic_force(void **state)
+{
+    (void)state;
+    assert_int_equal(run_rows("force", take_force), 3 * 36);
 }
 
 /* bias_V, coverage, mode, frequency_Hz, damping_ratio, undamped_frequency_Hz, ...: frequencies of physics, section 7. */

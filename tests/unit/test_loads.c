@@ -305,6 +305,23 @@ static void antagonists_rest_where_their_forces_balance(void **state)
     }
 }
 
+/* A dot and a lens alike but for their kind, under voltages that differ little: what is left is small beside what each does. */
+static void films_that_all_but_cancel_keep_their_balance(void **state)
+{
+    (void)state;
+    const char *text = FILM("dot") "}\ndrive: {voltage: 2.99 kV}\nantagonist: {actuator: {kind: lens}, drive: {voltage: 3 kV}}\nstudy: {sweep: {}}\n";
+    const film dot = paper(true, 2990.0L), still = paper(true, 0.0L), lens = paper(false, 3000.0L);
+    for (size_t m = 0; m < MODELS; m++) {
+        const double wanted = (double)rest_of(m, &dot, &lens, 0.0L, 0.0L), pulled = (double)rest_of(m, &still, &lens, 0.0L, 0.0L);
+        assert_true(fabs(wanted) < 0.02 * fabs(pulled));
+        for (size_t e = 0; e < ENGINES; e++) {
+            if (run(text, models[m].name, engines[e], &one)) {
+                assert_near(rows_of(&one)->displacement, wanted, 1e-9 * fabs(pulled));
+            }
+        }
+    }
+}
+
 /* Two films of one kind under one voltage, each half as thick: the edge stays where the whole film has it. */
 static void two_films_abreast_move_as_one_that_is_twice_as_thick(void **state)
 {
@@ -493,6 +510,7 @@ int main(void)
         cmocka_unit_test(the_curve_of_forces_ends_where_the_free_film_rests),
         cmocka_unit_test(a_film_under_a_force_rests_where_forces_balance),
         cmocka_unit_test(antagonists_rest_where_their_forces_balance),
+        cmocka_unit_test(films_that_all_but_cancel_keep_their_balance),
         cmocka_unit_test(two_films_abreast_move_as_one_that_is_twice_as_thick),
         cmocka_unit_test(limits_of_the_second_film_are_told),
         cmocka_unit_test(a_film_rests_under_its_load_until_the_voltage_comes),

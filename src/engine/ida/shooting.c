@@ -52,7 +52,9 @@ struct dea_shooting {
     double pressure;        /* M at full load [Pa] */
     double disc_k;          /* Maxwell pressure in the disc at this share [Pa] */
     double annulus_k;       /* and in the annulus [Pa] */
-    double pull;            /* what pulls the edge outward beside film and load, over 2 pi R_a H [Pa] */
+    double pull;            /* what pulls the edge outward beside film and load, over 2 pi R_a H, less what a uniform film wants [Pa] */
+    double uniform;         /* where the edge is held: what of a uniform film's s1 is the voltage's, over lambda_pre^3, and no part of
+                               Sigma; else 0 [Pa] */
     double stress;          /* scale of Sigma [Pa] */
     double strain;          /* scale of d1, d2 [1] */
     double tolerance;
@@ -93,6 +95,19 @@ static dea_stress stress_at(const dea_shooting *s, region where, double l1, doub
     return is_coated(s, where) ? dea_point_coated_stress(s->point, l1, l2) : film->law->stress(film->constants, l1, l2);
 }
 
+/* Electrical stress k lambda_1 lambda_2^2 of the annulus, k that of its permittivity there and its electrostriction, less that of a
+ * uniform film where `uniform` is: by the rises of both factors, so that it keeps the digits of a small strain. */
+static double annulus_pull(const dea_shooting *s, double d1, double d2)
+{
+    const dea_film *film = &s->point->film;
+    const double pre = film->prestretch, l1 = pre + d1, l2 = pre + d2, k = s->annulus_k * dea_film_electric(film, l1 * l2).first;
+    if (s->uniform == 0.0) {
+        return k * l1 * l2 * l2;
+    }
+    const double stretch = (d1 * l2 + pre * d2) / (sqrt(l1 * l2) + pre); /* rise of the mean stretch, on which `first` is linear */
+    return k * (d1 * l2 * l2 + pre * d2 * (2.0 * pre + d2)) + 1.25 * s->annulus_k * film->electrostriction * stretch * pre * pre * pre;
+}
+
 static int residual(sunrealtype x, N_Vector y, N_Vector yp, N_Vector r, void *user)
 {
     const dea_shooting *s = user;
@@ -113,7 +128,7 @@ static int residual(sunrealtype x, N_Vector y, N_Vector yp, N_Vector r, void *us
     const double difference = (d1 - d2) * (shear + k * l1 * l2); /* s1 - s2 */
     out[SIGMA] = slope[SIGMA] + difference / s->stress;
     out[HOOP] = slope[HOOP] - (v[RADIAL] - v[HOOP]);
-    out[RADIAL] = (stress_change(s, ANNULUS, d1, d2) - k * l1 * l2 * l2) / s->stress - v[SIGMA];
+    out[RADIAL] = (stress_change(s, ANNULUS, d1, d2) - annulus_pull(s, d1, d2)) / s->stress - v[SIGMA];
     return 0;
 }
 
@@ -219,8 +234,7 @@ static double jump_guess(const dea_shooting *s, double l)
             continue;
         }
         sound = jump;
-        const double pull = s->annulus_k * electric.first * (l - jump) * l * l;
-        const double excess = stress_change(s, ANNULUS, edge - jump, edge) - at_edge - pull;
+        const double excess = stress_change(s, ANNULUS, edge - jump, edge) - at_edge - annulus_pull(s, edge - jump, edge);
         const double most = 0.25 * (l - jump); /* lambda_1 moves by a quarter at most: the first root is meant */
         jump += slope > 0.0 ? fmax(-most, fmin(most, excess / slope)) : copysign(most, excess);
         if (fabs(jump - sound) <= 1e-9 * fabs(jump)) {
@@ -549,17 +563,16 @@ static dea_found found_at(const dea_shooting *s, double edge)
 static double force_on_edge(dea_shooting *s, double share, double edge)
 {
     const double l = s->point->film.prestretch;
-    const double push = dea_point_sign(s->point) * share * s->pressure * dea_point_electric(s->point).first * l * l * l;
-    const double pull = lame_stiffness(s->point) * edge - push;
-    s->stress = fabs(push) + s->point->film.w11 * fabs(edge);
     s->strain = fabs(edge);
+    s->stress = s->point->film.w11 * s->strain;
     s->held = edge;
-    s->pull = pull;
+    s->pull = 0.0;
     set_load(s, share);
+    s->uniform = s->annulus_k * dea_point_electric(s->point).first;
     if (edge != 0.0) {
-        s->pull = search_from(s, SEARCH_PULL, pull / s->stress) * s->stress;
+        s->pull = search_from(s, SEARCH_PULL, lame_stiffness(s->point) * edge / s->stress) * s->stress;
     }
-    return -lever_of(s->point) * s->pull;
+    return -lever_of(s->point) * (s->pull + s->uniform * l * l * l);
 }
 
 /* Without voltage, inward; and what the voltage adds, outward: all of it on the disc of a dot, whose annulus does not feel it. */
@@ -588,20 +601,23 @@ static bool hold(void *user, const dea_point *point, double strain, dea_hold *ho
     if (!(pre + edge > step)) {
         return false;
     }
-    const double up = held_at(s, edge + step, &above), down = held_at(s, edge - step, &below);
-    const double over = 0.5 / (step * dea_point_divide(point) / pre);
-    hold->held = held_at(s, edge, &hold->push);
-    hold->held_slope = (up - down) * over;
-    hold->push_slope = (above - below) * over;
+    hold->held_slope = hold->push_slope = 0.0;
+    if (!hold->plain) {
+        const double over = 0.5 / (step * dea_point_divide(point) / pre);
+        const double up = held_at(s, edge + step, &above), down = held_at(s, edge - step, &below);
+        hold->held_slope = (up - down) * over;
+        hold->push_slope = (above - below) * over;
+    }
+    hold->held = held_at(s, edge, &hold->push); /* last: what follows goes on from it */
     set_load(s, 1.0);
     s->strain = edge != 0.0 ? fabs(edge) : step;
-    s->stress += s->point->film.w11 * s->strain;
+    s->stress = s->point->film.w11 * s->strain;
     const bool there = isfinite(hold->held) && isfinite(hold->push) && !isnan(miss_at_frame(s, edge));
     if (there) {
         hold->found = found_at(s, edge);
         hold->found.capacitance = edge == 0.0 ? dea_point_capacitance(point) : hold->found.capacitance; /* IDA has no steps to sum over */
     }
-    s->pull = 0.0;
+    s->pull = s->uniform = 0.0;
     return there;
 }
 

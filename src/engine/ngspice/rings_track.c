@@ -259,9 +259,11 @@ typedef struct stretch {
     double from, to;     /* of the piece [s] */
 } stretch;
 
+/* The last point is the end of the piece, whose sample it holds, whatever its time rounds to. */
 static double time_of(const stretch *s, size_t i)
 {
-    return i == 0 ? s->start_time : fmin(s->from + s->table->columns[0][s->first + i - 1], s->to);
+    const double since = i == 0 ? 0.0 : s->table->columns[0][s->first + i - 1], length = s->to - s->from;
+    return i == 0 ? s->start_time : since >= length * (1.0 - 1e-12) ? s->to : s->from + since;
 }
 
 static double state_of(const runner *r, const stretch *s, size_t i, size_t k)

@@ -47,6 +47,22 @@ enum { DEA_EDGES = 2 };
 /** Magnitudes of the displacement per volt at @p count >= 2 frequencies evenly from @p from to @p to [Hz]; false: none. */
 typedef bool dea_magnitudes(void *user, double from, double to, size_t count, double *magnitudes);
 
+/** Harmonics of a sine that are told. */
+enum { DEA_HARMONICS = 5 };
+
+/** What a window of a transient holds, of the displacement: within ten times the accuracy of its peak over the run. NAN where the
+ * samples are too coarse for that or for the drive, or have no number. */
+typedef struct dea_window_figures {
+    double least, largest; /**< [m] */
+    /** Of a drive that is a sine, over the whole periods from the begin of the window on: u = mean + sum A_k sin(k theta + phi_k),
+     * theta = 2 pi f (t - delay) + phase the argument of the drive's sine; a phase is NAN where its amplitude is no more than the
+     * error may be. A_1 first, the fundamental [m], [degree]. */
+    double amplitude[DEA_HARMONICS], phase[DEA_HARMONICS];
+} dea_window_figures;
+
+/** Figures of window number @p window; all axes of @p scene are at their place. */
+DEA_API dea_window_figures dea_measure_window(const dea_scene *scene, const dea_sample *samples, size_t count,
+                                              const dea_summary *summary, size_t window);
 /** The answer to one edge; false where no sample lies behind it. */
 DEA_API bool dea_measure_edge(const dea_sample *samples, size_t count, const dea_step_edge *edge, dea_edge_answer *answer);
 /** Answers to the edges of the scene's step, those of its first period where it repeats; returns how many, 0 for every other

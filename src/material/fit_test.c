@@ -20,9 +20,12 @@ double dea_test_measured(const dea_relaxation_point *point, size_t curve)
     return curve == 0 ? point->stress : point->loss;
 }
 
+/* Past these nothing of a branch is left, or all of it: times over many decades would make inf - inf of its slope. */
+static const double all_gone = 800.0, all_there = 1e100;
+
 static dea_test_term relaxing(double at, const dea_test_time *time, size_t curve)
 {
-    const double t = at / time->tau, left = exp(-t);
+    const double t = fmin(at / time->tau, all_gone), left = exp(-t);
     (void)curve;
     return (dea_test_term){left * time->share, left * (t * time->share + time->slope)};
 }
@@ -35,7 +38,7 @@ static dea_test_term creeping(double at, const dea_test_time *time, size_t curve
 
 static dea_test_term swinging(double at, const dea_test_time *time, size_t curve)
 {
-    const double w = at * time->tau, over = 1.0 / (1.0 + w * w);
+    const double w = fmin(at * time->tau, all_there), over = 1.0 / (1.0 + w * w);
     return curve == 0 ? (dea_test_term){w * w * over, 2.0 * w * w * over * over}
                       : (dea_test_term){w * over, w * (1.0 - w * w) * over * over};
 }

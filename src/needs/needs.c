@@ -22,8 +22,9 @@ static const double missed = 0.01;         /* share of the static displacement t
 
 static const double rounding = 1e-12; /* of a stand-in's answer, relative to its peak */
 
-/* Of a membrane the ring stands in, whose mass and swing are off by up to a half, for its mass alone: it swings in many modes. */
-static const double safe_membrane = 4.0;
+/* Of a membrane the ring stands in, for its mass alone: it swings in many modes. What a mass changes of a slow motion goes with the inverse
+ * square of the resonance, which the ring has up to five times too high. */
+static const double safe_membrane = 4.0, safe_resonance = 4.0;
 
 enum { MANY_BRANCHES = 8 };
 
@@ -475,6 +476,14 @@ static double safety_of(const dea_surrogate *s)
     return s->dynamics.series > 0.0 ? safe_nonlinear : fmin(safe_nonlinear, safe_linear + doubt * s->variation);
 }
 
+/* NAN where nobody knows the membrane's resonance: with a skin or a load. */
+static double safety_of_membrane(const dea_scene *scene, dea_dynamics *ring)
+{
+    const double stiff = dea_dynamics_stiffness(ring, ring->rest, 0.0, true) / ring->mass;
+    const double pace = 2.0 * DEA_PI * dea_point_resonance(scene, &ring->point);
+    return stiff > 0.0 && pace > 0.0 ? fmax(safe_membrane, safe_resonance * stiff / (pace * pace)) : (double)NAN;
+}
+
 dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const dea_engine *engine, dea_needs *needs,
                           dea_error *error)
 {
@@ -493,8 +502,8 @@ dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const 
     }
     const bool linear = !isfinite(p.surrogate.dynamics.limit); /* the stand-in charges through its resistance alone */
     if (status == DEA_OK && usable && linear) {
-        p.safety = safety_of(&p.surrogate) * (p.many_nodes ? safe_membrane : 1.0);
-        status = plan(&p, error);
+        p.safety = safety_of(&p.surrogate) * (p.many_nodes ? safety_of_membrane(scene, &p.surrogate.dynamics) : 1.0);
+        status = isnan(p.safety) ? DEA_OK : plan(&p, error);
     }
     dea_surrogate_close(&p.surrogate);
     return status == DEA_ERROR_MEMORY ? status : DEA_OK;

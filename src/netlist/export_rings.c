@@ -111,7 +111,7 @@ static dea_status tell_gap(moving *m, dea_error *error)
     return status;
 }
 
-/* The mesh that the engine tries second, which mostly does; the film at its start. */
+/* A mesh as fine as those that the engine comes to; the film at its start. */
 static dea_status open_moving(moving *m, dea_error *error)
 {
     const dea_scene *scene = m->export->scene;

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "expression/derivative.h"
 #include "expression/formula.h"
 #include "netlist/rings_text.h"
 #include "network/hyperelastic.h"
@@ -54,14 +55,36 @@ static void make_element(dea_rings_cards *cards, bool disc)
     }
 }
 
+/* e_2 of a kind of ring. */
+static dea_expr hoop_of(dea_pool *pool, dea_rings_strain strain)
+{
+    return strain == DEA_RINGS_FRAME ? NUM(0.0) : dea_expr_node(pool, strain == DEA_RINGS_UNIFORM ? DEA_RINGS_E1 : DEA_RINGS_E2);
+}
+
+void dea_rings_cauchy(const dea_symbols *symbols, dea_rings_strain strain, dea_expr stress[2])
+{
+    dea_pool *pool = symbols->pool;
+    const dea_expr e1 = dea_expr_node(pool, DEA_RINGS_E1), e2 = hoop_of(pool, strain), e3 = dea_expr_node(pool, DEA_RINGS_E3);
+    dea_hyperelastic_cauchy(symbols, e1, e2, stress);
+    /* lambda_3^2 = (1 + e_3)^2/lambda_pre^4 */
+    const dea_expr fourth = SQUARE(SQUARE(symbols->prestretch)), own = MUL(DIV(NUM(1.0), fourth), MUL(e3, ADD(NUM(2.0), e3)));
+    const dea_expr thin = dea_hyperelastic_thin(symbols, e1, e2), minus = SCALE(-1.0, thin);
+    for (int a = 0; a < 2; a++) {
+        stress[a] = dea_expr_replace(pool, stress[a], thin, own);
+        stress[a] = dea_expr_replace(pool, stress[a], minus, SCALE(-1.0, own));
+    }
+}
+
 /* s_1 and s_2 of a kind of ring; @p pressure lambda_pre^4 M [MPa]. */
 static void make_stress(const dea_symbols *symbols, dea_rings_strain strain, bool electroded, dea_expr pressure, dea_expr stress[2])
 {
     dea_pool *pool = symbols->pool;
     const dea_expr e1 = dea_expr_node(pool, DEA_RINGS_E1);
-    const dea_expr e2 = strain == DEA_RINGS_FRAME ? NUM(0.0) : strain == DEA_RINGS_UNIFORM ? e1 : dea_expr_node(pool, DEA_RINGS_E2);
-    const dea_expr l1 = ADD(NUM(1.0), e1), l2 = ADD(NUM(1.0), e2);
-    dea_hyperelastic_nominal(symbols, e1, e2, stress);
+    const dea_expr e2 = hoop_of(pool, strain), rest = dea_symbols_rest_stress(symbols);
+    const dea_expr l1 = ADD(NUM(1.0), e1), l2 = ADD(NUM(1.0), e2), l3 = ADD(NUM(1.0), dea_expr_node(pool, DEA_RINGS_E3));
+    dea_rings_cauchy(symbols, strain, stress);
+    stress[0] = MUL(SUB(stress[0], MUL(rest, e1)), MUL(l2, l3)); /* 1/(1 + e_1) */
+    stress[1] = MUL(SUB(stress[1], MUL(rest, e2)), MUL(l1, l3));
     if (electroded && symbols->skin) {
         stress[0] = ADD(stress[0], DIV(dea_hyperelastic_skin(symbols, e1, e2), l1));
         stress[1] = ADD(stress[1], DIV(dea_hyperelastic_skin(symbols, e2, e1), l2));
@@ -228,12 +251,16 @@ void dea_rings_cards_write(const dea_rings_cards *cards, dea_part_text *text)
     const dea_rings_writer w = {.cards = cards, .text = text, .out = text->out};
     for (size_t q = 0; q < cards->ring_count; q++) {
         const dea_rings_ring *ring = &cards->rings[q];
-        char a[DEA_PART_NAME], b[DEA_PART_NAME];
-        snprintf(a, sizeof a, "v(a%zu)", q + 1);
-        snprintf(b, sizeof b, "v(b%zu)", q + 1);
-        dea_rings_place here = {.nodes = (const char *const[]){a, b}};
+        char names[DEA_RINGS_VARIABLES][DEA_PART_NAME];
+        const char *nodes[DEA_RINGS_VARIABLES];
+        for (int i = 0; i < DEA_RINGS_VARIABLES; i++) {
+            snprintf(names[i], sizeof names[i], "v(%c%zu)", "abw"[i], q + 1);
+            nodes[i] = names[i];
+        }
+        dea_rings_place here = {.nodes = nodes};
         dea_rings_enter(&w, &here, q + 1, "");
         (text->terms[ring->radial].moves ? write_swept_strains : write_strains)(&w, ring, q + 1);
+        dea_rings_thickness(&w, ring->strain, q + 1);
         write_stresses(&w, ring, q + 1);
         write_forces(&w, ring, q + 1);
         dea_rings_leave(&w);

@@ -1,7 +1,7 @@
 /* The film of rings (physics: section 7) as cards: the one text that exports, parts and the engine `ngspice` share.
  *
- * Node n moves by the displacement v(u<n>). A ring q has the relative stretches e_1 = v(a<q>) and e_2 = v(b<q>), linear in the
- * displacements by slopes that depend on the degrees of the mesh alone and by the ring's `radial` and `hoop`; its two stresses
+ * Node n moves by the displacement v(u<n>). A ring q has the relative stretches e_1 = v(a<q>), e_2 = v(b<q>) and, of its thickness,
+ * e_3 = v(w<q>), the first two linear in the displacements by slopes that depend on the degrees of the mesh alone and by the ring's `radial` and `hoop`; its two stresses
  * v(s<q>) and v(t<q>) [MPa], changes from rest, act back on the nodes by the same slopes and its levers `along` and `across`. All
  * nodes are 0 at rest.
  *
@@ -15,8 +15,8 @@
 #include "network/network.h"
 #include "network/rings.h"
 
-/* Nodes of the pool of the symbols: what the expressions of a ring depend on. */
-enum { DEA_RINGS_E1, DEA_RINGS_E2, DEA_RINGS_VARIABLES };
+/* Nodes of the pool of the symbols: what the expressions of a ring depend on; e_3 = 1/((1 + e_1)(1 + e_2)) - 1. */
+enum { DEA_RINGS_E1, DEA_RINGS_E2, DEA_RINGS_E3, DEA_RINGS_VARIABLES };
 
 /* Rings whose stretches differ in kind: both free; at the frame, e_2 = 0; a disc of degree 1, e_1 = e_2. */
 typedef enum dea_rings_strain { DEA_RINGS_FREE, DEA_RINGS_FRAME, DEA_RINGS_UNIFORM, DEA_RINGS_STRAINS } dea_rings_strain;
@@ -45,6 +45,10 @@ typedef struct dea_rings_cards {
  * 2 pi H F^2/r times 1 MPa, F = r/lambda_pre, so that only coverage, pre-stretch, law and M enter. Memory that ran out is told by
  * the pool. */
 void dea_rings_cards_make(const dea_symbols *symbols, dea_rings_mesh mesh, dea_rings_cards *cards);
+
+/* Changes of the Cauchy stresses from rest of a kind of ring, by all three strains: simulators differentiate products sooner than
+ * quotients. */
+void dea_rings_cauchy(const dea_symbols *symbols, dea_rings_strain strain, dea_expr stress[2]);
 
 /* Keeps nodes for the terms that are worth one in a ring; before any is declared. */
 void dea_rings_cards_share(dea_part_text *text);

@@ -50,7 +50,7 @@ static void write_guess(const writer *w, const char *node, double value)
 static dea_status write_start(writer *w, dea_error *error)
 {
     const dea_axis *axis = w->line->axis;
-    const double none[] = {0.0, 0.0};
+    const double none[DEA_RINGS_VARIABLES] = {0.0};
     double symbols[DEA_RINGS_SYMBOLS];
     dea_tape tape;
     size_t count = 0;

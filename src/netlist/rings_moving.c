@@ -6,9 +6,9 @@
 #include "expression/formula.h"
 #include "network/hyperelastic.h"
 
-/* Nodes of the pool beside the strains: e_3 of the thickness, the rates of all three, the stresses with what branches and damper
+/* Nodes of the pool beside the strains: the rates of all three, the stresses with what branches and damper
  * add, the voltage's pressure; and a direction. */
-enum { E3 = DEA_RINGS_VARIABLES, RATE1, RATE2, RATE3, HELD1, HELD2, PRESSURE, VARIABLES, ALONG = VARIABLES };
+enum { RATE1 = DEA_RINGS_VARIABLES, RATE2, RATE3, HELD1, HELD2, PRESSURE, VARIABLES, ALONG = VARIABLES };
 
 /* Slope of a stress over time: along the rates of the strains. */
 static dea_expr rate_of(dea_pool *pool, dea_expr stress)
@@ -67,16 +67,8 @@ static void make_weights(const dea_symbols *symbols, dea_rings_moving *m, const 
 static void make_cauchy(const dea_symbols *symbols, dea_rings_moving *m, int strain, double held)
 {
     dea_pool *pool = symbols->pool;
-    const dea_expr e1 = dea_expr_node(pool, DEA_RINGS_E1);
-    const dea_expr e2 = strain == DEA_RINGS_FRAME ? NUM(0.0) : dea_expr_node(pool, DEA_RINGS_E2);
-    const dea_expr e3 = dea_expr_node(pool, E3), fourth = SQUARE(SQUARE(symbols->prestretch));
-    dea_hyperelastic_cauchy(symbols, e1, e2, m->cauchy[strain]);
-    /* lambda_3^2 = (1 + e_3)^2/lambda_pre^4: simulators differentiate a product sooner than a quotient */
-    const dea_expr thin = dea_hyperelastic_thin(symbols, e1, e2), own = MUL(DIV(NUM(1.0), fourth), MUL(e3, ADD(NUM(2.0), e3)));
-    const dea_expr minus = SCALE(-1.0, thin);
+    dea_rings_cauchy(symbols, (dea_rings_strain)strain, m->cauchy[strain]);
     for (int a = 0; a < 2; a++) {
-        m->cauchy[strain][a] = dea_expr_replace(pool, m->cauchy[strain][a], thin, own);
-        m->cauchy[strain][a] = dea_expr_replace(pool, m->cauchy[strain][a], minus, SCALE(-1.0, own));
         m->cauchy[strain][a] = held > 0.0 ? SCALE(1.0 + held, m->cauchy[strain][a]) : m->cauchy[strain][a];
         m->rates[strain][a] = rate_of(pool, m->cauchy[strain][a]);
     }
@@ -189,19 +181,7 @@ static void write_stop(const writer *w, const char *node, const char *strain)
     dea_rings_end(&w->base);
 }
 
-/* (1 + e_1)(1 + e_2)(1 + e_3) = 1. */
-static void write_thickness(const writer *w, bool both, size_t q)
-{
-    dea_rings_begin(&w->base, dea_rings_label_of("w", q).text);
-    if (both) {
-        fprintf(w->base.out, "-(v(a%zu)+v(b%zu)+v(a%zu)*v(b%zu))/((1+v(a%zu))*(1+v(b%zu)))", q, q, q, q, q, q);
-    } else {
-        fprintf(w->base.out, "-v(a%zu)/(1+v(a%zu))", q, q);
-    }
-    dea_rings_end(&w->base);
-}
-
-/* Its rate, -(1 + e_3)^2 (e_1' (1 + e_2) + e_2' (1 + e_1)). */
+/* Rate of the thickness, -(1 + e_3)^2 (e_1' (1 + e_2) + e_2' (1 + e_1)). */
 static void write_thinning(const writer *w, bool both, size_t q)
 {
     dea_rings_begin(&w->base, dea_rings_label_of("r", q).text);
@@ -229,7 +209,7 @@ static void write_strains(const writer *w, const dea_rings_ring *ring, size_t nu
             write_stop(w, b.text, k.text);
         }
     }
-    write_thickness(w, both, number);
+    dea_rings_thickness(&w->base, ring->strain, number);
     if (w->moving->damped) {
         write_radial(w, ring, dea_rings_label_of("c", number).text, 'v', w->rate);
         if (both) {

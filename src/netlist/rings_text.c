@@ -121,6 +121,18 @@ void dea_rings_spread(const dea_rings_writer *w, const dea_rings_ring *ring, con
     write_levers(w, ring, control, kind, true, factor);
 }
 
+void dea_rings_thickness(const dea_rings_writer *w, dea_rings_strain strain, size_t q)
+{
+    const char hoop = strain == DEA_RINGS_UNIFORM ? 'a' : 'b';
+    dea_rings_begin(w, dea_rings_label_of("w", q).text);
+    if (strain == DEA_RINGS_FRAME) {
+        fprintf(w->out, "-v(a%zu)/(1+v(a%zu))", q, q);
+    } else {
+        fprintf(w->out, "-(v(a%zu)+v(%c%zu)+v(a%zu)*v(%c%zu))/((1+v(a%zu))*(1+v(%c%zu)))", q, hoop, q, q, hoop, q, q, hoop, q);
+    }
+    dea_rings_end(w);
+}
+
 void dea_rings_name(dea_part_text *text, dea_expr ref, const char *what, size_t number)
 {
     dea_part_text_name(text, ref, dea_rings_label_of(what, number).text, "");

@@ -46,6 +46,9 @@ void dea_rings_gradient(const dea_rings_writer *w, const dea_rings_ring *ring, c
 /* Currents factor slope_n v(control) out of the nodes of a kind. */
 void dea_rings_spread(const dea_rings_writer *w, const dea_rings_ring *ring, const char *control, char kind, const char *factor);
 
+/* v(w<q>) = e_3 of a ring: (1 + e_1)(1 + e_2)(1 + e_3) = 1. */
+void dea_rings_thickness(const dea_rings_writer *w, dea_rings_strain strain, size_t number);
+
 /* Names a term and a number, and declares it. */
 void dea_rings_name(dea_part_text *text, dea_expr ref, const char *what, size_t number);
 

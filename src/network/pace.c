@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "network/membrane.h"
+
 /* Coefficients of D(s). */
 typedef struct film {
     const dea_dynamics *dynamics;

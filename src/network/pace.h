@@ -6,7 +6,10 @@
 
 #include <complex.h>
 
-#include "network/membrane.h"
+#include "network/dynamics.h"
+
+struct dea_membrane;
+struct dea_membrane_rest;
 
 /* Its motion: the oscillating pair of roots of D, and the times of the rest. */
 typedef struct dea_pace {
@@ -26,7 +29,7 @@ typedef struct dea_matching {
 
 dea_pace dea_pace_of(dea_dynamics *dynamics, double u, double voltage);
 /* The same of the slowest mode of a membrane at rest, which decays as fast as that; as to the rest of its film. */
-dea_pace dea_pace_of_rings(const dea_membrane *membrane, const dea_membrane_rest *rest, double decay);
+dea_pace dea_pace_of_rings(const struct dea_membrane *membrane, const struct dea_membrane_rest *rest, double decay);
 dea_matching dea_matching_of(dea_dynamics *dynamics, double u, double voltage, double step);
 
 #endif

@@ -52,7 +52,11 @@ dea_findings dea_findings_begin(const dea_scene *scene, FILE *averages)
         for (size_t i = 0; i < scene->axis_count; i++) {
             fprintf(averages, "%s,", scene->axes[i].column);
         }
-        fputs("from_s,to_s,strain,displacement_m\n", averages);
+        fputs("from_s,to_s,strain,displacement_m,least_m,largest_m,peak_to_peak_m", averages);
+        for (int k = 1; scene->drive.waveform.kind == DEA_WAVE_SINE && k <= DEA_HARMONICS; k++) {
+            fprintf(averages, ",amplitude_%d_m,phase_%d_deg", k, k);
+        }
+        fputc('\n', averages);
     }
     return findings;
 }
@@ -71,16 +75,25 @@ static void print_place(FILE *stream, const dea_scene *scene, size_t number)
     }
 }
 
-static void print_averages(const dea_findings *findings, size_t number, const dea_transient *transient)
+/* Windows of a run: means, then what the samples tell of them. */
+static void print_averages(const dea_findings *findings, size_t number, const dea_scene *placed, const dea_sample *samples)
 {
-    for (size_t i = 0; findings->averages && i < transient->average_count; i++) {
-        const dea_window window = transient->averages[i];
+    const bool sine = placed->drive.waveform.kind == DEA_WAVE_SINE;
+    for (size_t i = 0; findings->averages && i < placed->transient.average_count; i++) {
+        const dea_window window = placed->transient.averages[i];
         const dea_average mean = findings->summary.averages[i];
-        const double numbers[] = {window.from, window.to, mean.strain, mean.displacement};
+        const dea_window_figures f = dea_measure_window(placed, samples, findings->layout.rows, &findings->summary, i);
+        double numbers[7 + 2 * DEA_HARMONICS] = {window.from, window.to, mean.strain, mean.displacement,
+                                                 f.least,     f.largest, f.largest - f.least};
+        size_t count = 7;
+        for (size_t k = 0; sine && k < DEA_HARMONICS; k++) {
+            numbers[count++] = f.amplitude[k];
+            numbers[count++] = f.phase[k];
+        }
         print_place(findings->averages, findings->scene, number);
-        for (size_t k = 0; k < 4; k++) {
+        for (size_t k = 0; k < count; k++) {
             print_number(findings->averages, numbers[k]);
-            fputc(k < 3 ? ',' : '\n', findings->averages);
+            fputc(k + 1 < count ? ',' : '\n', findings->averages);
         }
     }
 }
@@ -130,7 +143,7 @@ static void take_transient(dea_findings *findings, size_t number, const void *po
     if (layout->spread_count > 0) {
         take_weakest(findings, samples);
     }
-    print_averages(findings, number, &placed.transient);
+    print_averages(findings, number, &placed, samples);
 }
 
 static void take_resonance(dea_findings *findings, const void *frequency)

@@ -1,6 +1,7 @@
 /* Sources, samples and figures of motion against closed forms. */
 #include "scenes.h"
 
+#include <complex.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -250,6 +251,69 @@ static void loops_lie_over_the_voltage(void **state)
     dea_scene_free(&scene);
 }
 
+/* Eq. 22 behind a damper: tau u' + u = K U^2 turns each part of U^2 = c + 2 U_0 a sin - a^2/2 cos 2 by 1/(1 + i k omega tau). */
+static double complex harmonic(int k)
+{
+    const double squared[] = {2.0 * 2000.0 * 500.0, 0.5 * 500.0 * 500.0}, unit = 0.03741735 * 0.015 / (4500.0 * 4500.0);
+    const double complex turned = k == 1 ? 1.0 : -I; /* -cos = sin(. - 90 deg) */
+    return k > 2 ? 0.0 : unit * squared[k - 1] * turned / (1.0 + I * (2.0 * acos(-1.0) * k * 100.0 * 1e-3));
+}
+
+static void windows_tell_extremes_and_harmonics_of_a_sine(void **state)
+{
+    (void)state;
+    const double mean = 0.03741735 * 0.015 / (4500.0 * 4500.0) * (2000.0 * 2000.0 + 0.5 * 500.0 * 500.0);
+    double low = INFINITY, high = -INFINITY;
+    for (int i = 0; i < 100000; i++) {
+        const double angle = 2.0 * acos(-1.0) * i / 100000.0;
+        const double u = mean + cimag(harmonic(1) * cexp(I * angle)) + cimag(harmonic(2) * cexp(2.0 * I * angle));
+        low = fmin(low, u);
+        high = fmax(high, u);
+    }
+    dea_scene scene;
+    dea_error error;
+    assert_int_equal(parse("waveform: {sine: {offset: 2 kV, amplitude: 500 V, frequency: 100 Hz, phase: 30 deg, delay: 3 ms}}", "lumped",
+                           "until: 0.08 s, every: 0.13 ms, average: {from: 37.7 ms, to: 71 ms}", &scene, &error),
+                     DEA_OK);
+    for (size_t e = 0; e < 3; e++) {
+        dea_sample *samples = solve(&scene, engines[e]);
+        const dea_layout layout = dea_layout_of(&scene);
+        const dea_summary *summary = dea_layout_summary(&layout, samples);
+        const dea_window_figures f = dea_measure_window(&scene, samples, layout.rows, summary, 0);
+        assert_true(fabs(f.least - low) < 2e-6 * high && fabs(f.largest - high) < 2e-6 * high);
+        for (int k = 1; k <= DEA_HARMONICS; k++) {
+            assert_true(fabs(f.amplitude[k - 1] - cabs(harmonic(k))) < 2e-6 * high);
+            assert_true(k > 2 ? isnan(f.phase[k - 1]) : fabs(f.phase[k - 1] - carg(harmonic(k)) * 180.0 / acos(-1.0)) < 1e-2);
+        }
+        scene.transient.averages[0].to = 0.081; /* past the last sample */
+        assert_true(isnan(dea_measure_window(&scene, samples, layout.rows, summary, 0).largest));
+        scene.transient.averages[0].to = 71e-3;
+        samples[400].displacement = (double)NAN;
+        assert_true(isnan(dea_measure_window(&scene, samples, layout.rows, summary, 0).amplitude[0]));
+        free(samples);
+    }
+    dea_scene_free(&scene);
+}
+
+/* A pulse between two samples, and a sine that they alias, are not made up. */
+static void coarse_samples_tell_no_extremes(void **state)
+{
+    (void)state;
+    static const char *const drives[] = {"waveform: {pulse: {voltage: 3 kV, frequency: 1 kHz, duty: 0.3}}",
+                                         "waveform: {sine: {amplitude: 1 kV, frequency: 100 Hz}}"};
+    for (size_t k = 0; k < 2; k++) {
+        dea_scene scene;
+        dea_error error;
+        assert_int_equal(parse(drives[k], "lumped", "until: 0.1 s, every: 1 ms, average: {from: 50 ms, to: 100 ms}", &scene, &error), DEA_OK);
+        dea_sample *samples = solve(&scene, "ida");
+        const dea_layout layout = dea_layout_of(&scene);
+        const dea_window_figures f = dea_measure_window(&scene, samples, layout.rows, dea_layout_summary(&layout, samples), 0);
+        assert_true(isnan(f.least) && isnan(f.largest) && isnan(f.amplitude[0]));
+        free(samples);
+        dea_scene_free(&scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -259,6 +323,8 @@ int main(void)
         cmocka_unit_test(a_source_at_its_limit_charges_a_stiff_film_evenly),
         cmocka_unit_test(engines_agree_on_limited_films),
         cmocka_unit_test(loops_lie_over_the_voltage),
+        cmocka_unit_test(windows_tell_extremes_and_harmonics_of_a_sine),
+        cmocka_unit_test(coarse_samples_tell_no_extremes),
         cmocka_unit_test(field_energy_is_half_of_charge_times_voltage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

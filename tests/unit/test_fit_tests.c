@@ -347,6 +347,24 @@ static void creep_without_an_end_is_extrapolated(void **state)
     dea_relaxation_data_free(&flow);
 }
 
+/* Times whose ratios overflow leave nothing of a branch, or all of it. */
+static void times_over_all_decades_are_fitted(void **state)
+{
+    (void)state;
+    for (dea_test_kind kind = DEA_TEST_RELAXATION; kind < DEA_TESTS; kind++) {
+        static const double times[] = {1e-300, 1.0, 2.0, 1e300}, falling[] = {1.0, 0.5, 0.25, 0.24}, rising[] = {0.1, 0.2, 0.25, 0.26};
+        dea_relaxation_data data = {.kind = kind};
+        dea_relaxation fit;
+        for (int i = 0; i < 4; i++) {
+            const dea_relaxation_point point = {.time = times[i], .stress = kind == DEA_TEST_RELAXATION ? falling[i] : rising[i]};
+            assert_int_equal(dea_relaxation_add(&data, point, NULL), DEA_OK);
+        }
+        assert_int_equal(dea_fit_relaxation(&data, 0, false, &fit, NULL), DEA_OK);
+        assert_true(fit.long_term > 0.0 && fit.long_term <= 1.0);
+        dea_relaxation_data_free(&data);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -358,6 +376,7 @@ int main(void)
         cmocka_unit_test(tables_of_another_kind_are_refused_by_name),
         cmocka_unit_test(tests_that_no_film_gives_are_refused),
         cmocka_unit_test(creep_without_an_end_is_extrapolated),
+        cmocka_unit_test(times_over_all_decades_are_fitted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

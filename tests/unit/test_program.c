@@ -416,7 +416,7 @@ static void transient_writes_its_samples_and_prints_its_averages(void **state)
     (void)state;
     RUN("run", "step.yaml", "--engine", "direct", "-o", "step.csv");
     assert_int_equal(last.status, 0);
-    assert_true(begins(last.out, "from_s,to_s,strain,displacement_m\n0.040000000000000001,0.059999999999999998,0.037"));
+    assert_true(begins(last.out, "from_s,to_s,strain,displacement_m,least_m,largest_m,peak_to_peak_m\n0.040000000000000001,0.059999999999999998,0.037"));
     assert_int_equal(lines_of(last.out), 3);
     assert_non_null(strstr(last.err, "201 samples in "));
     assert_non_null(strstr(last.err, "201 ok\n"));
@@ -437,7 +437,7 @@ static void averages_stand_beside_a_result_on_standard_output(void **state)
     assert_true(begins(last.out, "time_s,"));
     assert_null(strstr(last.out, "from_s"));
     assert_int_equal(lines_of(last.out), 12);
-    assert_true(begins(last.err, "from_s,to_s,strain,displacement_m\n"));
+    assert_true(begins(last.err, "from_s,to_s,strain,displacement_m,least_m,largest_m,peak_to_peak_m\n"));
     RUN("run", "step.yaml", "--engine", "direct", "-q", "--set", "transient.every=10 ms");
     assert_string_equal(last.err, "");
     RUN("run", "step.yaml", "--engine", "direct", "-q", "-o", "step.csv");
@@ -452,7 +452,7 @@ static void runs_over_an_axis_carry_it_in_front(void **state)
         "step.csv");
     assert_int_equal(last.status, 0);
     assert_int_equal(lines_of(last.out), 9);
-    assert_true(begins(last.out, "model,prestretch,from_s,to_s,strain,displacement_m\nlumped,1.1"));
+    assert_true(begins(last.out, "model,prestretch,from_s,to_s,strain,displacement_m,least_m,largest_m,peak_to_peak_m\nlumped,1.1"));
     assert_non_null(strstr(last.out, "\nlame,1.2"));
     assert_non_null(strstr(last.err, "4 runs of 201 samples in "));
     assert_non_null(strstr(last.err, "worst estimated error "));

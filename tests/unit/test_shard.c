@@ -94,7 +94,7 @@ static void merged_transients_are_the_whole_run(void **state)
     file_write("step.yaml", step_text, sizeof step_text - 1);
     merge_is_the_whole_run("step.yaml", "direct");
     merge_is_the_whole_run("step.yaml", "ida");
-    assert_non_null(strstr(child_out, "coverage,prestretch,from_s,to_s,strain,displacement_m\n"));
+    assert_non_null(strstr(child_out, "coverage,prestretch,from_s,to_s,strain,displacement_m,least_m,largest_m,peak_to_peak_m\n"));
 }
 
 static void merged_responses_are_the_whole_run(void **state)

@@ -18,10 +18,11 @@ static const double steepest = 5.0, flattest = 3.0;
 
 /* Share of the accuracy that is the mesh's, and a difference that falls by less than that stays too large. */
 static const double mesh_share = 0.3;
+static const double ample = 0.03; /* of the accuracy: a gap that is the error of the coarser mesh with room */
 static const double gains_nothing = 0.5;
 
 /* Most time that a run may take, roughly, and what one time step of a node does of it [s]. */
-static const double most_time = 60.0;
+static const double most_time = 30.0;
 static const double node_time = 4e-5;
 
 enum { MOST_MESHES = 6, MOST_LEVELS = 10 };
@@ -104,12 +105,13 @@ static bool comparable(const dea_rings_trace *a, const dea_rings_trace *b)
 /* Runs with coarse steps on finer meshes; the last is the one to refine, its run s->fine. */
 static dea_status choose_mesh(search *s, double fineness, dea_error *error)
 {
-    double nodes = dea_rings_first_nodes(s->scene->accuracy), last = INFINITY;
+    double nodes = dea_rings_first_nodes(sqrt(s->scene->accuracy)), last = INFINITY;
     dea_status status = open_mesh(s, nodes, error);
     if (status == DEA_OK) {
         status = run(s, fineness, s->fine, error);
     }
     for (int i = 0; i < MOST_MESHES && status == DEA_OK; i++) {
+        const double before = nodes;
         const dea_rings_mesh mesh = dea_rings_mesh_of(s->scene, nodes);
         nodes = dea_rings_more_nodes(&s->track->flight.membrane, &s->track->flight.motion.rest, nodes);
         const dea_rings_mesh next = dea_rings_mesh_of(s->scene, nodes);
@@ -129,6 +131,10 @@ static dea_status choose_mesh(search *s, double fineness, dea_error *error)
         s->mesh_error = comparable(&s->coarse->trace, &s->fine->trace) ? trust * gap.answer : INFINITY;
         s->mesh_displacement = trust * gap.displacement;
         s->mesh_rates = (dea_rate_errors){trust * gap.rates.velocity, trust * gap.rates.current};
+        if (s->mesh_error <= ample * s->scene->accuracy) { /* the coarser one will do */
+            swap(&s->coarse, &s->fine);
+            return open_mesh(s, before, error);
+        }
         if (s->mesh_error <= mesh_share * s->scene->accuracy || !(s->mesh_error < gains_nothing * last)) {
             return DEA_OK;
         }

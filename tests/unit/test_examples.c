@@ -522,27 +522,6 @@ static void the_disc_of_a_lens_shrinks_evenly_and_the_annulus_fills_the_rest(voi
     assert_int_equal(run_rows("profile", take_station), 3 * 201);
 }
 
-/* displacement: at 0 the electrostatic force at rest, M lambda_pre^3 R_a 2 pi H of the exact film too; it falls as the film is let go,
- * to 0 where the free film rests. */
-static void take_force(char *const *cells, size_t count)
-{
-    const double voltage = strtod(cells[0], NULL), moved = strtod(cells[1], NULL), force = strtod(cells[2], NULL);
-    const double nominal = voltage / 1e-4, push = 2.0 * DEA_PI * 1e-4 * 2.8 * 8.8541878128e-12 * nominal * nominal * 1.44 * 0.015;
-    assert_int_equal(count, 7);
-    assert_true(force <= push * (1.0 + 1e-9));
-    if (moved == 0.0) {
-        assert_relative(force, push, 1e-12);
-    } else if (voltage == 4500.0) {
-        assert_true((force > 0.0) == (moved < 0.0450329722 * 0.015));
-    }
-}
-
-static void a_blocked_dot_pushes_with_its_electrostatic_force(void **state)
-{
-    (void)state;
-    assert_int_equal(run_rows("force", take_force), 3 * 36);
-}
-
 /* Runs a command as the user would, beside a folder `examples`. */
 static void run_told(const char *command)
 {

@@ -297,10 +297,10 @@ static void check_law(const part *p, const form *of, int *count)
     }
 }
 
-/* True of what is neither a number nor a parameter, which its own card checks. */
+/* True of what the parameters decide, not the film's motion, and is neither a number nor one of them, which its own card checks. */
 static bool is_made(const part *p, dea_expr ref)
 {
-    return p->film.network.pool.terms[ref].operation >= DEA_ADD;
+    return p->film.network.pool.terms[ref].operation >= DEA_ADD && !p->cards.text.terms[ref].moves;
 }
 
 /* What else must be positive, from the network: the constants fit together, and the pre-stretch lies where the law holds. */

@@ -74,7 +74,7 @@ typedef struct dea_model_choice {
     const dea_model *model; /**< NULL: none that the engine can do is good enough */
     const dea_model *truth; /**< what it is held against */
     double bound;           /**< of its model error [1], 0 for the truth itself */
-    bool unsolved;          /**< at a probe no engine of this process ran the truth, so that nothing was held against it there */
+    bool unsolved;          /**< at a probe no engine of this process ran the finest model: truth is the next, how far that is off is not known */
     const dea_model *next;  /**< where model is NULL: the best that the engine can do, NULL: there is none; bound is its */
 } dea_model_choice;
 

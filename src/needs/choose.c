@@ -312,22 +312,52 @@ static void choose(const candidate *list, size_t count, double wanted, dea_model
     }
 }
 
-dea_status dea_needs_model(const dea_scene *scene, const dea_engine *engine, dea_model_choice *choice, dea_error *error)
+/* Finest of the models but @p truth, NULL: there is none. */
+static const dea_model *next_finest(const candidate *list, size_t count, const dea_model *truth)
 {
-    candidate list[MOST_MODELS];
-    const size_t count = list_models(scene, engine, list), probes = dea_probe_count(scene, most_probes(scene));
-    *choice = (dea_model_choice){.truth = dea_needs_truth(scene->study), .bound = (double)INFINITY};
+    const dea_model *finest = NULL;
+    for (size_t i = 0; i < count; i++) {
+        const bool finer = !finest || dea_model_form(list[i].model) > dea_model_form(finest);
+        finest = finer && list[i].model != truth ? list[i].model : finest;
+    }
+    return finest;
+}
+
+static dea_status hold_against(const dea_scene *scene, const dea_model *truth, candidate *list, size_t count,
+                               dea_model_choice *choice, dea_error *error)
+{
+    const size_t probes = dea_probe_count(scene, most_probes(scene));
+    *choice = (dea_model_choice){.truth = truth, .bound = (double)INFINITY};
     /* who cannot do the truth itself is told how good the best of the others is */
     const double wanted = scene->model_error;
-    const double enough = includes(list, count, choice->truth) ? wanted : (double)INFINITY;
+    const double enough = includes(list, count, truth) ? wanted : (double)INFINITY;
     dea_status status = DEA_OK;
     for (size_t i = 0; i < probes && status == DEA_OK; i++) {
         const dea_scene here = dea_probe_scene(scene, most_probes(scene), i);
-        standard s = {.scene = &here, .truth = choice->truth};
+        standard s = {.scene = &here, .truth = truth};
         status = probe(&s, list, count, enough, error);
         choice->unsolved = choice->unsolved || s.unsolved;
         standard_close(&s);
     }
     choose(list, count, wanted, choice);
+    return status;
+}
+
+dea_status dea_needs_model(const dea_scene *scene, const dea_engine *engine, dea_model_choice *choice, dea_error *error)
+{
+    candidate list[MOST_MODELS];
+    const dea_model *truth = dea_needs_truth(scene->study);
+    size_t count = list_models(scene, engine, list);
+    dea_status status = hold_against(scene, truth, list, count, choice, error);
+    const dea_model *next = next_finest(list, count, truth);
+    if (status == DEA_OK && choice->unsolved && choice->model == truth && next) {
+        /* without the truth the finest of the others is held to be it */
+        count = list_models(scene, engine, list);
+        for (size_t i = 0; i < count; i++) {
+            list[i].bound = list[i].model == truth ? (double)INFINITY : 0.0;
+        }
+        status = hold_against(scene, next, list, count, choice, error);
+        choice->unsolved = true;
+    }
     return status;
 }

@@ -151,11 +151,11 @@ static double change_of(const dea_comparison *comparison)
 }
 
 /* What a choice is off by, and what that measurement may be off by, NAN where it was not made. */
-static dea_measured measure_choice(const dea_arguments *arguments, const dea_scene *scene, double bound,
+static dea_measured measure_choice(const dea_arguments *arguments, const dea_scene *scene, const dea_model *truth, double bound,
                                    dea_comparison *comparison)
 {
     const double wanted = choice_fine * bound;
-    dea_measured m = {.error = run_model(arguments, scene, dea_needs_truth(scene->study), wanted, comparison)};
+    dea_measured m = {.error = run_model(arguments, scene, truth, wanted, comparison)};
     comparison->filling = false;
     comparison->at_limit = bound;
     dea_comparison_forget(comparison);
@@ -174,12 +174,12 @@ static dea_measured measure_choice(const dea_arguments *arguments, const dea_sce
     return m;
 }
 
-dea_bounds dea_check_choice(const dea_arguments *arguments, const dea_scene *scene, double bound)
+dea_bounds dea_check_choice(const dea_arguments *arguments, const dea_scene *scene, const dea_model_choice *choice)
 {
     char text[32];
     dea_bounds bounds = {0};
     dea_comparison comparison;
-    const dea_model *truth = dea_needs_truth(scene->study);
+    const dea_model *truth = choice->truth;
     if (truth == scene->models[0]) {
         return bounds;
     }
@@ -187,11 +187,11 @@ dea_bounds dea_check_choice(const dea_arguments *arguments, const dea_scene *sce
         bounds.unjudged++;
         return bounds;
     }
-    const dea_measured m = measure_choice(arguments, scene, bound, &comparison);
+    const dea_measured m = measure_choice(arguments, scene, truth, choice->bound, &comparison);
     bounds.broken += m.verdict == DEA_BROKEN ? 1 : 0;
     bounds.unjudged += m.verdict == DEA_NOT_JUDGED ? 1 : 0;
     if (!arguments->quiet) {
-        printf("  %s instead of %s (<= %s), ", scene->models[0]->name, truth->name, dea_bound_text(bound, text));
+        printf("  %s instead of %s (<= %s), ", scene->models[0]->name, truth->name, dea_bound_text(choice->bound, text));
         if (m.verdict == DEA_BROKEN && comparison.states > 0) {
             printf("states of %zu row%s differ, else ", comparison.states, comparison.states == 1 ? "" : "s");
         }

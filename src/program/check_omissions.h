@@ -15,7 +15,7 @@ typedef struct dea_bounds {
 /** Measures what the first model's runs leave out for each engine that takes part, and prints it unless @p arguments are quiet.
  */
 dea_bounds dea_check_omissions(const dea_arguments *arguments, const dea_scene *scene);
-/** Measures the model error of the scene's first model, chosen with that bound, against the finest one, and prints it. */
-dea_bounds dea_check_choice(const dea_arguments *arguments, const dea_scene *scene, double bound);
+/** Measures the model error of the scene's first model against what it was chosen against, and prints it. */
+dea_bounds dea_check_choice(const dea_arguments *arguments, const dea_scene *scene, const dea_model_choice *choice);
 
 #endif

@@ -199,11 +199,11 @@ static void check_scene(const dea_arguments *arguments, const char *path, dea_ta
         dea_scene_free(&scene);
         return;
     }
-    double bound;
+    dea_model_choice choice;
     const bool automatic = scene.automatic;
     const size_t named = arguments->engine ? scene.engine_count : 0; /* a check runs all but those that the command line leaves out */
     scene.engine_count = 0;
-    if (!dea_model_settle(&scene, NULL, arguments->quiet, &bound, &outcome)) {
+    if (!dea_model_settle(&scene, NULL, arguments->quiet, &choice, &outcome)) {
         tally->unusable++;
         dea_scene_free(&scene);
         return;
@@ -218,7 +218,7 @@ static void check_scene(const dea_arguments *arguments, const char *path, dea_ta
         check_model(arguments, path, &alone, tolerance, tally);
     }
     if (automatic && dea_signals_caught() == 0) {
-        count_bounds(path, dea_check_choice(arguments, &scene, bound), tally);
+        count_bounds(path, dea_check_choice(arguments, &scene, &choice), tally);
     }
     dea_scene_free(&scene);
 }

@@ -277,9 +277,9 @@ static dea_exit run(const dea_arguments *arguments)
         !dea_scene_open(arguments, arguments->operands[0].path, &scene, &outcome)) {
         return outcome;
     }
-    double bound;
+    dea_model_choice choice;
     dea_signals_catch();
-    if (dea_model_settle(&scene, dea_engine_find("ngspice"), arguments->quiet, &bound, &outcome) && is_one_model(&scene)) {
+    if (dea_model_settle(&scene, dea_engine_find("ngspice"), arguments->quiet, &choice, &outcome) && is_one_model(&scene)) {
         outcome = write_scene(arguments, as, &export);
     }
     dea_scene_free(&scene);

@@ -80,8 +80,8 @@ static dea_exit merge(const dea_arguments *arguments)
     if (!dea_scene_open(arguments, arguments->operands[0].path, &scene, &outcome)) {
         return outcome;
     }
-    double bound;
-    if (dea_model_settle(&scene, NULL, arguments->quiet, &bound, &outcome) && !dea_engines_unfit(&scene)) {
+    dea_model_choice choice;
+    if (dea_model_settle(&scene, NULL, arguments->quiet, &choice, &outcome) && !dea_engines_unfit(&scene)) {
         outcome = merge_scene(arguments, &scene);
     }
     dea_scene_free(&scene);

@@ -49,8 +49,8 @@ static dea_exit run(const dea_arguments *arguments)
     if (!dea_scene_open(arguments, arguments->operands[0].path, &scene, &outcome)) {
         return outcome;
     }
-    double bound;
-    if (dea_model_settle(&scene, NULL, arguments->quiet, &bound, &outcome) && !dea_engines_unfit(&scene)) {
+    dea_model_choice choice;
+    if (dea_model_settle(&scene, NULL, arguments->quiet, &choice, &outcome) && !dea_engines_unfit(&scene)) {
         const bool journaled = arguments->resume || arguments->shard > 0;
         outcome = journaled ? dea_run_journaled(arguments, &scene) : run_scene(arguments, &scene);
     }

@@ -6,6 +6,7 @@
 
 #include "deaspice/engine.h"
 #include "deaspice/fit.h"
+#include "deaspice/needs.h"
 #include "deaspice/plot.h"
 #include "deaspice/scene.h"
 #include "support/files.h"
@@ -144,9 +145,9 @@ bool dea_scene_open(const dea_arguments *arguments, const char *path, dea_scene 
 /** Complains where all engines of the scene refuse a model and names those that can do it; true where they do. */
 bool dea_engines_unfit(const dea_scene *scene);
 /** Settles `model: auto`: sets the first model; says which unless @p quiet. False, with a complaint and @p outcome, where no
- * model that the engine (NULL: those of the scene) can do is good enough. @p bound: of the model error, 0 where the scene names its
- * models. */
-bool dea_model_settle(dea_scene *scene, const dea_engine *engine, bool quiet, double *bound, dea_exit *outcome);
+ * model that the engine (NULL: those of the scene) can do is good enough. @p choice: what was chosen, zeroed where the scene names
+ * its models. */
+bool dea_model_settle(dea_scene *scene, const dea_engine *engine, bool quiet, dea_model_choice *choice, dea_exit *outcome);
 /** Seconds since some moment. */
 double dea_seconds(void);
 

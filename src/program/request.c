@@ -127,35 +127,35 @@ static void complain_choice(const dea_scene *scene, const dea_engine *engine, co
     }
 }
 
-bool dea_model_settle(dea_scene *scene, const dea_engine *engine, bool quiet, double *bound, dea_exit *outcome)
+bool dea_model_settle(dea_scene *scene, const dea_engine *engine, bool quiet, dea_model_choice *choice, dea_exit *outcome)
 {
     char text[32];
-    dea_model_choice choice;
     dea_error error = {0};
-    *bound = 0.0;
+    *choice = (dea_model_choice){0};
     if (!scene->automatic) {
         return true;
     }
-    if (dea_needs_model(scene, engine, &choice, &error) != DEA_OK) {
+    if (dea_needs_model(scene, engine, choice, &error) != DEA_OK) {
         *outcome = dea_complain_error(&error);
         return false;
     }
-    if (!choice.model) {
-        complain_choice(scene, engine, &choice);
+    if (!choice->model) {
+        complain_choice(scene, engine, choice);
         *outcome = DEA_EXIT_USAGE;
         return false;
     }
-    scene->models[0] = choice.model;
+    scene->models[0] = choice->model;
     scene->automatic = false;
-    *bound = choice.bound;
-    if (!quiet && choice.model == choice.truth && choice.unsolved) {
-        fprintf(stderr, "model auto: %s, which was not solved at once, so that nothing cheaper could be held against it\n",
-                choice.model->name);
-    } else if (!quiet && choice.model == choice.truth) {
-        fprintf(stderr, "model auto: %s, nothing cheaper is good enough\n", choice.model->name);
+    if (!quiet && choice->model == choice->truth) {
+        fprintf(stderr, "model auto: %s, nothing cheaper is good enough\n", choice->model->name);
     } else if (!quiet) {
-        fprintf(stderr, "model auto: %s, within %s of %s\n", choice.model->name, dea_bound_text(choice.bound, text),
-                choice.truth->name);
+        fprintf(stderr, "model auto: %s, within %s of %s\n", choice->model->name, dea_bound_text(choice->bound, text),
+                choice->truth->name);
+    }
+    if (!quiet && choice->unsolved && choice->truth != dea_needs_truth(scene->study)) {
+        const char *finest = dea_needs_truth(scene->study)->name;
+        fprintf(stderr, "%s was not solved at once, so that how far %s is from it is not known: --model %s tries it, a damper "
+                        "(material.retardation) and a slower rise make it easier\n", finest, choice->truth->name, finest);
     }
     return true;
 }

@@ -147,7 +147,8 @@ static double size_of(size_t n, const double *u)
     return most;
 }
 
-/* What is lost of displacements [m] where a stiff load holds the edge: the stresses of the film beside it are as large as ever. */
+/* What is lost of the film's displacements [m] where a stiff load holds its edge: the stresses there are as large as ever. That of
+ * the edge keeps its digits. */
 static double rounding(const dea_still *still)
 {
     return still->point->load > 0.0 ? 4.0 * DBL_EPSILON * still->point->frame_radius : 0.0;
@@ -258,8 +259,8 @@ static double radial_strain(const dea_still *still, const dea_ring *ring, strain
     return guess.e1;
 }
 
-/* Strains of all rings. Across r_a the radial stress goes on, and d(R s_1)/dR = s_2 takes it to the frame; s_1 and s_2 may be
- * changes from rest, which holds itself. */
+/* Strains of all rings. Across r_a the radial stress goes on, but for what a load takes there, 2 pi H A [s_1] = K u, and
+ * d(R s_1)/dR = s_2 takes it to the frame; s_1 and s_2 may be changes from rest, which holds itself. */
 static void strains_all(const dea_still *still, const double *u, strains *e)
 {
     const dea_rings *rings = &still->rings;
@@ -275,7 +276,9 @@ static void strains_all(const dea_still *still, const double *u, strains *e)
             continue;
         }
         const bool edge = rings->rings[q - 1].disc, frame = q + 1 == rings->ring_count;
-        moment += ring->volume / (2.0 * DEA_PI * ring->radius * thickness) * s.p2;
+        const double held = edge ? still->point->load * u[rings->edge] / (2.0 * DEA_PI * thickness) : 0.0;
+        stress += held * still->point->film.prestretch / dea_point_divide(still->point);
+        moment += held + ring->volume / (2.0 * DEA_PI * ring->radius * thickness) * s.p2;
         if (edge || frame) {
             e[q].e1 = radial_strain(still, ring, e[q], edge ? stress : moment / ring->radius);
         }
@@ -292,19 +295,21 @@ static size_t electrode_edge(const dea_rings *rings)
     return rings->rings[q].electroded ? q : q + 1;
 }
 
-/* C = (eps/H^2) sum of volume (lambda_1 lambda_2)^2, electroded; of the displacements as they are: an integral is the best of
- * their numbers. */
+/* C = C_rest + (eps/H^2) sum of volume ((lambda_1 lambda_2)^2 - lambda_pre^4), electroded: at rest no mesh is asked. Of the
+ * displacements as they are: an integral is the best of their numbers. */
 static double capacitance(const dea_still *still, const double *u)
 {
     const dea_point *point = still->point;
+    const double square = point->film.square;
     double sum = 0.0;
     for (size_t q = 0; q < still->rings.ring_count; q++) {
         const dea_ring *ring = &still->rings.rings[q];
         const strains e = strains_of(ring, u);
-        const double area = point->film.square * (1.0 + e.e1) * (1.0 + e.e2);
-        sum += ring->electroded ? ring->volume * dea_film_electric(&point->film, area).own * area * area : 0.0;
+        const double more = e.e1 + e.e2 + e.e1 * e.e2; /* lambda_1 lambda_2/lambda_pre^2 - 1 */
+        const double own = dea_film_electric(&point->film, square * (1.0 + more)).own;
+        sum += ring->electroded ? ring->volume * (own * more * (2.0 + more) + (own - 1.0)) : 0.0;
     }
-    return point->film.permittivity * sum / (point->film_thickness * point->film_thickness);
+    return dea_point_capacitance(point) + point->film.permittivity * sum * square * square / (point->film_thickness * point->film_thickness);
 }
 
 void dea_still_fill(const dea_still *still, const double *u, dea_row *row)
@@ -352,9 +357,8 @@ double dea_still_apart(const dea_still *coarse, const double *u, const dea_still
     }
     dea_still_fill(coarse, u, row);
     dea_still_fill(fine, better, &other);
-    const double apart = fmax(fmax(relative(row->strain, other.strain), relative(row->force, other.force)),
-                              fmax(relative(row->field, other.field), relative(row->capacitance, other.capacitance)));
-    return fmax(apart, rounding(coarse) / fmax(fabs(row->displacement), DBL_MIN));
+    return fmax(fmax(relative(row->strain, other.strain), relative(row->force, other.force)),
+                fmax(relative(row->field, other.field), relative(row->capacitance, other.capacitance)));
 }
 
 /* A row may be off by several times what the strain is: the mesh is chosen by the strain, and by this share of the row. */

@@ -307,6 +307,33 @@ static void a_mean_that_is_off_is_found(void **state)
     judge_close(&j);
 }
 
+/* A lens so small that strains beside it are steep: every mesh of its network folds, while the film has an equilibrium; and one that
+ * pulls in. */
+static void no_film_is_pulled_in_where_meshes_alone_fold(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {
+        "actuator: {kind: lens, frame_radius: 6 mm, coverage: 0.021, film_thickness: 7.4 um, prestretch: 3.75}\n"
+        "material: {arruda_boyce: {mu: 176.5 kPa, lambda_m: 10.9}, permittivity: 3}\n"
+        "drive: {voltage: 227 V}\nmodel: field\nstudy: {sweep: {voltage: [188 V, 227 V]}}\n",
+        "actuator: {kind: lens, frame_radius: 30 mm, coverage: 0.9, film_thickness: 100 um, prestretch: 1.2}\n"
+        "material: {neo_hookean: {mu: 356 kPa}, permittivity: 2.8}\n"
+        "drive: {voltage: 12 kV}\nmodel: field\nstudy: {sweep: {voltage: [11.5 kV, 12 kV]}}\n",
+    };
+    for (int i = 0; i < 2; i++) {
+        char line[LINE] = "";
+        judged j;
+        tally counted = {0};
+        assert_true(judge_open(&j, texts[i], 0));
+        assert_int_equal(((const dea_row *)j.truth)[1].state, i == 0 ? DEA_STATE_SLACK : DEA_STATE_PULL_IN);
+        if (judge_engine(&j, dea_engine_find("ngspice"), 1e-4, &counted, line, sizeof line)) {
+            fail_msg("%s", line);
+        }
+        assert_int_equal(counted.failed, i == 0 ? 1 : 0);
+        judge_close(&j);
+    }
+}
+
 /* ---- promises */
 
 /* Loose, and tight as far as it stays quick. */
@@ -540,6 +567,7 @@ int main(void)
         cmocka_unit_test(a_branch_without_fold_goes_as_far_as_its_film),
         cmocka_unit_test(an_engine_that_is_off_by_three_times_the_accuracy_is_found),
         cmocka_unit_test(a_mean_that_is_off_is_found),
+        cmocka_unit_test(no_film_is_pulled_in_where_meshes_alone_fold),
         cmocka_unit_test(draws_are_valid_scenes_of_all_laws),
         cmocka_unit_test(engines_keep_the_promises_that_were_broken),
         cmocka_unit_test(engines_keep_their_promises_on_random_scenes),

@@ -243,6 +243,15 @@ static dea_status climb(line_job *job, size_t i, size_t steps, bool *accepted, d
     return status;
 }
 
+/* What the placed point is where a mesh has lost its equilibrium. Beside a small disc strains are so steep that every mesh folds where
+ * the film does not, and all at the same load: pulled in it is only where the exact membrane is too. */
+static dea_state end_of(const line_job *job)
+{
+    dea_row exact = dea_row_failed();
+    job->scene.models[0]->solve(&job->point, job->accuracy, &exact);
+    return exact.state == DEA_STATE_PULL_IN ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
+}
+
 static dea_status alone(void *user, size_t i, dea_error *failure)
 {
     line_job *job = user;
@@ -253,7 +262,7 @@ static dea_status alone(void *user, size_t i, dea_error *failure)
         return DEA_OK;
     }
     cut(job);
-    if (dea_still_climb(&job->coarse, u) != DEA_STATE_OK) {
+    if (dea_still_climb(&job->coarse, u) != DEA_STATE_OK && end_of(job) == DEA_STATE_PULL_IN) {
         row_at(job, i)->state = DEA_STATE_PULL_IN;
         return DEA_OK;
     }
@@ -263,7 +272,7 @@ static dea_status alone(void *user, size_t i, dea_error *failure)
     if (own.annulus == 0) { /* no mesh is fine enough: the finest one tells whether the film ends before */
         set_mesh(job, (dea_rings_mesh){1, DEA_RINGS_DEGREE - 2, true});
         cut(job);
-        row_at(job, i)->state = dea_still_climb(&job->fine, u) == DEA_STATE_OK ? DEA_STATE_FAILED : DEA_STATE_PULL_IN;
+        row_at(job, i)->state = dea_still_climb(&job->fine, u) == DEA_STATE_OK ? DEA_STATE_FAILED : end_of(job);
         set_mesh(job, usual);
     } else {
         set_mesh(job, own);

@@ -1,7 +1,7 @@
 /** @file scene.h
  * The scene: one actuator, one material, one drive, one study. Read from YAML, changed by dotted keys.
  *
- * Every scalar of a scene has one entry in the key table (src/scene/keys.c): its dotted path, its place in the struct,
+ * Every scalar of a scene has one entry in the key table (src/scene/key_table.c): its dotted path, its place in the struct,
  * its unit and range. The reader, --set, sweep axes and result columns all work from that table.
  */
 #ifndef DEASPICE_SCENE_H

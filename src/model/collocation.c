@@ -11,7 +11,7 @@
  * the integrating factor exp(int q), so that no matrix is needed. */
 #include "model/collocation.h"
 
-#include "model/field.h"
+#include "model/field_row.h"
 #include "model/models.h"
 #include "support/lanes.h"
 

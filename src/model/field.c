@@ -16,6 +16,7 @@
 
 #include "model/collocation.h"
 #include "model/field.h"
+#include "model/field_row.h"
 #include "model/film_balance.h"
 
 enum { GBS_COLUMNS = 7, ELLIPTIC_SAMPLES = 8 };
@@ -577,27 +578,6 @@ bool dea_field_profile(const dea_point *point, double strain, size_t count, cons
     return true;
 }
 
-/* 2 pi H R_a [m^2]. */
-static double lever_of(const dea_point *point)
-{
-    return 2.0 * DEA_PI * point->film_thickness * dea_point_divide(point) / point->film.prestretch;
-}
-
-static dea_found found_in(const dea_point *point, dea_field_found found)
-{
-    const double nominal = dea_point_nominal_field(point), pressure = point->film.permittivity * nominal * nominal;
-    return (dea_found){.strain = found.strain,
-                       .force = dea_point_sign(point) * lever_of(point) * pressure * found.edge_force,
-                       .stretch = found.stretch,
-                       .capacitance = found.capacitance,
-                       .taut = found.taut};
-}
-
-void dea_field_fill(const dea_point *point, dea_field_found found, dea_row *row)
-{
-    dea_row_fill(row, point, found_in(point, found));
-}
-
 /* From what an integration found of the film at an edge. */
 static dea_found found_of(const dea_point *point, double edge, const extremes *x)
 {
@@ -605,7 +585,7 @@ static dea_found found_of(const dea_point *point, double edge, const extremes *x
     const double strain = edge / film->prestretch;
     /* (2 pi eps/H) (r/lambda_pre)^2 c */
     const double annulus = 2.0 * dea_point_full_capacitance(point) * x->charge / (film->square * film->square);
-    return found_in(point, (dea_field_found){.strain = strain,
+    return dea_field_found_in(point, (dea_field_found){.strain = strain,
                                              .edge_force = x->edge_force,
                                              .stretch = x->largest_area,
                                              .capacitance = point->kind == DEA_DOT ? dea_point_disc_capacitance(point, strain) : annulus,
@@ -644,14 +624,14 @@ void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row)
 static double force_on_edge(const membrane *m, double edge, double *d)
 {
     *d = jump_of_held(m, edge);
-    return lever_of(m->point) * jump_of_stress(m, m->film->prestretch + edge, *d);
+    return dea_field_lever(m->point) * jump_of_stress(m, m->film->prestretch + edge, *d);
 }
 
 /* Without voltage, inward; and what the voltage adds, outward: all of it on the disc of a dot, whose annulus does not feel it. */
 static double held_at(const membrane *full, const membrane *still, double edge, double *push, double *d)
 {
     const double held = -force_on_edge(still, edge, d), l = full->film->prestretch + edge;
-    *push = full->lens ? force_on_edge(full, edge, d) + held : lever_of(full->point) * full->disc_k * dea_film_electric(full->film, l * l).first * l * l * l;
+    *push = full->lens ? force_on_edge(full, edge, d) + held : dea_field_lever(full->point) * full->disc_k * dea_film_electric(full->film, l * l).first * l * l * l;
     return held;
 }
 

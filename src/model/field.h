@@ -12,17 +12,6 @@ typedef struct dea_field_mesh {
 /* The model's solve() on a mesh. */
 void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row);
 
-/* What was found of a film. */
-typedef struct dea_field_found {
-    double strain;      /* of the disc edge [1] */
-    double edge_force;  /* lambda_1 lambda_2^2 of the electroded side at R_a [1] */
-    double stretch;     /* largest lambda_1 lambda_2 of the electroded region [1] */
-    double capacitance; /* [F] */
-    bool taut;          /* no nominal stress has fallen to 0 */
-} dea_field_found;
-
-void dea_field_fill(const dea_point *point, dea_field_found found, dea_row *row);
-
 /* The model's along(). Right to 1e-13 of the strain. */
 bool dea_field_profile(const dea_point *point, double strain, size_t count, const double *x, dea_stretches *stretches);
 

@@ -1,4 +1,5 @@
 #include "netlist/rings_moving.h"
+#include "netlist/rings_cards.h"
 
 #include <math.h>
 

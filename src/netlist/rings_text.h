@@ -2,7 +2,7 @@
 #ifndef DEA_RINGS_TEXT_H
 #define DEA_RINGS_TEXT_H
 
-#include "netlist/rings_cards.h"
+#include "netlist/rings_film.h"
 
 /* A text of rings on its way out. */
 typedef struct dea_rings_writer {

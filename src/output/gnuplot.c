@@ -11,6 +11,7 @@
 #include <fcntl.h>
 #include <math.h>
 #include <spawn.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -127,45 +128,34 @@ static void write_head(const dea_gnuplot *picture)
     char drawn[TEXT_MAX + 1];
     name = name ? name + 1 : picture->file.target;
     snprintf(drawn, sizeof drawn, "%.*s.svg", (int)(strlen(name) - strlen(picture->kind->ending)), name);
-    fputs("# Data and drawing of a picture by deaspice: gnuplot FILE draws it. For other formats change the terminal (pngcairo,\n"
-          "# pdfcairo, epscairo) and the name of the output.\n"
-          "set output ",
-          picture->script);
-    dea_gnuplot_text(picture->script, drawn);
-    fputc('\n', picture->script);
+    dea_gnuplot_put(picture->script,
+                    "# Data and drawing of a picture by deaspice: gnuplot FILE draws it. For other formats change the terminal (pngcairo,\n"
+                    "# pdfcairo, epscairo) and the name of the output.\n"
+                    "set output %q\n",
+                    drawn);
 }
 
-static void write_side(FILE *script, double units, const dea_gnuplot *picture, const char *end)
+/* A side of the canvas as the terminal takes it. */
+static double side_of(const dea_gnuplot *picture, double units)
 {
     const double inches = units * picture->canvas.unit;
     const double whole = round(inches / picture->kind->pixel[picture->canvas.height > 0]);
-    dea_gnuplot_number(script, picture->kind->inches ? (whole + 0.01) / 72.0 : whole); /* of which it cuts the points */
-    fprintf(script, "%s%s", picture->kind->inches ? "in" : "", end);
-}
-
-static void write_scale(FILE *script, const char *before, double scale)
-{
-    fputs(before, script);
-    dea_gnuplot_number(script, scale);
+    return picture->kind->inches ? (whole + 0.01) / 72.0 : whole; /* of which it cuts the points */
 }
 
 void dea_gnuplot_size(dea_gnuplot *picture, int height)
 {
-    FILE *script = picture->script;
     const dea_picture_kind *kind = picture->kind;
     const double scale = picture->canvas.unit / kind->pixel[picture->canvas.height > 0];
+    const char *unit = kind->inches ? "in" : "";
     if (kind->script) {
         write_head(picture);
     }
-    fprintf(script, "set encoding utf8\nset terminal %s size ", kind->terminal);
-    write_side(script, picture->canvas.width, picture, ",");
-    write_side(script, height, picture, " font 'DejaVu Sans,12'");
-    write_scale(script, " fontscale ", scale);
-    write_scale(script, " linewidth ", scale * kind->line);
-    write_scale(script, " dashlength ", scale * kind->dash);
-    fprintf(script, " rounded noenhanced %s\n", kind->words);
-    write_scale(script, "ps = ", scale);
-    fputc('\n', script);
+    dea_gnuplot_put(picture->script,
+                    "set encoding utf8\nset terminal %s size %g%s,%g%s font 'DejaVu Sans,12' fontscale %g linewidth %g dashlength %g "
+                    "rounded noenhanced %s\nps = %g\n",
+                    kind->terminal, side_of(picture, picture->canvas.width), unit, side_of(picture, height), unit, scale,
+                    scale * kind->line, scale * kind->dash, kind->words, scale);
 }
 
 /* Length of the UTF-8 character at @p text, 0 where it is none that may be shown: controls, and what XML has not. */
@@ -185,7 +175,7 @@ static bool is_plain(unsigned char letter)
 
 /* What is not plain ASCII or a whole character beyond it is written as an octal escape, and so is a digit behind one: gnuplot
  * reads an octal number as long as digits follow. */
-void dea_gnuplot_text(FILE *script, const char *text)
+static void write_text(FILE *script, const char *text)
 {
     const unsigned char *next = (const unsigned char *)text;
     int brackets = 0;
@@ -213,10 +203,30 @@ void dea_gnuplot_text(FILE *script, const char *text)
     fputc('"', script);
 }
 
-void dea_gnuplot_number(FILE *script, double value)
+void dea_gnuplot_put(FILE *script, const char *format, ...)
 {
-    char text[DEA_NUMBER_LENGTH];
-    fputs(isfinite(value) ? dea_number_text(text, value, 9) : "NaN", script);
+    va_list values;
+    va_start(values, format);
+    for (; *format; format++) {
+        if (*format != '%') {
+            fputc(*format, script);
+        } else if (*++format == 'g') {
+            char text[DEA_NUMBER_LENGTH];
+            const double value = va_arg(values, double);
+            fputs(isfinite(value) ? dea_number_text(text, value, 9) : "NaN", script);
+        } else if (*format == 'q') {
+            write_text(script, va_arg(values, const char *));
+        } else if (*format == 's') {
+            fputs(va_arg(values, const char *), script);
+        } else if (*format == 'd') {
+            fprintf(script, "%d", va_arg(values, int));
+        } else if (*format == 'z') {
+            fprintf(script, "%zu", va_arg(values, size_t));
+        } else {
+            fputc(*format, script); /* %% */
+        }
+    }
+    va_end(values);
 }
 
 /* Starts gnuplot, from a file into a pipe and its words into another file. */
@@ -299,6 +309,7 @@ static dea_status script_draw(FILE *script, char **bytes, size_t *size, dea_erro
 static dea_status gnuplot_make(dea_gnuplot *picture, char **bytes, size_t *size, dea_error *error)
 {
     FILE *script = picture->script;
+    fputs("unset multiplot\nunset output\n", script);
     if (fflush(script) != 0 || ferror(script) || lseek(fileno(script), 0, SEEK_SET) != 0) {
         return dea_fail(error, DEA_ERROR_IO, "cannot write a temporary file: %s", strerror(errno));
     }

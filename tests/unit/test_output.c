@@ -736,20 +736,57 @@ static void netcdf_tells_the_skin_from_the_film(void **state)
 }
 
 /* Draws a study of the scene; strains are those of numbers that a picture can show. */
-static dea_status study_draw(const dea_scene *scene, const char *path, dea_error *error)
+static dea_status columns_draw(const dea_scene *scene, const char *path, const char *columns, dea_error *error)
 {
     dea_plot *plot;
-    dea_status status = dea_plot_begin(scene, path, NULL, &plot, error);
+    const dea_plot_options options = {.columns = columns};
+    dea_status status = dea_plot_begin(scene, path, &options, &plot, error);
     if (status != DEA_OK) {
         return status;
     }
     const size_t total = dea_scene_point_count(scene) * scene->model_count;
     for (size_t i = 0; i < total; i++) {
         const double x = (double)i / (double)total;
-        const dea_row row = {.strain = 0.1 * x, .displacement = 1e-3 * x * (1.0 - x), .state = DEA_STATE_OK};
+        const dea_row row = {.strain = 0.1 * x, .displacement = 1e-3 * x * (1.0 - x), .charge = 3e-6 * x, .state = DEA_STATE_OK};
         dea_plot_points(plot, i, &row, 1);
     }
     return dea_plot_finish(plot, true, error);
+}
+
+static dea_status study_draw(const dea_scene *scene, const char *path, dea_error *error)
+{
+    return columns_draw(scene, path, NULL, error);
+}
+
+/* One column or two of a sweep, one of a map; its largest value, 3 uC times 49/50, is drawn in its own unit. */
+static void columns_of_a_sweep_are_drawn_as_wanted(void **state)
+{
+    static const size_t one[] = {50}, two[] = {50, 20};
+    static const struct {
+        const char *columns, *shown, *absent;
+    } cases[] = {{"charge_C", "\"Charge Q [µC]\"", "[mm]"}, {"charge_C,displacement_m", "\"Displacement u [µm]\"", "Strain"}};
+    const dea_scene curves = scene_make(1, one, 1), map = scene_make(2, two, 1);
+    dea_error error = {0};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        assert_int_equal(columns_draw(&curves, in_folder("a.gp"), cases[i].columns, &error), DEA_OK);
+        const char *script = file_text(in_folder("a.gp"));
+        assert_non_null(strstr(script, cases[i].shown));
+        assert_non_null(strstr(script, " 2.94 "));
+        assert_null(strstr(script, cases[i].absent));
+    }
+    assert_int_equal(columns_draw(&map, in_folder("a.svg"), "charge_C", &error), DEA_OK);
+    assert_non_null(strstr(file_text(in_folder("a.svg")), "Charge Q [µC]"));
+    assert_int_equal(unlink(in_folder("a.svg")), 0);
+    assert_int_equal(columns_draw(&map, in_folder("a.gp"), "charge_C,strain", &error), DEA_ERROR_USAGE);
+    assert_non_null(strstr(error.message, "one, of a map"));
+    assert_int_equal(columns_draw(&curves, in_folder("a.gp"), "charge_C,", &error), DEA_ERROR_USAGE);
+    assert_non_null(strstr(error.message, "no column \"\""));
+    assert_int_equal(columns_draw(&curves, in_folder("a.gp"), "charge_C,strain,force_N", &error), DEA_ERROR_USAGE);
+    const dea_scene runs = response_make(1, one, 1, 4);
+    assert_int_equal(columns_draw(&runs, in_folder("a.gp"), "strain", &error), DEA_ERROR_USAGE);
+    assert_non_null(strstr(error.message, "columns are chosen of a sweep, but the study is ac"));
+    assert_int_equal(unlink(in_folder("a.gp")), 0);
 }
 
 static void picture_shows_hostile_titles_as_text(void **state)
@@ -1283,6 +1320,7 @@ int main(void)
         IN_FOLDER(netcdf_of_a_frequency_response_lies_along_frequency),
         IN_FOLDER(netcdf_keeps_the_scalars_that_the_study_used),
         IN_FOLDER(netcdf_tells_the_skin_from_the_film),
+        IN_FOLDER(columns_of_a_sweep_are_drawn_as_wanted),
         IN_FOLDER(picture_shows_hostile_titles_as_text),
         IN_FOLDER(long_curves_make_small_pictures),
         IN_FOLDER(two_long_axes_make_a_map),

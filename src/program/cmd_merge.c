@@ -104,6 +104,7 @@ const dea_command dea_command_merge = {
             "      --size WxH        of the picture, for example 8.5x6cm (mm, cm, in, pt)\n"
             "      --log x|y|xy      draw these axes logarithmic\n"
             "      --loops           draw a transient over its voltage: hysteresis loops\n"
+            "      --columns C[,C]   draw these columns of a sweep, e.g. capacitance_F,force_N\n"
             "      --engine E        as in the runs\n"
             "      --model M         as in the runs\n"
             "      --set KEY=VALUE   as in the runs\n"

@@ -73,6 +73,7 @@ const dea_command dea_command_run = {
             "      --size WxH        of the picture, for example 8.5x6cm (mm, cm, in, pt)\n"
             "      --log x|y|xy      draw these axes logarithmic\n"
             "      --loops           draw a transient over its voltage: hysteresis loops\n"
+            "      --columns C[,C]   draw these columns of a sweep, e.g. capacitance_F,force_N\n"
             "      --engine E        auto (default): for each model the cheapest that can do it;\n"
             "                        direct, ngspice, ida, or several with commas between, in the\n"
             "                        order in which they are asked\n"

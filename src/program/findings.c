@@ -41,9 +41,11 @@ dea_findings dea_findings_begin(const dea_scene *scene, FILE *averages)
         for (size_t i = 0; i < scene->axis_count; i++) {
             fprintf(averages, "%s,", scene->axes[i].column);
         }
-        fputs("from_s,to_s,strain,displacement_m,least_m,largest_m,peak_to_peak_m", averages);
-        for (int k = 1; scene->drive.waveform.kind == DEA_WAVE_SINE && k <= DEA_HARMONICS; k++) {
-            fprintf(averages, ",amplitude_%d_m,phase_%d_deg", k, k);
+        size_t count;
+        const dea_column *columns = dea_window_columns(scene, &count);
+        fputs("from_s,to_s,strain,displacement_m", averages);
+        for (size_t i = 0; i < count; i++) {
+            fprintf(averages, ",%s", columns[i].name);
         }
         fputc('\n', averages);
     }
@@ -65,22 +67,23 @@ static void print_place(FILE *stream, const dea_scene *scene, size_t number)
 /* Windows of a run: means, then what the samples tell of them. */
 static void print_averages(const dea_findings *findings, size_t number, const dea_scene *placed, const dea_sample *samples)
 {
-    const bool sine = placed->drive.waveform.kind == DEA_WAVE_SINE;
+    size_t told;
+    const dea_column *columns = dea_window_columns(placed, &told);
     for (size_t i = 0; findings->averages && i < placed->transient.average_count; i++) {
         const dea_window window = placed->transient.averages[i];
         const dea_average mean = findings->summary.averages[i];
         const dea_window_figures f = dea_measure_window(placed, samples, findings->layout.rows, &findings->summary, i);
-        double numbers[7 + 2 * DEA_HARMONICS] = {window.from, window.to, mean.strain, mean.displacement,
-                                                 f.least,     f.largest, f.largest - f.least};
-        size_t count = 7;
-        for (size_t k = 0; sine && k < DEA_HARMONICS; k++) {
-            numbers[count++] = f.amplitude[k];
-            numbers[count++] = f.phase[k];
-        }
+        const double means[] = {window.from, window.to, mean.strain, mean.displacement};
         print_place(findings->averages, findings->scene, number);
-        for (size_t k = 0; k < count; k++) {
-            print_number(findings->averages, numbers[k]);
-            fputc(k + 1 < count ? ',' : '\n', findings->averages);
+        for (size_t k = 0; k < sizeof means / sizeof *means; k++) {
+            print_number(findings->averages, means[k]);
+            fputc(',', findings->averages);
+        }
+        for (size_t k = 0; k < told; k++) {
+            double value;
+            memcpy(&value, (const char *)&f + columns[k].offset, sizeof value);
+            print_number(findings->averages, value);
+            fputc(k + 1 < told ? ',' : '\n', findings->averages);
         }
     }
 }

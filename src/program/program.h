@@ -56,7 +56,7 @@ typedef struct dea_arguments {
     const char *output;
     const char *format;
     const char *plot;
-    dea_plot_options picture; /**< --size, --log, --loops; zeroed: not given */
+    dea_plot_options picture; /**< --size, --log, --loops, --columns; zeroed: not given */
     size_t jobs; /**< 0: not given; "auto" is already the number of cores */
     bool quiet;
     bool full, no_truth;

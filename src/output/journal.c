@@ -12,7 +12,6 @@
 #include <unistd.h>
 
 #include "output/atomic.h"
-#include "output/identity.h"
 #include "output/stream.h"
 #include "support/clock.h"
 

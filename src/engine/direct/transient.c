@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "engine/direct/direct.h"
-#include "engine/direct/peak.h"
 #include "engine/direct/walk.h"
 
 /* Samples that are stepped from one to the next before the state is computed anew from the begin of the segment. */

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "drive/soften.h"
+#include "drive/signal.h"
 #include "engine/rings_gap.h"
 #include "network/rings_mesh.h"
 #include "support/lapack.h"

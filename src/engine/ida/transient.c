@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-#include "drive/soften.h"
+#include "drive/signal.h"
 #include "engine/ida/flight.h"
 #include "result/scales.h"
 #include "support/lapack.h"

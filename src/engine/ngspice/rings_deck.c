@@ -1,4 +1,4 @@
-#include "engine/ngspice/rings_deck.h"
+#include "engine/ngspice/rings_track.h"
 
 #include <stdlib.h>
 

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/ngspice/rings_deck.h"
 #include "model/models.h"
 #include "support/gauss.h"
 

@@ -119,8 +119,7 @@ static void sheet_scan(sheet *page)
 static void write_values(FILE *script, const double drawn[PANELS], bool shown)
 {
     for (int i = 0; i < PANELS; i++) {
-        fputc(' ', script);
-        dea_gnuplot_number(script, shown ? drawn[i] : (double)NAN);
+        dea_gnuplot_put(script, " %g", shown ? drawn[i] : (double)NAN);
     }
 }
 
@@ -137,7 +136,7 @@ static void write_data(const sheet *page, FILE *script)
             if (page->along.logarithmic && !(x > 0.0)) {
                 continue;
             }
-            dea_gnuplot_number(script, x);
+            dea_gnuplot_put(script, "%g", x);
             write_values(script, drawn, true);
             for (size_t mark = 0; mark < DEA_MARKS; mark++) {
                 write_values(script, drawn, is_marked(page, curve, place, mark));
@@ -195,9 +194,8 @@ static void write_panel(sheet *page, FILE *script, int number)
     dea_plot_place(script, plot->picture.canvas.width, page->pair.height, *box);
     snprintf(label, sizeof label, "%s %s%c%s [%s]", words[number], bar, number == 0 ? 's' : 'u', bar,
              number == 0 ? "%" : page->displacement.unit);
-    fputs("set ylabel ", script);
-    dea_gnuplot_text(script, label);
-    fprintf(script, "\nset label 1 '(%c)' at graph 0, graph 1 offset character 0, character 0.8 left\n", 'a' + number);
+    dea_gnuplot_put(script, "set ylabel %q\nset label 1 '(%s)' at graph 0, graph 1 offset character 0, character 0.8 left\n", label,
+                    number == 0 ? "a" : "b");
     dea_span_write(script, "x", &page->along, box->width, dea_name_plain);
     dea_span_write(script, "y", &page->spans[number], box->height, dea_name_plain);
     if (number == 0 && page->series.bar != SIZE_MAX) {
@@ -237,16 +235,11 @@ static void write_picture(sheet *page, const dea_legend *legend)
     dea_plot_style(script);
     dea_plot_title(script, plot->scene->title, plot->picture.canvas.width, page->pair.height);
     dea_label_axis(page->axis, &page->across, label);
-    fputs("set xlabel ", script);
-    dea_gnuplot_text(script, label);
-    fputc('\n', script);
+    dea_gnuplot_put(script, "set xlabel %q\n", label);
     for (int i = 0; i < PANELS; i++) {
         write_panel(page, script, i);
     }
-    if (legend->count > 0) {
-        dea_legend_draw(legend, script, plot->picture.canvas.width, page->pair.height);
-    }
-    fputs("unset multiplot\nunset output\n", script);
+    dea_legend_draw(legend, script, plot->picture.canvas.width, page->pair.height);
 }
 
 /* Fails where a logarithmic axis has nothing to show. */

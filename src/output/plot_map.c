@@ -116,16 +116,6 @@ static double side_place(const side *edge, double value)
     return edge->logarithmic ? log10(value * edge->scale.factor) : value * edge->scale.factor;
 }
 
-static void write_triple(FILE *script, double x, double y, double value)
-{
-    dea_gnuplot_number(script, x);
-    fputc(' ', script);
-    dea_gnuplot_number(script, y);
-    fputc(' ', script);
-    dea_gnuplot_number(script, value);
-    fputc('\n', script);
-}
-
 static void write_grid(chart *map, FILE *script)
 {
     fputs("$grid << END\n", script);
@@ -134,7 +124,7 @@ static void write_grid(chart *map, FILE *script)
             const double x = side_at(&map->x, i / (COLUMNS - 1.0)), y = side_at(&map->y, j / (ROWS - 1.0));
             const dea_dot dot = chart_sample(map, x, y);
             map->gaps = map->gaps || !isfinite(dot.displacement);
-            write_triple(script, side_place(&map->x, x), side_place(&map->y, y), dot.displacement * map->colour.factor);
+            dea_gnuplot_put(script, "%g %g %g\n", side_place(&map->x, x), side_place(&map->y, y), dot.displacement * map->colour.factor);
         }
         fputc('\n', script);
     }
@@ -153,7 +143,7 @@ static void write_diagonal(chart *map, FILE *script, int number, double c)
         const double x = side_at(&map->x, along / map->box.width), y = side_at(&map->y, hatches[number].rising ? up : 1.0 - up);
         const bool past = chart_sample(map, x, y).state == hatches[number].state;
         if (past) {
-            write_triple(script, side_place(&map->x, x), side_place(&map->y, y), 0.0);
+            dea_gnuplot_put(script, "%g %g %g\n", side_place(&map->x, x), side_place(&map->y, y), 0.0);
         } else if (drawing) {
             fputc('\n', script);
         }
@@ -177,13 +167,8 @@ static void write_side(FILE *script, const side *edge, const char *letter, doubl
     char label[DEA_LABEL_LENGTH];
     const dea_span span = {edge->from * edge->scale.factor, edge->to * edge->scale.factor, true};
     dea_label_axis(edge->axis, &edge->scale, label);
-    fprintf(script, "set %slabel ", letter);
-    dea_gnuplot_text(script, label);
-    fprintf(script, "\nset %srange [", letter);
-    dea_gnuplot_number(script, side_place(edge, edge->from));
-    fputc(':', script);
-    dea_gnuplot_number(script, side_place(edge, edge->to));
-    fputs("]\n", script);
+    dea_gnuplot_put(script, "set %slabel %q\nset %srange [%g:%g]\n", letter, label, letter, side_place(edge, edge->from),
+                    side_place(edge, edge->to));
     if (!edge->logarithmic) {
         dea_span_steps(script, letter, &span, length / (*letter == 'x' ? 50.0 : 36.0));
     } else {
@@ -199,11 +184,8 @@ static void write_legend(const chart *map, FILE *script)
              map->hatched[1] ? hatches[1].legend : "", map->hatched[1] ? "      " : "",
              map->gaps ? "grey: no equilibrium (pull-in)" : "");
     if (*label) {
-        fputs("set label 3 ", script);
-        dea_gnuplot_text(script, label);
-        fputs(" at graph 0.5, screen ", script);
-        dea_gnuplot_number(script, LEGEND / 2.0 / map->height);
-        fputs(" center textcolor '#202020'\n", script);
+        dea_gnuplot_put(script, "set label 3 %q at graph 0.5, screen %g center textcolor '#202020'\n", label,
+                        LEGEND / 2.0 / map->height);
     }
 }
 
@@ -219,10 +201,7 @@ static void write_levels(FILE *script)
 static void write_within(FILE *script, const side *edge, const char *letter)
 {
     const double from = side_place(edge, edge->from), width = side_place(edge, edge->to) - from;
-    fprintf(script, "abs(%s - (", letter);
-    dea_gnuplot_number(script, from + 0.5 * width);
-    fputs(")) < ", script);
-    dea_gnuplot_number(script, 0.47 * fabs(width));
+    dea_gnuplot_put(script, "abs(%s - (%g)) < %g", letter, from + 0.5 * width, 0.47 * fabs(width));
 }
 
 /* Levels are black on white with their value, hatches white with black dots: seen on light and dark, in colour and in grey. */
@@ -264,12 +243,12 @@ static void write_chart(chart *map, FILE *script)
     write_side(script, &map->x, "x", map->box.width);
     write_side(script, &map->y, "y", map->box.height);
     snprintf(label, sizeof label, "Displacement u [%s]", map->colour.unit);
-    fputs("set cblabel offset 1,0 textcolor '#202020' ", script);
-    dea_gnuplot_text(script, label);
-    fputs("\nset object 1 rectangle from graph 0,0 to graph 1,1 behind fillstyle solid 1.0 noborder fillcolor '#d4d4d4'\n", script);
+    dea_gnuplot_put(script,
+                    "set cblabel offset 1,0 textcolor '#202020' %q\n"
+                    "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillstyle solid 1.0 noborder fillcolor '#d4d4d4'\n",
+                    label);
     write_legend(map, script);
     write_layers(map, script);
-    fputs("unset multiplot\nunset output\n", script);
 }
 
 /* Puts the map on its canvas. */

@@ -1,4 +1,4 @@
-/* Displacement as colour over the two long axes, with level lines; where a limit is passed the map is hatched, where there is no
+/* A column, the displacement if no other is wanted, as colour over the two long axes, with level lines; where a limit is passed the map is hatched, where there is no
  * equilibrium it is grey. Values of any spacing are first brought onto an even grid, by the nearest neighbours. */
 #include "output/label.h"
 #include "output/picture.h"
@@ -89,17 +89,17 @@ static const dea_dot *chart_dot(const chart *map, size_t x, size_t y)
     return &map->plot->dots[map->y.order[y] * map->plot->across.kept + map->x.order[x]];
 }
 
-/* Displacement and state at any place: linear between four neighbours that have an equilibrium, else the nearest of them. */
+/* Value and state at any place: linear between four neighbours that have an equilibrium, else the nearest of them. */
 static dea_dot chart_sample(const chart *map, double x, double y)
 {
     double p, q;
     const size_t i = side_find(&map->x, x, &p), j = side_find(&map->y, y, &q);
     dea_dot sample = *chart_dot(map, i + (p > 0.5), j + (q > 0.5));
     const double mixed =
-        (1.0 - q) * ((1.0 - p) * chart_dot(map, i, j)->displacement + p * chart_dot(map, i + 1, j)->displacement) +
-        q * ((1.0 - p) * chart_dot(map, i, j + 1)->displacement + p * chart_dot(map, i + 1, j + 1)->displacement);
+        (1.0 - q) * ((1.0 - p) * chart_dot(map, i, j)->values[0] + p * chart_dot(map, i + 1, j)->values[0]) +
+        q * ((1.0 - p) * chart_dot(map, i, j + 1)->values[0] + p * chart_dot(map, i + 1, j + 1)->values[0]);
     if (isfinite(mixed)) {
-        sample.displacement = mixed;
+        sample.values[0] = mixed;
     }
     return sample;
 }
@@ -123,8 +123,8 @@ static void write_grid(chart *map, FILE *script)
         for (int i = 0; i < COLUMNS; i++) {
             const double x = side_at(&map->x, i / (COLUMNS - 1.0)), y = side_at(&map->y, j / (ROWS - 1.0));
             const dea_dot dot = chart_sample(map, x, y);
-            map->gaps = map->gaps || !isfinite(dot.displacement);
-            dea_gnuplot_put(script, "%g %g %g\n", side_place(&map->x, x), side_place(&map->y, y), dot.displacement * map->colour.factor);
+            map->gaps = map->gaps || !isfinite(dot.values[0]);
+            dea_gnuplot_put(script, "%g %g %g\n", side_place(&map->x, x), side_place(&map->y, y), dot.values[0] * map->colour.factor);
         }
         fputc('\n', script);
     }
@@ -189,7 +189,7 @@ static void write_legend(const chart *map, FILE *script)
     }
 }
 
-/* Lines of equal displacement as a table: gnuplot draws no contours over an image. */
+/* Lines of equal values as a table: gnuplot draws no contours over an image. */
 static void write_levels(FILE *script)
 {
     fputs("set contour base\nset cntrparam levels auto 8\nunset surface\n"
@@ -242,7 +242,7 @@ static void write_chart(chart *map, FILE *script)
     dea_plot_palette(script, 1.0);
     write_side(script, &map->x, "x", map->box.width);
     write_side(script, &map->y, "y", map->box.height);
-    snprintf(label, sizeof label, "Displacement u [%s]", map->colour.unit);
+    dea_label_column(&map->plot->drawn[0], &map->colour, false, label);
     dea_gnuplot_put(script,
                     "set cblabel offset 1,0 textcolor '#202020' %q\n"
                     "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillstyle solid 1.0 noborder fillcolor '#d4d4d4'\n",
@@ -275,9 +275,9 @@ static dea_status draw_chart(chart *map, dea_gnuplot *picture, dea_error *error)
         return dea_fail(error, DEA_ERROR_USAGE, "nothing to draw: nothing is above zero along a logarithmic axis");
     }
     for (size_t i = 0; i < plot->curves * plot->across.kept; i++) {
-        largest = isfinite(plot->dots[i].displacement) ? fmax(largest, fabs(plot->dots[i].displacement)) : largest;
+        largest = isfinite(plot->dots[i].values[0]) ? fmax(largest, fabs(plot->dots[i].values[0])) : largest;
     }
-    map->colour = dea_scale_choose(largest, "m");
+    map->colour = dea_scale_column(&plot->drawn[0], largest);
     const dea_status status = place_chart(map, &picture->canvas, error);
     if (status == DEA_OK) {
         dea_gnuplot_size(picture, map->height);

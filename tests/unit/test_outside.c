@@ -57,7 +57,7 @@ static void fung_change(const dea_film *film, size_t count, const double *strain
 static void fung_form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_law_form *form)
 {
     const dea_form_invariants at = dea_form_invariants_of(pool, l1, l2);
-    const dea_expr growth = dea_expr_exp(pool, MUL(c[STIFFENING], at.j));
+    const dea_expr growth = dea_expr_of(pool, DEA_EXP, MUL(c[STIFFENING], at.j));
     dea_form_stresses(pool, &at, SCALE(0.5, MUL(c[MU], growth)), NUM(0.0), form);
     form->room = NUM(1.0);
 }

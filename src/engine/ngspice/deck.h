@@ -40,6 +40,8 @@ typedef struct dea_mobility_vectors {
     size_t count;
 } dea_mobility_vectors;
 
+/* Times since the begin of the piece and voltages there, between which the source follows lines. */
+void dea_deck_corners(FILE *out, const dea_mobility_piece *piece);
 /* The voltage of the source from the begin of the piece on: its segments as breakpoints, or a sine. */
 void dea_deck_source(FILE *out, const dea_mobility_piece *piece, const char *node);
 /* Netlist of one piece of a transient; on DEA_OK the caller frees *text. */

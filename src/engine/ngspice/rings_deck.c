@@ -1,5 +1,6 @@
 #include "engine/ngspice/rings_deck.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "model/models.h"
@@ -45,7 +46,7 @@ static void write_states(FILE *out, const char *card, const dea_membrane *membra
 static void write_options(FILE *out, const dea_mobility_piece *p)
 {
     dea_part_print(out, ".options method=trap trtol=1e30 itl4=50 pivtol=1e-60 reltol=%g vntol=%g abstol=%g chgtol=1e-30\n", p->tolerance,
-                   p->loose * 1e-11, p->loose * 1e-10);
+                   p->loose * fmax(1e-11, 1e-3 * p->tolerance), p->loose * fmax(1e-10, 1e-2 * p->tolerance));
 }
 
 /* The library takes a corner at the print interval, with a first step of the Euler rule behind it: that interval is short. */
@@ -63,13 +64,35 @@ typedef struct piece_writer {
     const char *node; /* of the source */
 } piece_writer;
 
+/* What fits the masses to the rule's steps: capacitors beside them, and resistors. */
+static void write_fit(FILE *out, const dea_membrane *m, double mass, double conductance)
+{
+    for (size_t n = 0; n < m->rings.node_count && m->heavy; n++) {
+        const char *v = dea_rings_state_node(m, m->rings.node_count + n).text;
+        dea_part_print(out, "GFIT%zu %s 0 %s 0 %g\n", n + 1, v, v, conductance * m->masses[n]);
+        if (mass != 1.0) {
+            dea_part_print(out, "CFIT%zu %s 0 %g\n", n + 1, v, (mass - 1.0) * m->masses[n]);
+        }
+    }
+}
+
+/* The same by commands that change the circuit. */
+static void change_fit(FILE *out, const dea_membrane *m, double mass, double conductance)
+{
+    for (size_t n = 0; n < m->rings.node_count && m->heavy; n++) {
+        dea_part_print(out, "alter GFIT%zu gain=%g\nalter CMASS%zu=%g\n", n + 1, conductance * m->masses[n], n + 1, mass * m->masses[n]);
+    }
+}
+
 /* The circuit of all pieces, and the commands that make it that of this one. */
 static void write_again(FILE *out, const piece_writer *w, const char *corners)
 {
     fprintf(out, "VSOURCE %s 0 pwl(0 0 1 0)\n", w->node);
+    write_fit(out, w->membrane, 1.0, 0.0);
     write_states(out, ".save", w->membrane, NULL);
     write_options(out, w->piece);
     fprintf(out, ".end\n%s", corners);
+    change_fit(out, w->membrane, w->piece->mass, w->piece->conductance);
     for (size_t i = 0; i < dea_rings_states(w->membrane); i++) {
         fprintf(out, "alter %s ic", dea_rings_state_element(w->membrane, i).text);
         dea_part_print(out, "=%g\n", w->states[i]);
@@ -81,6 +104,7 @@ static void write_again(FILE *out, const piece_writer *w, const char *corners)
 static void write_alone(FILE *out, const piece_writer *w)
 {
     dea_deck_source(out, w->piece, w->node);
+    write_fit(out, w->membrane, w->piece->mass, w->piece->conductance);
     write_states(out, ".ic", w->membrane, w->states);
     write_states(out, ".save", w->membrane, NULL);
     write_options(out, w->piece);

@@ -115,11 +115,24 @@ static void set_mesh_error(search *s, const dea_rings_gap *gap, double trust)
     s->mesh_rates = (dea_rate_errors){trust * gap->rates.velocity, trust * gap->rates.current};
 }
 
+/* The first mesh, as coarse as it may be; a film without mass takes a finer one, which costs little there and tells where it folds. */
+static dea_status open_first(search *s, double *nodes, dea_error *error)
+{
+    const double accuracy = sqrt(s->scene->accuracy);
+    *nodes = dea_rings_first_nodes(sqrt(accuracy));
+    const dea_status status = open_mesh(s, *nodes, error);
+    if (status != DEA_OK || s->track->flight.membrane.heavy) {
+        return status;
+    }
+    *nodes = dea_rings_first_nodes(accuracy);
+    return open_mesh(s, *nodes, error);
+}
+
 /* Runs with coarse steps on finer meshes; the last is the one to refine, its run s->fine. */
 static dea_status choose_mesh(search *s, double fineness, dea_error *error)
 {
-    double nodes = dea_rings_first_nodes(sqrt(sqrt(s->scene->accuracy))), last = INFINITY;
-    dea_status status = open_mesh(s, nodes, error);
+    double nodes, last = INFINITY;
+    dea_status status = open_first(s, &nodes, error);
     if (status == DEA_OK) {
         status = run(s, fineness, s->fine, error);
     }
@@ -143,12 +156,14 @@ static dea_status choose_mesh(search *s, double fineness, dea_error *error)
         const double trust = dea_rings_mesh_trust(&s->track->flight.membrane, &s->track->flight.motion.rest, nodes);
         const bool alike = comparable(&s->coarse->trace, &s->fine->trace);
         const double coarse = 1.0 + trust;
-        if (alike && coarse * gap.answer <= coarse_share * s->scene->accuracy) {
+        const bool whole = alike && s->fine->trace.end == DEA_STATE_OK; /* where a film ends, its mesh decides */
+        if (whole && coarse * gap.answer <= coarse_share * s->scene->accuracy) {
             set_mesh_error(s, &gap, coarse);
             swap(&s->coarse, &s->fine);
             return open_mesh(s, before, error);
         }
-        set_mesh_error(s, &gap, alike ? trust : INFINITY);
+        set_mesh_error(s, &gap, trust);
+        s->mesh_error = alike ? s->mesh_error : (double)INFINITY;
         if (s->mesh_error <= mesh_share * s->scene->accuracy || !(s->mesh_error < gains_nothing * last)) {
             return DEA_OK;
         }

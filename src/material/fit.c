@@ -3,7 +3,6 @@
  * the covariance (fit_errors.h) and the condition number at once. */
 #include "deaspice/fit.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

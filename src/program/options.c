@@ -9,7 +9,6 @@
 
 #include "deaspice/fit.h"
 #include "deaspice/model.h"
-#include "netlist/dialect.h"
 #include "netlist/export.h"
 #include "program/options.h"
 #include "scene/keys.h"

@@ -1,7 +1,6 @@
 #include "engine/ida/rings_flight.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Steps of one run after which it is given up. */

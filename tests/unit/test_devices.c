@@ -701,6 +701,32 @@ static void a_film_drawn_past_its_permittivity_has_no_numbers(void **state)
     }
 }
 
+/* Who cannot do what with a membrane says so, and somebody else does it, or another model. */
+static void what_a_membrane_cannot_is_refused_by_name(void **state)
+{
+    static const struct {
+        const char *more, *engine, *says, *able, *model;
+    } cases[] = {
+        {"load: {force: 0.1 N}\n" STILL, "ngspice", "no force and no second film", "direct", "field"},
+        {"antagonist: {actuator: {kind: lens}}\n" STILL, "ngspice", "no force and no second film", "ida", "field"},
+        {"drive: {voltage: 3 kV}\nstudy: {force: {displacement: {from: 0 mm, to: 0.1 mm, points: 3}}}\n", "ngspice",
+         "does not hold the edge", "ida", "field"},
+        {SWITCHED("1 MOhm, current_limit: 1 mA") MOVED, "ida", "no current limit; ring does", "ida", "ring"},
+        {SWITCHED("1 MOhm, current_limit: 1 mA") MOVED, "ngspice", "no current limit; ring does", "ngspice", "ring"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[1024];
+        dea_scene scene;
+        snprintf(text, sizeof text, "%s" LOSSY "%s", FILM("dot", ""), cases[i].more);
+        read_scene(text, "field", &scene);
+        const char *says = dea_engine_refuses(dea_engine_find(cases[i].engine), &scene, scene.models[0]);
+        assert_true(says && strstr(says, cases[i].says));
+        assert_null(dea_engine_refuses(dea_engine_find(cases[i].able), &scene, dea_model_find(cases[i].model)));
+        dea_scene_free(&scene);
+    }
+}
+
 /* What a file for circuits leaves out is refused with what can be done, or told: nothing is written that is not the scene's film. */
 static void what_no_circuit_file_holds_is_refused_or_told(void **state)
 {
@@ -775,6 +801,7 @@ int main(void)
         cmocka_unit_test(engines_agree_on_shaken_permittivities),
         cmocka_unit_test(a_film_that_voltage_shrinks_is_refused),
         cmocka_unit_test(a_film_drawn_past_its_permittivity_has_no_numbers),
+        cmocka_unit_test(what_a_membrane_cannot_is_refused_by_name),
         cmocka_unit_test(what_no_circuit_file_holds_is_refused_or_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -3,6 +3,7 @@
 #include "program/audience.h"
 #include "program/journaled.h"
 #include "study/study.h"
+#include "support/clock.h"
 
 static dea_exit run_scene(const dea_arguments *arguments, const dea_scene *scene)
 {
@@ -19,11 +20,11 @@ static dea_exit run_scene(const dea_arguments *arguments, const dea_scene *scene
                                      .log = dea_audience_log,
                                      .stop = dea_signals_stop,
                                      .user = &audience};
-    const double start = dea_seconds();
+    const double start = dea_clock();
     if (status == DEA_OK) {
         status = dea_study_run(scene, NULL, &options, &error);
     }
-    const double seconds = dea_seconds() - start;
+    const double seconds = dea_clock() - start;
     if (status != DEA_OK && dea_signals_caught()) {
         dea_audience_interrupted(&audience, arguments);
     }

@@ -148,8 +148,6 @@ bool dea_engines_unfit(const dea_scene *scene);
  * model that the engine (NULL: those of the scene) can do is good enough. @p choice: what was chosen, zeroed where the scene names
  * its models. */
 bool dea_model_settle(dea_scene *scene, const dea_engine *engine, bool quiet, dea_model_choice *choice, dea_exit *outcome);
-/** Seconds since some moment. */
-double dea_seconds(void);
 
 /** Lets SIGINT, SIGTERM, SIGHUP and SIGPIPE end the work cleanly from now on; a second one kills at once. */
 void dea_signals_catch(void);

@@ -105,7 +105,8 @@ static void take_current(const dea_flight *flight, double time, dea_turn turn, c
 static void take_velocity(const dea_flight *flight, double time, dea_moment *moment)
 {
     const dea_motion *motion = &flight->motion;
-    const double *slope = motion->v < 0 && !motion->algebraic ? unknowns_at(flight, time, 1) : NULL;
+    const bool thinned = motion->segment->terms && moment == &flight->trace->moments[flight->trace->count - 1];
+    const double *slope = motion->v < 0 && !motion->algebraic && !thinned ? unknowns_at(flight, time, 1) : NULL;
     if (slope) {
         moment->v = slope[0] * motion->size[0];
     }

@@ -8,7 +8,6 @@
 
 #include "deaspice/scene.h"
 #include "drive/signal.h"
-#include "drive/soften.h"
 #include "drive/wave.h"
 #include "network/thin.h"
 #include "result/scales.h"

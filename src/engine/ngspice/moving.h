@@ -4,7 +4,7 @@
 
 #include "deaspice/engine.h"
 #include "engine/ngspice/library.h"
-#include "engine/ngspice/units.h"
+#include "network/units.h"
 
 /* Units in which a transient runs. */
 dea_status dea_ngspice_units(const dea_scene *scene, const dea_model *model, dea_units *units, dea_error *error);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "engine/ngspice/rings_deck.h"
-#include "model/models.h"
+#include "geometry/point.h"
 #include "support/gauss.h"
 
 /* Steps in a radian of the first mode at fineness 1: the trapezoidal rule turns the modes above it too. */

@@ -3,6 +3,7 @@
  * the covariance (fit_errors.h) and the condition number at once. */
 #include "deaspice/fit.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -229,7 +230,7 @@ static void fit_judge(const dea_fit_data *data, dea_fit *fit)
     }
     fit->residual_rms = sqrt(residuals / count);
     fit->residual_relative = sqrt(residuals / squares);
-    fit->r_squared = 1.0 - residuals / spread;
+    fit->r_squared = spread > DBL_EPSILON * squares ? 1.0 - residuals / spread : (double)NAN;
 }
 
 /* Walks the range of the data, and from rest, in search of a tangent modulus that is not positive. */

@@ -15,7 +15,8 @@ typedef struct dea_rings_motion_cards {
     dea_symbols symbols;
     dea_rings_quantities quantities;
     dea_rings_moving moving;
-    dea_expr per_r, newton, load;
+    dea_expr per_r, newton;
+    dea_expr springs; /* what they hold at the edge, of node DEA_RINGS_E1 as its displacement */
     dea_part_text text; /* owned */
     double *values;     /* owned: of all terms at rest */
     const char *names[DEA_RINGS_SYMBOLS];

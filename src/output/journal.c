@@ -14,6 +14,7 @@
 #include "output/atomic.h"
 #include "output/identity.h"
 #include "output/stream.h"
+#include "support/clock.h"
 
 enum { IDENTITY_MOST = 1 << 20, LOCK_TRIES = 50, LOCK_WAIT_MS = 20, ROW_MOST = DEA_LAYOUT_COLUMNS * sizeof(double) + 1 };
 
@@ -68,13 +69,6 @@ struct dea_journal {
     double waiting;      /* since when a record has waited for the disk [s], 0: none does */
     int broken;          /* errno of the disk that did not take one, 0: fine */
 };
-
-static double seconds_now(void)
-{
-    struct timespec now = {0};
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static dea_status fail_io(dea_error *error, const char *verb, const char *path)
 {
@@ -733,7 +727,7 @@ static void journal_sync(dea_journal *journal)
 
 void dea_journal_settle(dea_journal *journal)
 {
-    if (journal->waiting > 0.0 && seconds_now() - journal->waiting >= sync_interval) {
+    if (journal->waiting > 0.0 && dea_clock() - journal->waiting >= sync_interval) {
         journal_sync(journal);
     }
 }
@@ -766,7 +760,7 @@ dea_status dea_journal_append(dea_journal *journal, size_t first, const void *po
     }
     record_keep(journal, &head, journal->end);
     journal->end += record_size(journal, count);
-    journal->waiting = journal->waiting > 0.0 ? journal->waiting : seconds_now();
+    journal->waiting = journal->waiting > 0.0 ? journal->waiting : dea_clock();
     dea_journal_settle(journal);
     errno = journal->broken;
     return journal->broken ? fail_io(error, "write", journal->path) : DEA_OK;

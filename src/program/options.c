@@ -286,6 +286,7 @@ static const dea_option entries[] = {
      .needs = "x, y or xy",
      .about = "logarithmic axes"},
     FLAG("loops", 0, DEA_TAKES_LOG, picture.loops, "draw a transient over its voltage"),
+    TEXT("columns", 0, "C[,C]", NULL, DEA_TAKES_LOG, take_text, picture.columns, "draw these columns of a sweep"),
     FLAG("force", 0, DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_PLOT, force, "overwrite also what is kept otherwise"),
     COUNT("jobs", 'j', "N", DEA_TAKES_JOBS, take_jobs, jobs, 1024, "a whole number up to 1024, or auto", "worker processes"),
     FLAG("quiet", 'q', DEA_TAKES_QUIET, quiet, "no summary and no progress"),

@@ -56,7 +56,7 @@ typedef struct dea_arguments {
     const char *output;
     const char *format;
     const char *plot;
-    dea_plot_options picture; /**< --size, --log, --loops; zeroed: not given */
+    dea_plot_options picture; /**< --size, --log, --loops, --columns; zeroed: not given */
     size_t jobs; /**< 0: not given; "auto" is already the number of cores */
     bool quiet;
     bool full, no_truth;
@@ -148,8 +148,6 @@ bool dea_engines_unfit(const dea_scene *scene);
  * model that the engine (NULL: those of the scene) can do is good enough. @p choice: what was chosen, zeroed where the scene names
  * its models. */
 bool dea_model_settle(dea_scene *scene, const dea_engine *engine, bool quiet, dea_model_choice *choice, dea_exit *outcome);
-/** Seconds since some moment. */
-double dea_seconds(void);
 
 /** Lets SIGINT, SIGTERM, SIGHUP and SIGPIPE end the work cleanly from now on; a second one kills at once. */
 void dea_signals_catch(void);

@@ -15,4 +15,8 @@ enum { DEA_FILE_MAX = 16, DEA_WAVE_FILE_MAX = 64 };
 dea_status dea_file_read(const char *path, bool pipe, size_t most, char **text, size_t *length, dea_files *seen,
                          const char **why);
 
+/* All that is left to read, at most @p most bytes, malloc'd; 0 or why not: EFBIG, ENOMEM, what read() failed with. The caller frees
+ * *@p text in any case. */
+int dea_file_drain(int file, size_t most, char **text, size_t *length);
+
 #endif

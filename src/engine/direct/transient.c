@@ -60,7 +60,10 @@ const char *dea_direct_refuses_transient(const dea_scene *scene, const dea_model
     if (!model->linear) {
         return "its springs are not linear, so that a transient has no closed form";
     }
-    if (fabs(scene->load.force) > 0.0 || scene->antagonist.there) {
+    if (dea_scene_edge(scene).bent) {
+        return "a spring on the edge that is not linear has no closed form in time";
+    }
+    if (dea_scene_is_pulled(scene)) {
         return "a steady force beside that of the voltage has no closed form here";
     }
     if (dea_series_resistance(scene) > 0.0 && !scene->reduction.series) {

@@ -248,7 +248,7 @@ static dea_status climb(line_job *job, size_t i, size_t steps, bool *accepted, d
 static dea_state end_of(const line_job *job)
 {
     dea_row exact = dea_row_failed();
-    job->scene.models[0]->solve(&job->point, job->accuracy, &exact);
+    dea_model_solve(job->scene.models[0], &job->point, job->accuracy, &exact);
     return exact.state == DEA_STATE_PULL_IN ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
 }
 

@@ -14,9 +14,7 @@
  */
 #include <float.h>
 
-#include "model/collocation.h"
 #include "model/field.h"
-#include "model/field_row.h"
 #include "model/film_balance.h"
 
 enum { GBS_COLUMNS = 7, ELLIPTIC_SAMPLES = 8 };

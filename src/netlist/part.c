@@ -661,6 +661,24 @@ static dea_status write_part(part *p, const dea_scene *defaults, const dea_model
     return p->cards.text.exhausted ? tell_memory(error) : DEA_OK;
 }
 
+/* A part is one bare film, driven between two pins. */
+static dea_status refuse_what_is_no_part(const dea_scene *scene, const dea_model *model, dea_error *error)
+{
+    if (scene->electrode.law) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "a circuit part has no skin of its electrodes: --as netlist has it; a part has its weight, "
+                                                      "as actuator.electrode_mass without electrode");
+    }
+    if (scene->antagonist.there) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "a circuit part is one film: write each from a scene without antagonist, and join their pins "
+                                                      "edge in the circuit; --as netlist has both");
+    }
+    if (model->membrane && scene->electrode.sheet_resistance > 0.0) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the potential along a sheet resistance of the model %s is no part: --model ring is one, with "
+                                                      "one resistance before it", model->name);
+    }
+    return DEA_OK;
+}
+
 dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, const char *name, const dea_dialect *dialect,
                           FILE *out, dea_error *error)
 {
@@ -668,8 +686,9 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is no circuit part: lumped, lame, coverage, ring and field are",
                         model->name);
     }
-    if (defaults->electrode.law) {
-        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "a circuit part has no skin of its electrodes");
+    const dea_status outside = refuse_what_is_no_part(defaults, model, error);
+    if (outside) {
+        return outside;
     }
     const size_t branches = defaults->material.prony_count;
     dea_memory_text text;
@@ -778,6 +797,21 @@ dea_status dea_part_of_scene(const dea_scene *scene, const dea_model *model, con
         dea_part_write_mechanics(prefix, out);
     }
     return status;
+}
+
+void dea_part_note(const dea_scene *scene, char *note, size_t size)
+{
+    const double series = dea_series_resistance(scene);
+    char resistor[64] = "";
+    const bool loaded = dea_scene_is_loaded(scene);
+    if (series > 0.0) {
+        snprintf(resistor, sizeof resistor, "a resistor of %g Ohm before its pin p", series);
+    }
+    *note = '\0';
+    if (loaded || *resistor) {
+        snprintf(note, size, "the part is the film and its leak, the circuit has the rest of the scene: %s%s%s", resistor,
+                 loaded && *resistor ? ", and " : "", loaded ? "the load at its pin edge" : "");
+    }
 }
 
 dea_scene dea_part_paper(dea_kind kind)

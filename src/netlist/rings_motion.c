@@ -223,3 +223,14 @@ dea_rings_label dea_rings_state_node(const dea_membrane *m, size_t index)
     }
     return (dea_rings_label){"charge"};
 }
+
+dea_rings_label dea_rings_state_element(const dea_membrane *m, size_t index)
+{
+    const size_t nodes = m->rings.node_count, moving = m->heavy ? 2 * nodes : nodes;
+    if (index < moving) {
+        return dea_rings_label_of(index < nodes ? "CDISP" : "CMASS", index % nodes + 1);
+    }
+    dea_rings_label l;
+    snprintf(l.text, sizeof l.text, "C%.40s", dea_rings_state_node(m, index).text);
+    return l;
+}

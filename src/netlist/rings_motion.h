@@ -43,5 +43,7 @@ void dea_rings_motion_cards_write_swell(dea_rings_motion_cards *cards);
  * resistance; each has a node of that name. */
 size_t dea_rings_states(const dea_membrane *membrane);
 dea_rings_label dea_rings_state_node(const dea_membrane *membrane, size_t index);
+/* The capacitor that holds it, of a film whose displacements are states: not those of one without mass and damper. */
+dea_rings_label dea_rings_state_element(const dea_membrane *membrane, size_t index);
 
 #endif

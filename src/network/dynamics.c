@@ -464,6 +464,16 @@ dea_sample dea_sample_refused(double time, double voltage, dea_state state)
     return (dea_sample){time, voltage, none, none, none, none, none, none, none, none, none, state, {none, none, none, none}};
 }
 
+void dea_samples_refuse(const dea_scene *scene, const dea_signal *signal, size_t from, dea_state state, dea_sample *samples)
+{
+    size_t near = 0;
+    for (size_t i = from; i < dea_layout_of(scene).rows; i++) {
+        const double time = dea_layout_place(scene, i);
+        near = dea_signal_find(signal, near, time);
+        samples[i] = dea_sample_refused(time, dea_segment_voltage(signal, &signal->segments[near], time), state);
+    }
+}
+
 /* Within the limit; NAN stays. */
 static double held_within(const dea_dynamics *d, double current)
 {

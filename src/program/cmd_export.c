@@ -27,6 +27,7 @@ static dea_status write_netlist(dea_export *export, const char *library, dea_err
 static dea_status write_part(dea_export *export, const char *library, dea_error *error)
 {
     (void)library;
+    dea_part_note(export->scene, export->note, sizeof export->note);
     return dea_part_of_scene(export->scene, export->scene->models[0], export->name, export->dialect, export->out, error);
 }
 

@@ -8,7 +8,6 @@
 #include "scene/line.h"
 #include "engine/ngspice/library.h"
 #include "engine/ngspice/moving.h"
-#include "engine/ngspice/still.h"
 #include "engine/ngspice/stretch.h"
 #include "netlist/netlist.h"
 #include "network/balance.h"

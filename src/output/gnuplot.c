@@ -220,10 +220,11 @@ void dea_gnuplot_number(FILE *script, double value)
     fputs(isfinite(value) ? dea_number_text(text, value, 9) : "NaN", script);
 }
 
-/* Runs gnuplot from one file into two others; its wait status. */
+/* Runs gnuplot from one file into two others; its wait status. Its standard input it reads byte by byte unless it opens it by name,
+ * which takes a third of the time and tells the line of a fault. */
 static dea_status gnuplot_spawn(FILE *script, FILE *image, FILE *words, int *ended, dea_error *error)
 {
-    char *const arguments[] = {"gnuplot", "-d", NULL};
+    char *const arguments[] = {"gnuplot", "-d", "/dev/stdin", NULL};
     posix_spawn_file_actions_t actions;
     if (posix_spawn_file_actions_init(&actions) != 0) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");

@@ -461,7 +461,9 @@ static void neither_compatibility_modes_nor_uic_change_a_number(void **state)
         FILE *start = child_open(".spiceinit", "w");
         fputs(modes[m], start);
         fclose(start);
-        run_circuit(begin_moving_circuit(2e-5, m == 4 ? "uic" : ""), &run);
+        const bool uic = m + 1 == sizeof modes / sizeof *modes;
+        const double same = uic ? 1e-5 : 1e-6; /* its steps begin otherwise */
+        run_circuit(begin_moving_circuit(2e-5, uic ? "uic" : ""), &run);
         for (int i = 0; i < KINDS; i++) {
             char u[32], velocity[32];
             snprintf(u, sizeof u, "v(x%d.u)", i);
@@ -471,7 +473,7 @@ static void neither_compatibility_modes_nor_uic_change_a_number(void **state)
                 const double here = at_time(&run, u, velocity, 1e6, moving_end * k / (SAMPLES - 1));
                 first[i][k] = m == 0 ? here : first[i][k];
                 peak = fmax(peak, fabs(first[i][k]));
-                assert_near(here, first[i][k], 1e-6 * peak);
+                assert_near(here, first[i][k], same * peak);
             }
             assert_true(peak > 100.0);
         }
@@ -922,7 +924,7 @@ static void gnucap_gives_the_same_mechanics(void **state)
           ".print ac vr(a) vi(a)\n.ac 10 1000 * 10\n.end\n",
           file);
     fclose(file);
-    snprintf(command, sizeof command, "cd '%s' && timeout 20 gnucap -b gnucap.cir", child_folder);
+    snprintf(command, sizeof command, "cd '%s' && ulimit -t 20 && gnucap -b gnucap.cir", child_folder);
     FILE *answer = popen(command, "r");
     int rows = 0;
     assert_non_null(answer);

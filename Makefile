@@ -172,7 +172,7 @@ promises:
 	@$(BUILD)/promises --scenes $(SCENES) $(if $(SEED),--seed $(SEED)); status=$$?; \
 	$(BUILD)/promises --stalls --scenes $(STALLS) $(if $(SEED),--seed $(SEED)) && exit $$status
 
-TRUTHS := $(patsubst %,$(BUILD)/tests/promises/%.o,law film still membrane moving response)
+TRUTHS := $(patsubst %,$(BUILD)/tests/promises/%.o,law film still legendre membrane source radau moving response radial radial_motion radial_response)
 PROMISES := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tests/promises/*.c)))
 $(BUILD)/promises: $(PROMISES) $(BUILD)/libdeaspice.a
 	@echo "LD $@"

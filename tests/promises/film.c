@@ -39,28 +39,86 @@ long double film_cauchy_change(const true_film *f, long double e)
     return cauchy(f, stretched(f, strain_of(e, 1.0L))).change;
 }
 
+/* At changes d1 and d2 from an equi-biaxial stretch. */
+static true_stress changed(const true_law *law, const long double *constants, long double stretch, long double d1, long double d2)
+{
+    const jet l1 = {stretch + d1, 0.0L, 0.0L, d1}, l2 = {stretch + d2, 0.0L, 0.0L, d2};
+    const jet along1 = {l1.value, 1.0L, 0.0L, d1}, along2 = {l2.value, 1.0L, 0.0L, d2};
+    const jet first = by(law->stress(constants, along1, l2), inverse(along1));
+    const jet across = by(law->stress(constants, l2, along1), inverse(l2));
+    const jet second = by(law->stress(constants, along2, l1), inverse(along2));
+    return (true_stress){first.change, second.change, first.slope, across.slope, second.slope};
+}
+
 true_stress film_stress(const true_film *f, long double d1, long double d2)
 {
-    const jet l1 = {f->prestretch + d1, 0.0L, 0.0L, d1}, l2 = {f->prestretch + d2, 0.0L, 0.0L, d2};
-    const jet along1 = {l1.value, 1.0L, 0.0L, d1}, along2 = {l2.value, 1.0L, 0.0L, d2};
-    const jet first = by(principal(f, along1, l2), inverse(along1)), across = by(principal(f, l2, along1), inverse(l2));
-    const jet second = by(principal(f, along2, l1), inverse(along2));
-    return (true_stress){first.change, second.change, first.slope, across.slope, second.slope};
+    return changed(f->law, f->constants, f->prestretch, d1, d2);
+}
+
+/* Of W_e(lambda_1/lambda_pre, lambda_2/lambda_pre) t lambda_pre^2, stress-free at the pre-stretch. */
+true_stress film_skin(const true_film *f, long double d1, long double d2)
+{
+    if (!f->skin_law) {
+        return (true_stress){0};
+    }
+    const true_stress s = changed(f->skin_law, f->skin_constants, 1.0L, d1 / f->prestretch, d2 / f->prestretch);
+    const long double nominal = f->skin * f->prestretch;
+    return (true_stress){nominal * s.p1, nominal * s.p2, f->skin * s.w11, f->skin * s.w12, f->skin * s.w22};
+}
+
+void film_cauchy_along(const true_film *f, long double d1, long double d2, long double r1, long double r2, jet stress[2])
+{
+    const jet l1 = {f->prestretch + d1, r1, 0.0L, d1}, l2 = {f->prestretch + d2, r2, 0.0L, d2};
+    stress[0] = since_rest(principal(f, l1, l2));
+    stress[1] = since_rest(principal(f, l2, l1));
+}
+
+true_electric film_electric(const true_film *f, long double area)
+{
+    const long double stretch = sqrtl(area), rise = f->electrostriction * stretch;
+    const long double own = f->permittivity + f->electrostriction * (stretch - f->prestretch);
+    return (true_electric){own, own + 0.25L * rise, own + 0.875L * rise};
+}
+
+/* Shift factor of all relaxation times: Williams, Landel and Ferry, or evenly in its logarithm between the rows of a table. */
+static long double shift_of(const dea_material *m)
+{
+    const dea_shift *s = &m->shift;
+    const long double above = (long double)m->temperature - s->reference;
+    if (isnan(m->temperature) || (isnan(s->c1) && s->count == 0)) {
+        return 1.0L;
+    }
+    for (size_t i = 1; i < s->count; i++) {
+        const double *low = s->table[i - 1], *high = s->table[i];
+        if (m->temperature <= high[0]) {
+            const long double along = ((long double)m->temperature - low[0]) / ((long double)high[0] - low[0]);
+            return expl((1.0L - along) * logl(low[1]) + along * logl(high[1]));
+        }
+    }
+    return powl(10.0L, -s->c1 * above / (s->c2 + above));
+}
+
+/* Moduli at the film's temperature over those given. */
+static long double stiffening_of(const dea_material *m)
+{
+    const bool given = !isnan(m->temperature) && !isnan(m->modulus_slope);
+    return given ? 1.0L + m->modulus_slope * ((long double)m->temperature - m->modulus_reference) : 1.0L;
 }
 
 static void set_material(const dea_scene *scene, true_film *f)
 {
     const dea_material *m = &scene->material;
+    const long double shift = shift_of(m);
     long double rest = 1.0L;
     for (size_t i = 0; i < m->prony_count; i++) {
         rest -= (long double)m->prony[i].g;
     }
     for (size_t i = 0; i < m->prony_count; i++) {
         f->share[i] = m->prony[i].g / rest;
-        f->tau[i] = m->prony[i].tau;
+        f->tau[i] = shift * m->prony[i].tau;
         f->total_share += f->share[i];
     }
-    const long double given = m->instantaneous ? rest : 1.0L;
+    const long double given = (m->instantaneous ? rest : 1.0L) * stiffening_of(m);
     f->branches = m->prony_count;
     f->law = true_law_find(m->law->name);
     for (unsigned i = 0; i < DEA_LAW_CONSTANTS; i++) {
@@ -69,6 +127,8 @@ static void set_material(const dea_scene *scene, true_film *f)
     f->rest = film_stress(f, 0.0L, 0.0L);
     f->tension = film_cauchy(f, f->prestretch).value / f->prestretch;
     f->permittivity = 8.8541878128e-12 * (m->permittivity + (long double)m->permittivity_per_stretch * f->prestretch);
+    f->electrostriction = m->permittivity_follows ? 8.8541878128e-12L * m->permittivity_per_stretch : 0.0L;
+    f->density = isnan(m->density) ? 0.0L : (long double)m->density;
     f->modulus = isnan(m->modulus) ? film_cauchy(f, f->prestretch).slope : given * m->modulus;
     f->breakdown = isnan(m->breakdown) ? (long double)INFINITY : (long double)m->breakdown;
     f->retardation = isnan(m->retardation) ? 0.0L : (long double)m->retardation;
@@ -103,6 +163,30 @@ static long double moving_mass(const dea_scene *scene, const true_film *f)
     return scene->material.density * f->thickness * film + areal * electrode;
 }
 
+static long double given_or_none(double value)
+{
+    return isnan(value) ? 0.0L : (long double)value;
+}
+
+/* Electrodes and what is fixed to the edge: physics.md, section 8. */
+static void set_beside(const dea_scene *scene, true_film *f)
+{
+    const dea_electrode *e = &scene->electrode;
+    const bool weighed = e->law && !isnan(e->density);
+    const long double areal = weighed ? (long double)e->density * e->thickness : given_or_none(scene->actuator.electrode_mass);
+    f->layers = scene->actuator.layers;
+    f->coat = areal * f->prestretch * f->prestretch;
+    f->skin_law = e->law ? true_law_find(e->law->name) : NULL;
+    f->skin = e->law ? e->thickness / (f->layers * f->thickness) : 0.0L;
+    for (unsigned i = 0; i < DEA_LAW_CONSTANTS; i++) {
+        f->skin_constants[i] = e->constants[i];
+    }
+    f->load_mass = given_or_none(scene->load.mass);
+    f->load_stiffness = given_or_none(scene->load.stiffness);
+    f->load_damping = given_or_none(scene->load.damping);
+    f->load_force = given_or_none(scene->load.force);
+}
+
 true_film film_of(const dea_scene *scene, const dea_model *model)
 {
     const dea_actuator *a = &scene->actuator;
@@ -120,6 +204,7 @@ true_film film_of(const dea_scene *scene, const dea_model *model)
     f.coverage = isnan(a->coverage) ? f.divide / f.frame : (long double)a->coverage;
     f.kept = 1.0L / (1.0L + f.series * f.conductance);
     set_material(scene, &f);
+    set_beside(scene, &f);
     f.mass = moving_mass(scene, &f);
     return f;
 }

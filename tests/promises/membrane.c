@@ -12,6 +12,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "legendre.h"
+
 enum { DEGREE = 12, SHAPES = DEGREE + 1, PLACES = DEGREE + 2, MOST_ELEMENTS = 64, MOST = MOST_ELEMENTS * DEGREE, NEWTON = 8 };
 
 static const long double pi = 3.14159265358979323846264338327950288L;
@@ -23,11 +25,6 @@ static const long double shortest = 1e-11L;    /* step of the load at which a fo
 static const long double widest = 0.35L;       /* element to begin with, in ln R */
 static const double good = 1e-14;              /* relative change of a row from one mesh to the next */
 static const long double lost = 1e-3L;         /* share of the stiffness at rest below which it counts as gone */
-
-/* Shapes on -1..1 at a place: two linear ones and integrated Legendre polynomials, with two derivatives. */
-typedef struct shape {
-    long double value[SHAPES], slope[SHAPES], curve[SHAPES];
-} shape;
 
 typedef struct membrane {
     const true_film *film;
@@ -49,47 +46,13 @@ typedef struct tension {
 
 /* ---- shapes */
 
-static shape shape_at(long double xi)
-{
-    shape s = {{0.0L}, {0.0L}, {0.0L}};
-    long double p[SHAPES] = {1.0L, xi}, d[SHAPES] = {0.0L, 1.0L};
-    for (int n = 2; n < SHAPES; n++) {
-        p[n] = ((2.0L * n - 1.0L) * xi * p[n - 1] - (n - 1.0L) * p[n - 2]) / n;
-        d[n] = d[n - 2] + (2.0L * n - 1.0L) * p[n - 1];
-    }
-    s.value[0] = 0.5L * (1.0L - xi);
-    s.value[1] = 0.5L * (1.0L + xi);
-    s.slope[0] = -0.5L;
-    s.slope[1] = 0.5L;
-    for (int n = 2; n < SHAPES; n++) {
-        const long double norm = sqrtl(2.0L * (2.0L * n - 1.0L));
-        s.value[n] = (p[n] - p[n - 2]) / norm;
-        s.slope[n] = (2.0L * n - 1.0L) * p[n - 1] / norm;
-        s.curve[n] = (2.0L * n - 1.0L) * d[n - 1] / norm;
-    }
-    return s;
-}
-
-/* Places and weights of Gauss on -1..1, by Newton's method from their asymptotic places. */
 static void set_places(membrane *m)
 {
+    gauss_rule(PLACES, m->place, m->weight);
     for (int i = 0; i < PLACES; i++) {
-        long double x = -cosl(pi * (i + 0.75L) / (PLACES + 0.5L)), slope = 1.0L;
-        for (int k = 0; k < 20; k++) {
-            long double before = 1.0L, p = x;
-            for (int n = 2; n <= PLACES; n++) {
-                const long double next = ((2.0L * n - 1.0L) * x * p - (n - 1.0L) * before) / n;
-                before = p;
-                p = next;
-            }
-            slope = PLACES * (x * p - before) / (x * x - 1.0L);
-            x -= p / slope;
-        }
-        m->place[i] = x;
-        m->weight[i] = 2.0L / ((1.0L - x * x) * slope * slope);
-        m->at[i] = shape_at(x);
+        m->at[i] = shape_at(DEGREE, m->place[i]);
     }
-    m->begin = shape_at(-1.0L);
+    m->begin = shape_at(DEGREE, -1.0L);
 }
 
 /* Unknown of a shape of an element, -1 at the frame. Element 0 lies at the frame, and x runs from the edge. */
@@ -359,17 +322,17 @@ static extremes extremes_of(const membrane *m, const long double *e)
     for (int i = 0; i < m->elements; i++) {
         for (int g = 0; g < GRID; g++) {
             long double low = -1.0L + 2.0L * g / GRID, high = -1.0L + 2.0L * (g + 1) / GRID;
-            shape s = shape_at(low);
+            shape s = shape_at(DEGREE, low);
             strain here = strain_at(m, e, i, &s);
             widen(m, &here, k, &x);
             const bool rises = area_slope(m, &here) > 0.0L;
             for (int n = 0; rises && n < 64; n++) {
                 const long double middle = 0.5L * (low + high);
-                s = shape_at(middle);
+                s = shape_at(DEGREE, middle);
                 here = strain_at(m, e, i, &s);
                 *(area_slope(m, &here) > 0.0L ? &low : &high) = middle;
             }
-            s = shape_at(high);
+            s = shape_at(DEGREE, high);
             here = strain_at(m, e, i, &s);
             widen(m, &here, k, &x);
         }
@@ -430,12 +393,12 @@ static void halve_elements(membrane *m, long double *e)
     set_mesh(m, 2 * m->elements);
     for (int i = 0; i < m->elements; i++) {
         const long double middle = i % 2 == 0 ? 0.5L : -0.5L; /* of the halves, the first lies towards the frame */
-        const shape begin = shape_at(middle - 0.5L);
+        const shape begin = shape_at(DEGREE, middle - 0.5L);
         e[unknown(i, 0)] = strain_at(coarse, known, i / 2, &begin).e;
         for (int n = 2; n < SHAPES; n++) {
             long double sum = 0.0L;
             for (int q = 0; q < PLACES; q++) {
-                const shape there = shape_at(middle + 0.5L * m->place[q]);
+                const shape there = shape_at(DEGREE, middle + 0.5L * m->place[q]);
                 sum += m->weight[q] * m->at[q].slope[n] * strain_at(coarse, known, i / 2, &there).slope * 0.5L * m->width;
             }
             e[unknown(i, n)] = sum;

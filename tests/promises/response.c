@@ -2,7 +2,7 @@
 #include <complex.h>
 #include <math.h>
 
-#include "truths.h"
+#include "radial.h"
 
 static const long double pi = 3.14159265358979323846264338327950288L;
 
@@ -34,6 +34,9 @@ static dea_response response_at(const true_film *f, const true_edge *e, long dou
 
 double response_truth(const dea_scene *scene, const dea_model *model, dea_response *rows)
 {
+    if (model->membrane) {
+        return radial_response(scene, model, rows);
+    }
     const true_film f = film_of(scene, model);
     const size_t count = dea_layout_of(scene).rows;
     const long double bias = f.kept * (long double)scene->ac.bias;

@@ -20,7 +20,7 @@ typedef struct arguments {
 } arguments;
 
 static const char *const usage =
-    "Usage: promises [--seed S] [--scenes N] [--first K] [--scene K] [--engine E] [--accuracy A] [--dump K] [--stalls] "
+    "Usage: promises [--seed S] [--scenes N] [--first K] [--scene K] [--engine E] [--accuracy A] [--dump K] [--films] [--stalls] "
     "[--verbose]\n"
     "S is the date, 20250131, unless given; --scene K is --first K --scenes 1; A stands for 1e-2, 1e-4, 1e-6 and "
     "the best of each engine.\n";
@@ -40,6 +40,10 @@ static bool parse(int count, char **words, arguments *a)
     for (int i = 1; i < count; i++) {
         if (strcmp(words[i], "--verbose") == 0) {
             a->verbose = true;
+            continue;
+        }
+        if (strcmp(words[i], "--films") == 0) {
+            a->draw = draw_moving_film;
             continue;
         }
         if (strcmp(words[i], "--stalls") == 0) {
@@ -167,7 +171,7 @@ int main(int count, char **words)
         return 0;
     }
     const unsigned long long seed = a.seed;
-    const char *kind = a.draw == draw_scene ? "" : " --stalls";
+    const char *kind = a.draw == draw_stall ? " --stalls" : a.draw == draw_moving_film ? " --films" : "";
     printf("%zu random scenes from number %zu, seed %llu; a broken one again: %s%s --seed %llu --scene K; its scene: the same "
            "with --dump K\n\n",
            a.count, a.first, seed, words[0], kind, seed);

@@ -10,6 +10,8 @@
 
 /* YAML of the scene of that number; freed by the caller. */
 char *draw_scene(uint64_t seed, size_t number);
+/* The same of membranes that move (films.c). */
+char *draw_moving_film(uint64_t seed, size_t number);
 /* The same of one kind of transients, which names its accuracy (stalls.c). */
 char *draw_stall(uint64_t seed, size_t number);
 

@@ -18,10 +18,11 @@
 
 enum { PAIRS = STAGES / 2, ROUNDS = 24, BRANCHES = 8, LEVELS = 5, KNOTS = STAGES + 1 };
 
-static const double most_work = 6e5;   /* unknowns times steps of a run, some ten seconds */
-static const long double first_tolerance = 1e-6L, next_tolerance = 0.05L, first_fineness = 3.0L;
-static const double good = 3e-11;      /* difference of two runs at which no third is made: any engine's best is wanted ten times less well */
-static const long double solved = 1e-15L; /* last change of Newton's method */
+static const double most_work = 6e4; /* unknowns times steps of a run, some seconds */
+static const double cheap_work = 5e3; /* below it a truth is made as good as any engine's best wants it */
+static const long double first_tolerance = 4e-6L, next_tolerance = 0.05L, first_fineness = 3.0L;
+static const double good = 9e-8, best = 3e-11; /* difference of two runs at which no third is made, of dear and of cheap ones */
+static const long double solved = 1e-4L; /* last change of Newton's method, over the tolerance */
 static const long double shortest = 1e-13L; /* step over its segment at which the equations count as without solution */
 
 /* Along an eigenvector of D: its eigenvalue, the vector and what takes the part of it out of the stages; one of each conjugate pair. */
@@ -427,7 +428,7 @@ static bool newton(motion *m, const state *from, long double h)
         if (!(change < 1e3L) || (i > 2 && change > 2.0L * last)) {
             return false;
         }
-        if (change <= solved || (change < 1e-12L && change >= 0.3L * last)) {
+        if (change <= solved * m->tolerance || (change < 1e-12L && change >= 0.3L * last)) {
             return follow_stages(m, from, h);
         }
         last = change;
@@ -907,7 +908,7 @@ static void refine(motion *m, true_run *truth)
     size_t count = 0;
     m->tolerance = first_tolerance;
     truth->error = (double)INFINITY;
-    for (int level = 0; level < LEVELS && !(truth->error <= good); level++) {
+    for (int level = 0; level < LEVELS && !(truth->error <= (m->steps * m->mesh.size < cheap_work ? best : good)); level++) {
         if (!radial_open(&m->mesh, &m->film, fineness)) {
             break;
         }

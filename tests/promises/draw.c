@@ -320,7 +320,9 @@ static const char *draw_mover(uint64_t *seed, dea_scene *scene, bool heavy)
     draw_film(seed, scene);
     scene->load.mass = heavy ? scene->load.mass : (double)NAN;
     scene->material.density = heavy ? random_between(seed, 900.0, 1200.0) : (double)NAN;
-    scene->actuator.electrode_mass = heavy && random_chance(seed, 0.3) ? random_decades(seed, 1e-3, 0.1) : (double)NAN;
+    const bool weighed = scene->electrode.law && !isnan(scene->electrode.density); /* that of the skin is all then */
+    const double areal = heavy && random_chance(seed, 0.3) ? random_decades(seed, 1e-3, 0.1) : (double)NAN;
+    scene->actuator.electrode_mass = weighed ? (double)NAN : areal;
     return models[(int)(4.0 * random_unit(seed))];
 }
 

@@ -14,7 +14,9 @@ static void draw_membrane(uint64_t *seed, dea_scene *scene, bool heavy)
     scene->models[0] = dea_model_find("field");
     scene->material.density = heavy ? random_between(seed, 900.0, 1200.0) : (double)NAN;
     scene->load.mass = heavy ? scene->load.mass : (double)NAN;
-    scene->actuator.electrode_mass = heavy && random_chance(seed, 0.3) ? random_decades(seed, 1e-3, 0.1) : (double)NAN;
+    const bool weighed = scene->electrode.law && !isnan(scene->electrode.density); /* that of the skin is all then */
+    const double areal = heavy && random_chance(seed, 0.3) ? random_decades(seed, 1e-3, 0.1) : (double)NAN;
+    scene->actuator.electrode_mass = weighed ? (double)NAN : areal;
     scene->material.prony_count = 0;
     scene->material.retardation = (double)NAN;
 }

@@ -164,16 +164,17 @@ static void draw_load(uint64_t *seed, dea_scene *scene)
 static void draw_temperature(uint64_t *seed, dea_material *m)
 {
     const double reference = random_between(seed, 270.0, 320.0), rise = random_between(seed, -30.0, 60.0);
+    const bool stiffens = random_chance(seed, 0.5), shifts = random_chance(seed, 0.5);
     m->temperature = reference + rise;
-    if (random_chance(seed, 0.5)) {
+    if (stiffens || !shifts) {
         m->modulus_slope = random_between(seed, -2e-3, 4e-3);
         m->modulus_reference = reference;
     }
-    if (random_chance(seed, 0.5)) {
+    if (shifts && random_chance(seed, 0.6)) {
         m->shift.c1 = random_between(seed, 2.0, 18.0);
         m->shift.c2 = random_between(seed, 50.0, 200.0);
         m->shift.reference = reference;
-    } else if (random_chance(seed, 0.5)) {
+    } else if (shifts) {
         m->shift.count = 3;
         for (int i = 0; i < 3; i++) {
             m->shift.table[i][0] = reference + 60.0 * (i - 1);
@@ -266,6 +267,10 @@ static void draw_sweep(uint64_t *seed, paper *p)
     draw_film(seed, &scene);
     const dea_model *model = dea_model_at((size_t)((double)dea_model_count() * random_unit(seed)));
     scene.actuator.kind = model->lens ? scene.actuator.kind : DEA_DOT;
+    if (!model->edge) {
+        scene.load.stiffness = scene.load.force = (double)NAN;
+    }
+    scene.load.mass = scene.load.damping = (double)NAN; /* at rest they do nothing */
     const double limit = limit_voltage(&scene, model->name), kind = random_unit(seed);
     const double share = scene.drive.leakage_resistance / (scene.drive.leakage_resistance + scene.drive.series_resistance);
     const double source = limit / (isnan(share) ? 1.0 : share);

@@ -101,6 +101,14 @@ static void find_truth(judged *j, size_t point)
     }
 }
 
+void judge_find(judged *j)
+{
+    for (size_t i = 0; i < j->points && !j->found; i++) {
+        find_truth(j, i);
+    }
+    j->found = true;
+}
+
 bool judge_open(judged *j, const char *text, size_t number)
 {
     dea_error error = {0};
@@ -114,9 +122,6 @@ bool judge_open(judged *j, const char *text, size_t number)
     j->truth = calloc(j->points, j->layout.point_size);
     j->errors = calloc(j->points, sizeof *j->errors);
     j->runs = calloc(j->points, sizeof *j->runs);
-    for (size_t i = 0; i < j->points; i++) {
-        find_truth(j, i);
-    }
     return true;
 }
 
@@ -421,6 +426,7 @@ bool judge_engine(judged *j, const dea_engine *engine, double accuracy, tally *t
         count_reason(t, "refused", why);
         return false;
     }
+    judge_find(j);
     hearing h = {.j = j, .points = calloc(j->points, j->layout.point_size)};
     dea_error error = {0};
     const dea_run_options options = {.jobs = 1, .points = hear_points, .log = hear_line, .user = &h};

@@ -122,7 +122,6 @@ static size_t judge_scene(const arguments *a, size_t number, tally tallies[MOST_
         free(text);
         return 1;
     }
-    const double truth = now() - start;
     for (size_t e = 0; e < dea_engine_count() && e < MOST_ENGINES; e++) {
         const dea_engine *engine = dea_engine_at(e);
         const double best = best_accuracy(engine, &j.scene);
@@ -148,7 +147,7 @@ static size_t judge_scene(const arguments *a, size_t number, tally tallies[MOST_
         }
     }
     if (a->verbose) {
-        fprintf(stderr, "%zu: study %d, truth %.2g s to %.1g%s%s, all %.2g s\n", number, (int)j.scene.study, truth, j.errors[0],
+        fprintf(stderr, "%zu: study %d, truth to %.1g%s%s, all %.2g s\n", number, (int)j.scene.study, j.errors[0],
                 j.why ? ", " : "", j.why ? j.why : "", now() - start);
     }
     judge_close(&j);

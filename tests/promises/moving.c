@@ -125,13 +125,13 @@ static void equations(const motion *m, const state *from, long double h, const l
     for (int i = 0; i < STAGES; i++) {
         const true_edge *e = &s->edge[i];
         const long double w = s->volts[i];
-        r[i] = f->mass * s->a[i] + e->tension.value - e->push.value * w * w;
+        r[i] = f->mass * s->a[i] + f->load_damping * s->v[i] + e->tension.value - e->push.value * w * w;
         for (int j = 0; j < STAGES; j++) {
             long double inertia = 0.0L;
             for (int k = 0; k < STAGES; k++) {
                 inertia += d->at[i][k] * d->at[k][j];
             }
-            a[i][j] = f->mass * inertia / (h * h);
+            a[i][j] = f->mass * inertia / (h * h) + f->load_damping * d->at[i][j] / h;
         }
         a[i][i] += e->tension.slope - e->push.slope * w * w;
         for (int k = 0; k < e->count; k++) {
@@ -325,7 +325,7 @@ static bool jump(motion *m, state *s, long double to)
 
 static bool is_free(const true_film *f)
 {
-    return f->mass == 0.0L && f->retardation == 0.0L;
+    return f->mass == 0.0L && f->retardation == 0.0L && f->load_damping == 0.0L;
 }
 
 /* Velocity: of the mass, the state's. Without one it follows from the balance of forces, with neither mass nor damper from the
@@ -337,9 +337,9 @@ static long double velocity_of(const motion *m, long double time, const state *s
     if (f->mass > 0.0L) {
         return s->v;
     }
-    if (f->retardation > 0.0L) {
+    if (!is_free(f)) {
         const long double rest = e.push.value * s->w * s->w - held_force(f, &e, s);
-        return rest / (f->retardation * edge_viscous(&e));
+        return rest / (f->retardation * edge_viscous(&e) + f->load_damping);
     }
     const long double pull = 2.0L * e.push.value * s->w; /* dF/dU */
     long double rate = 0.0L, slope = source_slope(m, time);
@@ -532,9 +532,9 @@ static bool start(motion *m, state *s)
 {
     const true_film *f = &m->film;
     *s = (state){0};
-    if (m->scene->transient.from_bias) {
+    if (m->scene->transient.from_bias || f->load_force != 0.0L) {
         m->segment = m->signal.segments;
-        s->w = f->kept * source_at(m, 0.0L);
+        s->w = m->scene->transient.from_bias ? f->kept * source_at(m, 0.0L) : 0.0L;
         s->u = still_displacement(f, s->w);
         if (isnan(s->u)) {
             return false;

@@ -38,6 +38,7 @@ typedef struct tally {
 typedef struct judged {
     dea_scene scene;
     size_t number;
+    bool found;     /* the truth, which is looked for once an engine takes the scene */
     void *truth;    /* points as the layout has them */
     double *errors; /* of each point */
     dea_layout layout;
@@ -47,6 +48,8 @@ typedef struct judged {
 } judged;
 
 bool judge_open(judged *j, const char *text, size_t number);
+/* Finds the truth, unless it is found already; judge_engine() does so once an engine takes the scene. */
+void judge_find(judged *j);
 void judge_close(judged *j);
 /* Runs an engine at one accuracy; adds to the tally. True where the promise was broken; *text then says how. */
 bool judge_engine(judged *j, const dea_engine *engine, double accuracy, tally *t, char *text, size_t size);

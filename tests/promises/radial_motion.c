@@ -22,6 +22,7 @@ static const double most_work = 6e4; /* unknowns times steps of a run, some seco
 static const double cheap_work = 5e3; /* below it a truth is made as good as any engine's best wants it */
 static const long double first_tolerance = 4e-6L, next_tolerance = 0.05L, first_fineness = 3.0L;
 static const double good = 9e-8, best = 3e-11; /* difference of two runs at which no third is made, of dear and of cheap ones */
+static const double gains = 0.3; /* share of the last difference above which a finer mesh is not worth its steps: kinks travel undamped */
 static const long double solved = 1e-4L; /* last change of Newton's method, over the tolerance */
 static const long double shortest = 1e-13L; /* step over its segment at which the equations count as without solution */
 
@@ -904,7 +905,7 @@ static void take_means(const motion *m, true_run *truth)
 static void refine(motion *m, true_run *truth)
 {
     dea_sample *before = calloc(m->rows, sizeof *before);
-    double fineness = (double)first_fineness;
+    double fineness = (double)first_fineness, last = (double)INFINITY;
     size_t count = 0;
     m->tolerance = first_tolerance;
     truth->error = (double)INFINITY;
@@ -922,6 +923,7 @@ static void refine(motion *m, true_run *truth)
         truth->good = m->done;
         memset(&truth->errors, 0, sizeof truth->errors);
         const double gap = apart(before, m->samples, count < m->done ? count : m->done, &truth->errors);
+        last = truth->error;
         truth->error = level > 0 && count == m->done ? 1e-16 + gap : (double)INFINITY;
         take_means(m, truth);
         memcpy(before, m->samples, m->done * sizeof *before);
@@ -929,6 +931,9 @@ static void refine(motion *m, true_run *truth)
         truth->steps = m->steps;
         m->tolerance *= next_tolerance;
         fineness *= 1.7;
+        if (isfinite(last) && !(truth->error <= gains * last)) {
+            break;
+        }
     }
     memcpy(m->samples, before, count * sizeof *before);
     free(before);

@@ -18,7 +18,7 @@ static dea_response response_at(const true_film *f, const true_edge *e, long dou
 {
     const number s = I * (2.0L * pi * frequency);
     const long double spring = edge_viscous(e);
-    number stiffness = f->mass * s * s + spring * s * f->retardation + edge_relaxed(e).slope - e->push.slope * u_bias * u_bias;
+    number stiffness = f->mass * s * s + (spring * f->retardation + f->load_damping) * s + edge_relaxed(e).slope - e->push.slope * u_bias * u_bias;
     for (size_t i = 0; i < f->branches; i++) {
         stiffness += spring * f->share[i] * (s * f->tau[i] / (1.0L + s * f->tau[i]));
     }

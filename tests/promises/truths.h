@@ -79,6 +79,8 @@ jet edge_relaxed(const true_edge *edge);
 jet film_cauchy(const true_film *film, long double stretch);
 /* Change of sigma from rest by a strain of both directions. */
 long double film_cauchy_change(const true_film *film, long double strain);
+/* The same of the electrodes' skin, spread over the thickness of all layers. */
+long double film_skin_change(const true_film *film, long double strain);
 /* At stretches that have changed by d1 and d2 from the pre-stretch. */
 true_stress film_stress(const true_film *film, long double d1, long double d2);
 /* Those of the electrodes' skin, spread over the thickness of all layers. */

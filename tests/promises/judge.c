@@ -80,6 +80,7 @@ static dea_scene scene_at(const judged *j, size_t point)
 {
     dea_scene here = j->scene;
     dea_axes_place(&here, point);
+    here.accuracy = j->tightest;
     return here;
 }
 
@@ -112,7 +113,7 @@ void judge_find(judged *j)
 bool judge_open(judged *j, const char *text, size_t number)
 {
     dea_error error = {0};
-    *j = (judged){.number = number};
+    *j = (judged){.number = number, .tightest = 1e-12};
     if (dea_scene_parse(text, strlen(text), "promise", ".", NULL, 0, NULL, &j->scene, &error) != DEA_OK) {
         fprintf(stderr, "scene %zu: %s\n", number, error.message);
         return false;

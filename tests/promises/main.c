@@ -23,7 +23,8 @@ static const char *const usage =
     "Usage: promises [--seed S] [--scenes N] [--first K] [--scene K] [--engine E] [--accuracy A] [--dump K] [--films] [--stalls] "
     "[--verbose]\n"
     "S is the date, 20250131, unless given; --scene K is --first K --scenes 1; A stands for 1e-2, 1e-4, 1e-6 and "
-    "the best of each engine.\n";
+    "the best of each engine. Scenes are sweeps, transients and responses of all models; --films: moving membranes alone, with "
+    "loads, skins,\nlayers and the like, in time and in frequency; --stalls: transients at which steps of ngspice once collapsed.\n";
 
 /* The date as a number, 20250131: nobody chose it, and it can be said again. */
 static uint64_t today(void)
@@ -122,6 +123,7 @@ static size_t judge_scene(const arguments *a, size_t number, tally tallies[MOST_
         free(text);
         return 1;
     }
+    j.tightest = a->accuracy > 0.0 ? a->accuracy : j.tightest;
     for (size_t e = 0; e < dea_engine_count() && e < MOST_ENGINES; e++) {
         const dea_engine *engine = dea_engine_at(e);
         const double best = best_accuracy(engine, &j.scene);

@@ -38,6 +38,7 @@ typedef struct tally {
 typedef struct judged {
     dea_scene scene;
     size_t number;
+    double tightest; /* accuracy that it will be judged at; a truth need not be much better */
     bool found;     /* the truth, which is looked for once an engine takes the scene */
     void *truth;    /* points as the layout has them */
     double *errors; /* of each point */

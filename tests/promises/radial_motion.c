@@ -21,7 +21,8 @@ enum { PAIRS = STAGES / 2, ROUNDS = 24, BRANCHES = 8, LEVELS = 5, KNOTS = STAGES
 static const double most_work = 6e4; /* unknowns times steps of a run, some seconds */
 static const double cheap_work = 5e3; /* below it a truth is made as good as any engine's best wants it */
 static const long double first_tolerance = 4e-6L, next_tolerance = 0.05L, first_fineness = 3.0L;
-static const double good = 9e-8, best = 3e-11; /* difference of two runs at which no third is made, of dear and of cheap ones */
+static const double good = 9e-8, best = 3e-11; /* difference of two runs at which no third is made, of dear and of cheap ones; */
+static const double enough = 0.05;             /* and over the accuracy that is wanted */
 static const double gains = 0.3; /* share of the last difference above which a finer mesh is not worth its steps: kinks travel undamped */
 static const long double solved = 1e-4L; /* last change of Newton's method, over the tolerance */
 static const long double shortest = 1e-13L; /* step over its segment at which the equations count as without solution */
@@ -902,6 +903,12 @@ static void take_means(const motion *m, true_run *truth)
     }
 }
 
+static bool is_enough(const motion *m, double error)
+{
+    const double least = m->steps * m->mesh.size < cheap_work ? best : good;
+    return error <= fmax(least, enough * m->scene->accuracy);
+}
+
 static void refine(motion *m, true_run *truth)
 {
     dea_sample *before = calloc(m->rows, sizeof *before);
@@ -909,7 +916,7 @@ static void refine(motion *m, true_run *truth)
     size_t count = 0;
     m->tolerance = first_tolerance;
     truth->error = (double)INFINITY;
-    for (int level = 0; level < LEVELS && !(truth->error <= (m->steps * m->mesh.size < cheap_work ? best : good)); level++) {
+    for (int level = 0; level < LEVELS && !is_enough(m, truth->error); level++) {
         if (!radial_open(&m->mesh, &m->film, fineness)) {
             break;
         }

@@ -45,11 +45,11 @@ static dea_response response_at(biased *b, long double frequency)
 }
 
 /* False where the film has no equilibrium under its bias. */
-static bool rest_at(biased *b, const true_film *film, long double bias, double fineness, dea_state *state)
+static bool rest_at(biased *b, long double bias, dea_state *state)
 {
     radial_margins margins;
     b->bias = bias;
-    if (!radial_open(&b->mesh, film, fineness) || !radial_still(&b->mesh, bias, b->u) ||
+    if (!radial_still(&b->mesh, bias, b->u) ||
         !radial_look_at(&b->mesh, b->u, bias, NULL, 0.0L, &b->look)) {
         *state = DEA_STATE_PULL_IN;
         return false;
@@ -70,9 +70,9 @@ double radial_response(const dea_scene *scene, const dea_model *model, dea_respo
     const size_t count = dea_layout_of(scene).rows;
     const double none = (double)NAN;
     double error = (double)INFINITY;
-    for (int level = 0; level < 5 && !(error < 1e-13); level++) {
+    for (int level = 0; level < 5 && !(error < 1e-13) && radial_open(&b->mesh, &film, 5.0 * (1 << level)); level++) {
         dea_state state;
-        const bool rests = rest_at(b, &film, film.kept * (long double)scene->ac.bias, 5.0 * (1 << level), &state);
+        const bool rests = rest_at(b, film.kept * (long double)scene->ac.bias, &state);
         double most = 0.0;
         for (size_t i = 0; i < count; i++) {
             const double at = dea_layout_place(scene, i);

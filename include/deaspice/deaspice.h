@@ -7,6 +7,7 @@
 #include "deaspice/bench.h"
 #include "deaspice/engine.h"
 #include "deaspice/fit.h"
+#include "deaspice/load.h"
 #include "deaspice/material.h"
 #include "deaspice/measures.h"
 #include "deaspice/model.h"

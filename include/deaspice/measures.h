@@ -53,13 +53,15 @@ enum { DEA_HARMONICS = 5 };
 /** What a window of a transient holds, of the displacement: within ten times the accuracy of its peak over the run. NAN where the
  * samples are too coarse for that or for the drive, or have no number. */
 typedef struct dea_window_figures {
-    double least, largest; /**< [m] */
+    double least, largest, range; /**< range: from peak to peak [m] */
     /** Of a drive that is a sine, over the whole periods from the begin of the window on: u = mean + sum A_k sin(k theta + phi_k),
      * theta = 2 pi f (t - delay) + phase the argument of the drive's sine; a phase is NAN where its amplitude is no more than the
      * error may be. A_1 first, the fundamental [m], [degree]. */
     double amplitude[DEA_HARMONICS], phase[DEA_HARMONICS];
 } dea_window_figures;
 
+/** Columns of dea_window_figures, those of harmonics only where the drive is a sine; @p count gets how many. */
+DEA_API const dea_column *dea_window_columns(const dea_scene *scene, size_t *count);
 /** Figures of window number @p window; all axes of @p scene are at their place. */
 DEA_API dea_window_figures dea_measure_window(const dea_scene *scene, const dea_sample *samples, size_t count,
                                               const dea_summary *summary, size_t window);

@@ -34,8 +34,10 @@ typedef struct dea_point {
     double voltage;        /**< U across the film [V] */
     double focal_length;   /**< of a lens at rest [m], NAN: no optics */
     double refractive_index; /**< of its liquid [1] */
-    double load;             /**< stiffness of a spring between edge and frame [N/m], 0: none */
+    double load;             /**< stiffness of linear springs between edge and frame [N/m], 0: none */
     double force;            /**< that something else exerts on the edge, outward [N], 0: none */
+    dea_edge_load springs[DEA_LOADS]; /**< the others, spring_count of them */
+    size_t spring_count;
     dea_second second;       /**< the other film on the edge */
     double skin_share;       /**< t/H of the electrodes' skin [1], 0: there is none */
     dea_film skin;           /**< the skin at rest, not pre-stretched; set where there is one */
@@ -45,6 +47,12 @@ typedef struct dea_point {
 DEA_API void dea_film_prepare(const dea_scene *scene, dea_film *film);
 /** Sets geometry and voltage of @p point from the scene; its film stays as it is. */
 DEA_API void dea_point_place(const dea_scene *scene, dea_point *point);
+/** What the loads of a scene add up to. */
+DEA_API dea_edge_terms dea_scene_edge(const dea_scene *scene);
+/** Number of a load by the name of its kind in the table, to be set; NULL if there is none. */
+DEA_API double *dea_scene_load(dea_scene *scene, const char *name);
+/** Leaves a scene with no load. */
+DEA_API void dea_scene_unload(dea_scene *scene);
 /** True where anything but its film acts on the edge of a scene at this place of its axes: only models with an edge can do it. */
 DEA_API bool dea_scene_is_loaded(const dea_scene *scene);
 /** True where a steady force or a second film moves the edge of a scene without its voltage, whatever the place of its axes. */
@@ -107,7 +115,7 @@ typedef enum dea_form {
     DEA_FORMS
 } dea_form;
 
-/** The static row of a valid point: solve(), or where a force or a second film acts on the edge the equilibrium that is connected to
+/** The static row of a valid point: solve(), or where a force, a spring that is not linear or a second film acts on the edge the equilibrium that is connected to
  * rest: first those grow, then the voltage of the film (src/model/loaded.c). */
 DEA_API void dea_model_solve(const dea_model *model, const dea_point *point, double accuracy, dea_row *row);
 

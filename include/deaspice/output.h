@@ -24,6 +24,9 @@ typedef struct dea_writer dea_writer;
  */
 DEA_API dea_status dea_writer_open(const dea_scene *scene, const char *engine, const char *path, const char *format,
                                    dea_writer **writer, dea_error *error);
+enum { DEA_NOTE_LENGTH = 256 };
+/** Writes into @p text what whoever reads the file ought to know of its format; false where there is nothing. */
+DEA_API bool dea_writer_note(const dea_writer *writer, char text[DEA_NOTE_LENGTH]);
 /** Appends the rows of @p count points, laid out as dea_layout_of() says, the first of them being point number @p first: models
  * slowest, last axis fastest. */
 DEA_API dea_status dea_writer_points(dea_writer *writer, size_t first, const void *points, size_t count, dea_error *error);

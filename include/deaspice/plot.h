@@ -26,17 +26,19 @@ typedef struct dea_plot_options {
     bool log_x;           /**< logarithmic along x: the long axis, time; points at or below zero are left out */
     bool log_y;           /**< logarithmic along y: strain, displacement, current, the second axis of a map */
     bool loops;           /**< a transient over the voltage of its source instead of time: hysteresis; not with log_x */
+    const char *columns;  /**< of a sweep: one of its columns, or two for curves, e.g. "capacitance_F,force_N"; NULL: strain, displacement */
 } dea_plot_options;
 
 /** Opens the picture of a study; the scene must outlive it. It keeps at most some 2000 points of a curve, so its memory is
  * bounded.
  *
- * One long axis gives strain and displacement over that axis, a curve for each value of the other axes and each model (24 at
- * most); two axes of more than 12 values and one model give a map of the displacement. A transient gives strain, voltage, and
+ * One long axis gives strain and displacement, or the columns that are wanted, over that axis, a curve for each value of the other
+ * axes and each model (24 at most); two axes of more than 12 values and one model give a map of the displacement, or of one column. A transient gives strain, voltage, and
  * current, film voltage and focal length where the scene has them, over time; a frequency response gives displacement and impedance: a curve for
  * each run (24 at most), thinned without losing its peaks.
  * @param[out] plot the caller ends it with dea_plot_finish()
- * @return DEA_OK, DEA_ERROR_USAGE (ending, a single point, too many curves, loops of no transient), DEA_ERROR_IO, DEA_ERROR_MISSING (no gnuplot),
+ * @return DEA_OK, DEA_ERROR_USAGE (ending, a single point, too many curves, loops of no transient, columns that it
+ *         has not), DEA_ERROR_IO, DEA_ERROR_MISSING (no gnuplot),
  *         DEA_ERROR_MEMORY
  */
 DEA_API dea_status dea_plot_begin(const dea_scene *scene, const char *path, const dea_plot_options *options, dea_plot **plot,

@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "deaspice/load.h"
 #include "deaspice/material.h"
 #include "deaspice/status.h"
 
@@ -53,14 +54,6 @@ typedef struct dea_electrode {
     double density;                      /**< [kg/m^3], > 0, NAN: no mass but actuator.electrode_mass */
     double sheet_resistance;             /**< of one electrode [Ohm per square], > 0, NAN: none */
 } dea_electrode;
-
-/** What is fixed to the edge at r_a, all round: beside the film, and at rest where that is. */
-typedef struct dea_edge_load {
-    double mass;      /**< [kg], > 0, NAN: none */
-    double stiffness; /**< of a spring to the frame, against the radial displacement of the edge [N/m], > 0, NAN: none */
-    double damping;   /**< mechanical resistance between edge and frame [N s/m], > 0, NAN: none */
-    double force;     /**< static, onto the edge, outward positive, over the whole circumference [N], NAN: none */
-} dea_edge_load;
 
 /** A second film in the same frame, joined to the first at r_a by a rigid ring, so that both edges move by the same u; a dot beside a
  * lens pushes against it. What is NAN is that of the first film. */
@@ -241,7 +234,7 @@ typedef struct dea_scene {
     char *title; /**< may be empty, never NULL */
     dea_actuator actuator;
     dea_electrode electrode;
-    dea_edge_load load;
+    dea_edge_load loads[DEA_LOADS];
     dea_antagonist antagonist;
     dea_material material;
     dea_drive drive;

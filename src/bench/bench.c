@@ -7,6 +7,7 @@
 
 #include "bench/work.h"
 #include "study/study.h"
+#include "support/clock.h"
 
 /* Rows that a study keeps: the references of all models. */
 enum { MOST_ROWS = DEA_SAMPLES_MAX, ROUNDS = 25 };
@@ -87,7 +88,7 @@ static dea_status work_open(dea_bench_work *work, dea_bench *bench, const dea_sc
                              .layout = dea_layout_of(scene),
                              .points = dea_scene_point_count(scene),
                              .setting_room = models * dea_engine_count() * DEA_BENCH_RUNGS,
-                             .begun = dea_bench_now()};
+                             .begun = dea_clock()};
     count_units(work);
     if (bench->rows > MOST_ROWS / (models + 1)) {
         return dea_fail(error, DEA_ERROR_USAGE,

@@ -2,10 +2,10 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "bench/work.h"
 #include "engine/worker.h"
+#include "support/clock.h"
 
 enum { MOST_RUNS = 1000, MOST_ROUNDS = 25, STARTS = 5 };
 
@@ -15,16 +15,9 @@ typedef struct audience {
     char *points; /* NULL: nobody keeps them */
 } audience;
 
-double dea_bench_now(void)
-{
-    struct timespec now = {0};
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 double dea_bench_left(const dea_bench_work *work)
 {
-    return fmax(0.0, work->options->budget - (dea_bench_now() - work->begun));
+    return fmax(0.0, work->options->budget - (dea_clock() - work->begun));
 }
 
 void dea_bench_step(dea_bench_work *work)
@@ -70,9 +63,9 @@ dea_status dea_bench_solve(const dea_bench_work *work, const dea_engine *engine,
                                      .user = &listener};
     here.accuracy = accuracy;
     here.full = scene->full || full;
-    const double from = dea_bench_now();
+    const double from = dea_clock();
     const dea_status status = dea_study_run(&here, engine, &options, error);
-    *seconds = dea_bench_now() - from;
+    *seconds = dea_clock() - from;
     return status;
 }
 
@@ -199,19 +192,19 @@ static double start_once(const dea_plan *plan)
     dea_error error = {0};
     dea_worker worker = {.error = &error};
     dea_status status = DEA_OK;
-    const double from = dea_bench_now();
+    const double from = dea_clock();
     double until;
     if (dea_plan_here(plan)) {
         void *session = NULL;
         status = plan->engine->begin(&session, &error);
-        until = dea_bench_now();
+        until = dea_clock();
         plan->engine->end(session);
     } else {
         dea_report report = {.status = DEA_ERROR_ENGINE};
         status = dea_worker_start(&worker, plan, NULL, 0, &error);
         status = status == DEA_OK && !dea_worker_receive(&worker, &report) ? DEA_ERROR_ENGINE : status;
         status = status == DEA_OK ? report.status : status;
-        until = dea_bench_now();
+        until = dea_clock();
         dea_worker_end(&worker);
     }
     return status == DEA_OK ? until - from : (double)NAN;

@@ -41,8 +41,6 @@ typedef struct dea_bench_work {
 
 /* ---- measure */
 
-/* Seconds of a steady clock. */
-double dea_bench_now(void);
 /* Time that is left of the budget [s], >= 0. */
 double dea_bench_left(const dea_bench_work *work);
 /* Tells progress: one step more is done. */

@@ -64,4 +64,11 @@ size_t dea_segment_line(const dea_segment *run, double time);
 /* The segment of a time, searched from segment number @p near on: from < time <= to, the first one at its begin too. */
 size_t dea_signal_find(const dea_signal *signal, size_t near, double time);
 
+/* ---- Runs of lines as one segment, for engines whose steps follow what they see. */
+
+/* Draws lines that continue each other together to segments with `lines`, whose voltage stays what it is: those whose corners are
+ * small for this accuracy, and whatever their corners, which are marked as such, those that take no longer than @p shorter [s].
+ * DEA_ERROR_MEMORY. */
+dea_status dea_signal_soften(dea_signal *signal, double accuracy, double shorter, dea_error *error);
+
 #endif

@@ -1,5 +1,6 @@
 #include "engine/plan.h"
 #include "study/study.h"
+#include "scene/line.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -127,12 +128,10 @@ void dea_plan_log(const dea_plan *plan, dea_damage *damage, const char *format, 
 void dea_plan_place(const dea_scene *scene, size_t point, char *text, size_t size)
 {
     size_t used = 0;
-    size_t stride = dea_scene_point_count(scene);
     text[0] = '\0';
     for (size_t i = 0; i < scene->axis_count && used < size; i++) {
         const dea_axis *axis = &scene->axes[i];
-        stride /= axis->count;
-        double value = axis->values[point / stride % axis->count];
+        double value = axis->values[dea_axis_index(scene, i, point)];
         int length = snprintf(text + used, size - used, "%s%s=%.9g", i == 0 ? " (" : ", ", axis->column, value);
         used += length > 0 ? (size_t)length : 0;
     }

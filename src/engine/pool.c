@@ -1,14 +1,14 @@
 #define _GNU_SOURCE
-#include "engine/pool.h"
+#include "engine/plan.h"
 
 #include <errno.h>
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <time.h>
 
 #include "engine/worker.h"
+#include "support/clock.h"
 
 enum {
     SLOTS_PER_WORKER = 4,
@@ -52,16 +52,9 @@ typedef struct dea_pool {
     size_t memory_size;
 } dea_pool;
 
-static double seconds_now(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static void pool_tick(dea_pool *pool)
 {
-    double now = seconds_now();
+    double now = dea_clock();
     double passed = now - pool->last;
     pool->passed = passed < longest_tick ? passed : longest_tick;
     pool->clock += pool->passed;
@@ -106,7 +99,7 @@ static dea_status pool_init(dea_pool *pool, const dea_plan *plan, double beyond,
     pool->slots = calloc(pool->slot_count, sizeof *pool->slots);
     if (!pool->workers || !pool->polls || !pool->slots)
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for %zu workers", workers);
-    pool->last = seconds_now();
+    pool->last = dea_clock();
     return pool_share_memory(pool, error);
 }
 

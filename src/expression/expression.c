@@ -341,29 +341,9 @@ dea_expr dea_expr_neg(dea_pool *pool, dea_expr a)
     return dea_expr_scale(pool, -1.0, a);
 }
 
-dea_expr dea_expr_ln(dea_pool *pool, dea_expr a)
+dea_expr dea_expr_of(dea_pool *pool, dea_operation operation, dea_expr a)
 {
-    return combine(pool, DEA_LN, a, a);
-}
-
-dea_expr dea_expr_exp(dea_pool *pool, dea_expr a)
-{
-    return combine(pool, DEA_EXP, a, a);
-}
-
-dea_expr dea_expr_sqrt(dea_pool *pool, dea_expr a)
-{
-    return combine(pool, DEA_SQRT, a, a);
-}
-
-dea_expr dea_expr_log1p(dea_pool *pool, dea_expr a)
-{
-    return combine(pool, DEA_LOG1P, a, a);
-}
-
-dea_expr dea_expr_expm1(dea_pool *pool, dea_expr a)
-{
-    return combine(pool, DEA_EXPM1, a, a);
+    return combine(pool, operation, a, a);
 }
 
 dea_expr dea_expr_pow(dea_pool *pool, dea_expr a, dea_expr b)
@@ -372,11 +352,6 @@ dea_expr dea_expr_pow(dea_pool *pool, dea_expr a, dea_expr b)
         return a;
     }
     return combine(pool, DEA_POW, a, b);
-}
-
-dea_expr dea_expr_positive(dea_pool *pool, dea_expr a)
-{
-    return combine(pool, DEA_POSITIVE, a, a);
 }
 
 dea_expr dea_expr_apply(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b)
@@ -482,11 +457,6 @@ static void evaluate(const dea_pool *pool, const dea_point_values *at, int strid
                     : term->operation == DEA_SYMBOL ? pick(at->symbols, at->symbol_count, stride, term->a)
                                                     : pick(at->nodes, at->node_count, stride, term->a);
     }
-}
-
-void dea_pool_values(const dea_pool *pool, double symbol, double node, double *values)
-{
-    evaluate(pool, &(dea_point_values){&symbol, &node, 1, 1}, 1, values);
 }
 
 void dea_pool_values_at(const dea_pool *pool, const dea_point_values *at, double *values)

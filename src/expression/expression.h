@@ -40,16 +40,10 @@ dea_expr dea_expr_square(dea_pool *pool, dea_expr a);
 /* factor times a. */
 dea_expr dea_expr_scale(dea_pool *pool, double factor, dea_expr a);
 dea_expr dea_expr_neg(dea_pool *pool, dea_expr a);
-dea_expr dea_expr_ln(dea_pool *pool, dea_expr a);
-dea_expr dea_expr_exp(dea_pool *pool, dea_expr a);
-dea_expr dea_expr_sqrt(dea_pool *pool, dea_expr a);
-/* ln(1 + a) and exp(a) - 1, with the digits of a small a. */
-dea_expr dea_expr_log1p(dea_pool *pool, dea_expr a);
-dea_expr dea_expr_expm1(dea_pool *pool, dea_expr a);
+/* An operation of one operand. */
+dea_expr dea_expr_of(dea_pool *pool, dea_operation operation, dea_expr a);
 /* a to the power b, a > 0. */
 dea_expr dea_expr_pow(dea_pool *pool, dea_expr a, dea_expr b);
-/* a, or NAN where it is not positive. */
-dea_expr dea_expr_positive(dea_pool *pool, dea_expr a);
 /* Any operation; of one operand a, @p b is a again. */
 dea_expr dea_expr_apply(dea_pool *pool, dea_operation operation, dea_expr a, dea_expr b);
 
@@ -69,9 +63,8 @@ typedef struct dea_point_values {
     int symbol_count, node_count;
 } dea_point_values;
 
-/* Values of all terms of the pool, into an array of pool->count: with one symbol and one node, NAN where a further one stands; with
- * any; with one value for all symbols and one for all nodes. */
-void dea_pool_values(const dea_pool *pool, double symbol, double node, double *values);
+/* Values of all terms of the pool, into an array of pool->count: NAN where a symbol or node past the last stands; with one value for
+ * all symbols and one for all nodes. */
 void dea_pool_values_at(const dea_pool *pool, const dea_point_values *at, double *values);
 void dea_pool_values_uniform(const dea_pool *pool, double symbols, double nodes, double *values);
 

@@ -12,12 +12,12 @@
 #define NEG(a) dea_expr_neg(pool, a)
 #define SQUARE(a) dea_expr_square(pool, a)
 #define SCALE(factor, a) dea_expr_scale(pool, factor, a)
-#define LN(a) dea_expr_ln(pool, a)
-#define EXP(a) dea_expr_exp(pool, a)
-#define SQRT(a) dea_expr_sqrt(pool, a)
-#define LOG1P(a) dea_expr_log1p(pool, a)
-#define EXPM1(a) dea_expr_expm1(pool, a)
+#define LN(a) dea_expr_of(pool, DEA_LN, a)
+#define EXP(a) dea_expr_of(pool, DEA_EXP, a)
+#define SQRT(a) dea_expr_of(pool, DEA_SQRT, a)
+#define LOG1P(a) dea_expr_of(pool, DEA_LOG1P, a)
+#define EXPM1(a) dea_expr_of(pool, DEA_EXPM1, a)
 #define POW(a, b) dea_expr_pow(pool, a, b)
-#define POSITIVE(a) dea_expr_positive(pool, a)
+#define POSITIVE(a) dea_expr_of(pool, DEA_POSITIVE, a)
 
 #endif

@@ -1,6 +1,7 @@
 /* From the scene to one static point. */
 #include <stddef.h>
 
+#include "geometry/edge.h"
 #include "geometry/second.h"
 #include "model/models.h"
 
@@ -86,6 +87,19 @@ static void place_second(const dea_scene *scene, dea_second *second)
     second->voltage = other.drive.voltage;
 }
 
+static void place_loads(const dea_scene *scene, dea_point *point)
+{
+    const dea_edge_terms edge = dea_scene_edge(scene);
+    point->load = edge.stiffness;
+    point->force = edge.force;
+    point->spring_count = 0;
+    for (size_t i = 0; i < DEA_LOADS && edge.bent; i++) {
+        if (dea_load_is_given(&scene->loads[i]) && scene->loads[i].kind->spring) {
+            point->springs[point->spring_count++] = scene->loads[i];
+        }
+    }
+}
+
 void dea_point_place(const dea_scene *scene, dea_point *point)
 {
     const dea_actuator *actuator = &scene->actuator;
@@ -97,25 +111,9 @@ void dea_point_place(const dea_scene *scene, dea_point *point)
     point->voltage = scene->drive.voltage * film_share(scene);
     point->focal_length = actuator->focal_length;
     point->refractive_index = actuator->refractive_index;
-    point->load = scene->load.stiffness > 0.0 ? scene->load.stiffness : 0.0;
-    point->force = isnan(scene->load.force) ? 0.0 : scene->load.force;
+    place_loads(scene, point);
     place_second(scene, &point->second);
     place_skin(&scene->electrode, point);
-}
-
-bool dea_scene_is_pulled(const dea_scene *scene)
-{
-    bool swept = false;
-    for (size_t i = 0; i < scene->axis_count; i++) {
-        swept = swept || scene->axes[i].offset == offsetof(dea_scene, load.force);
-    }
-    return swept || fabs(scene->load.force) > 0.0 || scene->antagonist.there;
-}
-
-bool dea_scene_is_loaded(const dea_scene *scene)
-{
-    const dea_edge_load *load = &scene->load;
-    return load->stiffness > 0.0 || load->mass > 0.0 || load->damping > 0.0 || dea_scene_is_pulled(scene);
 }
 
 bool dea_point_valid(const dea_point *point)
@@ -174,7 +172,7 @@ double dea_point_mass(const dea_scene *scene, const dea_point *point)
     const double film = moving_disc(reference) + moving_annulus(reference, b);
     const double electrode = point->kind == DEA_DOT ? moving_disc(radius) : moving_annulus(radius, b);
     const double areal = dea_electrode_mass(scene);
-    double load = scene->load.mass > 0.0 ? scene->load.mass : 0.0;
+    double load = dea_scene_edge(scene).mass;
     if (point->second.there) {
         const dea_point second = dea_point_second(point);
         dea_scene other;
@@ -203,7 +201,7 @@ double dea_point_resonance(const dea_scene *scene, const dea_point *point)
     enum { SCAN = 64 };
     const double l0 = point->film.prestretch, f = point->frame_radius / l0, a = point->coverage * f;
     const double areal = dea_electrode_mass(scene);
-    if (point->skin_share > 0.0 || point->load > 0.0 || scene->load.mass > 0.0 || point->second.there) {
+    if (point->skin_share > 0.0 || dea_point_is_loaded(point) || dea_scene_edge(scene).mass > 0.0) {
         return (double)NAN; /* the two regions have one modulus no more, or the edge a mass of its own */
     }
     const double bare = scene->material.density, coated = bare + areal * l0 * l0 / point->film_thickness;

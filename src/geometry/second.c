@@ -3,6 +3,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "deaspice/model.h"
 #include "geometry/second.h"
 
 /* A scalar of the second film, in whose place in its own scene it stands. */
@@ -33,7 +34,7 @@ void dea_second_scene(const dea_scene *scene, dea_scene *second)
     second->actuator.kind = own->kind;
     second->actuator.electrode_mass = second->actuator.focal_length = second->actuator.refractive_index = none;
     second->electrode = (dea_electrode){.thickness = none, .density = none, .sheet_resistance = none};
-    second->load = (dea_edge_load){none, none, none, none};
+    dea_scene_unload(second);
     second->material = own->own_material ? own->material : scene->material;
     second->material.temperature = scene->material.temperature;
     second->drive.series_resistance = second->drive.leakage_resistance = none;

@@ -58,34 +58,7 @@ static double energy(const double *c, double l1, double l2)
     return c[MU] * j * q;
 }
 
-static dea_stress stress(const double *c, double l1, double l2)
-{
-    return dea_invariant_stress(slopes, c, l1, l2);
-}
-
-static double rise(const double *c, double l, double d1, double d2)
-{
-    return dea_invariant_rise(slopes, gain, c, l, d1, d2);
-}
-
-static void prepare(dea_film *film)
-{
-    film->rest[0] = slopes(film->constants, film->j).w;
-}
-
-static void change(const dea_film *film, size_t count, const double *strains, dea_change *changes)
-{
-    for (size_t i = 0; i < count; i++) {
-        changes[i] = dea_invariant_change(slopes, gain, film, strains[i]);
-    }
-}
-
-static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
-{
-    return dea_invariant_biaxial(slopes, gain, film, e1, e2);
-}
-
-DEA_INVARIANT_ABREAST(slopes, gain)
+DEA_INVARIANT_LAW(slopes, gain)
 
 /* The chain stretch sqrt(I1/3) has come to lambda_m; the five terms go on. */
 static double locking(const double *c)
@@ -122,12 +95,6 @@ const dea_law dea_law_arruda_boyce = {
     .starts = {8.0, 4.0, 2.0, 1.3},
     .locking = locking,
     .energy = energy,
-    .stress = stress,
-    .rise = rise,
-    .prepare = prepare,
-    .change = change,
-    .biaxial = biaxial,
-    .changes = changes,
-    .biaxials = biaxials,
+    DEA_INVARIANT_WAYS,
     .form = form,
 };

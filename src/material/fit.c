@@ -10,7 +10,6 @@
 
 #include "material/fit_errors.h"
 #include "material/fit_plausible.h"
-#include "material/fit_search.h"
 #include "material/law.h"
 #include "support/lapack.h"
 

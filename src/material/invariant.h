@@ -162,20 +162,54 @@ DEA_INLINE void dea_invariant_biaxials(dea_slopes_at *slopes, dea_slope_gain *ga
     }
 }
 
-/* The law's changes() and biaxials() of these two functions. */
-#define DEA_INVARIANT_ABREAST(slopes, gain)                                                                                      \
-    DEA_INLINE void changes_of(const dea_film *film, size_t count, const double *strains, const dea_changes *out)                \
-    {                                                                                                                            \
-        dea_invariant_changes(slopes, gain, film, count, strains, out);                                                          \
-    }                                                                                                                            \
-    DEA_INLINE void biaxials_of(const dea_film *film, size_t count, const double *e1, const double *e2, const dea_biaxials *out) \
-    {                                                                                                                            \
-        dea_invariant_biaxials(slopes, gain, film, count, e1, e2, out);                                                          \
-    }                                                                                                                            \
-    DEA_LANES_DISPATCH(changes, changes_of, (const dea_film *film, size_t count, const double *strains, const dea_changes *out), \
-                       (film, count, strains, out))                                                                              \
-    DEA_LANES_DISPATCH(biaxials, biaxials_of,                                                                                    \
-                       (const dea_film *film, size_t count, const double *e1, const double *e2, const dea_biaxials *out),        \
+/* Of a law whose f' does not change. */
+DEA_INLINE double dea_no_gain(const double *constants, double j, double dj)
+{
+    (void)constants;
+    (void)j;
+    (void)dj;
+    return 0.0;
+}
+
+/* The ways of a law that has no more than these two functions, and their places in its row. */
+#define DEA_INVARIANT_LAW(slopes, gain)                                                                                         \
+    static dea_stress stress(const double *c, double l1, double l2)                                                             \
+    {                                                                                                                           \
+        return dea_invariant_stress(slopes, c, l1, l2);                                                                         \
+    }                                                                                                                           \
+    static double rise(const double *c, double l, double d1, double d2)                                                         \
+    {                                                                                                                           \
+        return dea_invariant_rise(slopes, gain, c, l, d1, d2);                                                                  \
+    }                                                                                                                           \
+    static void prepare(dea_film *film)                                                                                         \
+    {                                                                                                                           \
+        film->rest[0] = slopes(film->constants, film->j).w;                                                                     \
+    }                                                                                                                           \
+    static void change(const dea_film *film, size_t count, const double *strains, dea_change *changes)                          \
+    {                                                                                                                           \
+        for (size_t i = 0; i < count; i++) {                                                                                    \
+            changes[i] = dea_invariant_change(slopes, gain, film, strains[i]);                                                  \
+        }                                                                                                                       \
+    }                                                                                                                           \
+    static dea_biaxial biaxial(const dea_film *film, double e1, double e2)                                                      \
+    {                                                                                                                           \
+        return dea_invariant_biaxial(slopes, gain, film, e1, e2);                                                               \
+    }                                                                                                                           \
+    DEA_INLINE void changes_of(const dea_film *film, size_t count, const double *strains, const dea_changes *out)               \
+    {                                                                                                                           \
+        dea_invariant_changes(slopes, gain, film, count, strains, out);                                                         \
+    }                                                                                                                           \
+    DEA_INLINE void biaxials_of(const dea_film *film, size_t count, const double *e1, const double *e2, const dea_biaxials *out)\
+    {                                                                                                                           \
+        dea_invariant_biaxials(slopes, gain, film, count, e1, e2, out);                                                         \
+    }                                                                                                                           \
+    DEA_LANES_DISPATCH(changes, changes_of, (const dea_film *film, size_t count, const double *strains, const dea_changes *out),\
+                       (film, count, strains, out))                                                                             \
+    DEA_LANES_DISPATCH(biaxials, biaxials_of,                                                                                   \
+                       (const dea_film *film, size_t count, const double *e1, const double *e2, const dea_biaxials *out),       \
                        (film, count, e1, e2, out))
+
+#define DEA_INVARIANT_WAYS                                                                                                       \
+    .stress = stress, .rise = rise, .prepare = prepare, .change = change, .biaxial = biaxial, .changes = changes, .biaxials = biaxials
 
 #endif

@@ -15,14 +15,6 @@ DEA_INLINE dea_slopes slopes(const double *c, double j)
     return (dea_slopes){.w = c[C10]};
 }
 
-DEA_INLINE double gain(const double *c, double j, double dj)
-{
-    (void)c;
-    (void)j;
-    (void)dj;
-    return 0.0;
-}
-
 /* I2 - 3 is I1 - 3 of the reciprocal stretches: the same form (dea_invariant) with p = l1^-2 - 1, q = l2^-2 - 1. */
 static double energy(const double *c, double l1, double l2)
 {
@@ -53,7 +45,7 @@ static double rise(const double *c, double l, double d1, double d2)
     const double l2 = l + d2;
     const double stretched = d1 * l2 * l2 + l * d2 * (l2 + l);                           /* l1 l2^2 - l^3 */
     const double thinned = d1 * (l1 * l1 + l1 * l + l * l) / (l1 * l1 * l1 * l * l * l); /* l^-3 - l1^-3 */
-    return dea_invariant_rise(slopes, gain, c, l, d1, d2) + 2.0 * c[C01] * (stretched + thinned);
+    return dea_invariant_rise(slopes, dea_no_gain, c, l, d1, d2) + 2.0 * c[C01] * (stretched + thinned);
 }
 
 static void prepare(dea_film *film)
@@ -73,7 +65,7 @@ static void change(const dea_film *film, size_t count, const double *strains, de
         const double dy = 2.0 * y0 * (1.0 + e);
         const double slope = twice * (2.0 * y + 1.0 / (y * y));
         const double curve = twice * (2.0 - 2.0 / (y * y * y));
-        changes[i] = dea_invariant_change(slopes, gain, film, e);
+        changes[i] = dea_invariant_change(slopes, dea_no_gain, film, e);
         changes[i].value += twice * d * (y + y0 + 1.0 / (y * y0));
         changes[i].slope += slope * dy;
         changes[i].curve += curve * dy * dy + slope * 2.0 * y0;

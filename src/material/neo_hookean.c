@@ -12,22 +12,9 @@ DEA_INLINE dea_slopes slopes(const double *c, double j)
     return (dea_slopes){.w = 0.5 * c[MU]};
 }
 
-DEA_INLINE double gain(const double *c, double j, double dj)
-{
-    (void)c;
-    (void)j;
-    (void)dj;
-    return 0.0;
-}
-
 static double energy(const double *c, double l1, double l2)
 {
     return 0.5 * c[MU] * dea_invariant(l1, l2);
-}
-
-static dea_stress stress(const double *c, double l1, double l2)
-{
-    return dea_invariant_stress(slopes, c, l1, l2);
 }
 
 static long double fine_w11(const double *c, long double l)
@@ -36,29 +23,7 @@ static long double fine_w11(const double *c, long double l)
     return 0.5L * c[MU] * (2.0L + 6.0L / (y * y * y));
 }
 
-static double rise(const double *c, double l, double d1, double d2)
-{
-    return dea_invariant_rise(slopes, gain, c, l, d1, d2);
-}
-
-static void prepare(dea_film *film)
-{
-    film->rest[0] = 0.5 * film->constants[MU];
-}
-
-static void change(const dea_film *film, size_t count, const double *strains, dea_change *changes)
-{
-    for (size_t i = 0; i < count; i++) {
-        changes[i] = dea_invariant_change(slopes, gain, film, strains[i]);
-    }
-}
-
-static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
-{
-    return dea_invariant_biaxial(slopes, gain, film, e1, e2);
-}
-
-DEA_INVARIANT_ABREAST(slopes, gain)
+DEA_INVARIANT_LAW(slopes, dea_no_gain)
 
 static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_law_form *form)
 {
@@ -78,13 +43,7 @@ const dea_law dea_law_neo_hookean = {
     .entries = 1,
     .linear = true,
     .energy = energy,
-    .stress = stress,
     .fine_w11 = fine_w11,
-    .rise = rise,
-    .prepare = prepare,
-    .change = change,
-    .biaxial = biaxial,
-    .changes = changes,
-    .biaxials = biaxials,
+    DEA_INVARIANT_WAYS,
     .form = form,
 };

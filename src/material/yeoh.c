@@ -23,11 +23,6 @@ static double energy(const double *c, double l1, double l2)
     return j * (c[C1] + j * (c[C2] + j * c[C3]));
 }
 
-static dea_stress stress(const double *c, double l1, double l2)
-{
-    return dea_invariant_stress(slopes, c, l1, l2);
-}
-
 /* W11 = w (2 + 6 l^-6) + w' a1^2, a1 = 2 l (1 - l^-6). */
 static long double fine_w11(const double *c, long double l)
 {
@@ -37,29 +32,7 @@ static long double fine_w11(const double *c, long double l)
     return w * (2.0L + 6.0L * cube) + (2.0L * c[C2] + 6.0L * c[C3] * j) * 4.0L * y * a * a;
 }
 
-static double rise(const double *c, double l, double d1, double d2)
-{
-    return dea_invariant_rise(slopes, gain, c, l, d1, d2);
-}
-
-static void prepare(dea_film *film)
-{
-    film->rest[0] = slopes(film->constants, film->j).w;
-}
-
-static void change(const dea_film *film, size_t count, const double *strains, dea_change *changes)
-{
-    for (size_t i = 0; i < count; i++) {
-        changes[i] = dea_invariant_change(slopes, gain, film, strains[i]);
-    }
-}
-
-static dea_biaxial biaxial(const dea_film *film, double e1, double e2)
-{
-    return dea_invariant_biaxial(slopes, gain, film, e1, e2);
-}
-
-DEA_INVARIANT_ABREAST(slopes, gain)
+DEA_INVARIANT_LAW(slopes, gain)
 
 static void form(dea_pool *pool, const dea_expr *c, dea_expr l1, dea_expr l2, dea_law_form *form)
 {
@@ -84,13 +57,7 @@ const dea_law dea_law_yeoh = {
     .entries = 1,
     .linear = true,
     .energy = energy,
-    .stress = stress,
     .fine_w11 = fine_w11,
-    .rise = rise,
-    .prepare = prepare,
-    .change = change,
-    .biaxial = biaxial,
-    .changes = changes,
-    .biaxials = biaxials,
+    DEA_INVARIANT_WAYS,
     .form = form,
 };

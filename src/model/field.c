@@ -14,9 +14,7 @@
  */
 #include <float.h>
 
-#include "model/collocation.h"
 #include "model/field.h"
-#include "model/field_row.h"
 #include "model/film_balance.h"
 
 enum { GBS_COLUMNS = 7, ELLIPTIC_SAMPLES = 8 };
@@ -565,7 +563,7 @@ bool dea_field_profile(const dea_point *point, double strain, size_t count, cons
     const double nominal = dea_point_nominal_field(point), pre = point->film.prestretch;
     const membrane m = membrane_of(point, point->film.permittivity * nominal * nominal, (dea_field_mesh){longest_step, 1e-13});
     const double edge = pre * strain;
-    const bool pulled = point->force != 0.0 || point->second.there; /* what else acts on the edge is not looked at */
+    const bool pulled = dea_point_is_shared(point); /* what else acts on the edge is not looked at */
     radial_state s = {pulled ? jump_of_held(&m, edge) : jump_at_edge(&m, pre + edge), edge, 0.0};
     double last = 0.0;
     for (size_t i = 0; i < count; i++) {

@@ -20,7 +20,7 @@ typedef struct parties {
 
 /* Forces on the edge, those of rest inward, and their slopes over u. */
 typedef struct edge_forces {
-    double held, held_slope; /* of films and spring without voltage */
+    double held, held_slope; /* of films and springs without voltage */
     double load, load_slope; /* of force and second film, outward */
     double push, push_slope; /* of the film's voltage, outward */
     dea_found found, second;
@@ -33,8 +33,9 @@ static bool look(const parties *p, double strain, bool plain, edge_forces *f)
     if (!h->hold(h->user, p->point, strain, &one) || (p->second && !h->hold(h->user, p->second, strain, &other))) {
         return false;
     }
-    *f = (edge_forces){.held = one.held + other.held + p->point->load * strain * p->radius,
-                       .held_slope = one.held_slope + other.held_slope + p->point->load,
+    const dea_spring spring = dea_point_spring(p->point, strain * p->radius);
+    *f = (edge_forces){.held = one.held + other.held + spring.force,
+                       .held_slope = one.held_slope + other.held_slope + spring.slope,
                        .load = p->point->force + other.push,
                        .load_slope = other.push_slope,
                        .push = one.push,
@@ -194,7 +195,7 @@ void dea_model_hold(const dea_model *model, const dea_point *point, double displ
 
 void dea_model_solve(const dea_model *model, const dea_point *point, double accuracy, dea_row *row)
 {
-    if (point->force == 0.0 && !point->second.there) {
+    if (!dea_point_is_shared(point)) {
         model->solve(point, accuracy, row);
     } else if (!model->hold) {
         dea_row_refuse(row, DEA_STATE_FAILED); /* it has no edge */

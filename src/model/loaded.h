@@ -1,6 +1,6 @@
-/* The equilibrium of a film on whose edge other things act too: a spring k, a force F, and a second film with its own voltage.
+/* The equilibrium of a film on whose edge other things act too: springs k(u), a force F, and a second film with its own voltage.
  *
- *     held(u) + held_2(u) + k u = F + push_2(u) + push(u)
+ *     held(u) + held_2(u) + k(u) = F + push_2(u) + push(u)
  *
  * F and the second film's voltage come first: rest under load is the equilibrium that is reached from u = 0 as both grow together;
  * from there the square of the film's own voltage grows. Where either way folds the row is pull-in. */

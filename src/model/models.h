@@ -165,10 +165,34 @@ typedef struct dea_hold {
     double push, push_slope; /* what the voltage adds outward [N], [N/m] */
 } dea_hold;
 
+/* True where something moves the edge without the voltage of the film. */
+static inline bool dea_point_is_pulled(const dea_point *point)
+{
+    return point->force != 0.0 || point->second.there;
+}
+
+/* True where more acts on the edge than a model's own equation knows: its film and a linear spring. */
+static inline bool dea_point_is_shared(const dea_point *point)
+{
+    return point->spring_count > 0 || dea_point_is_pulled(point);
+}
+
 /* True where the film is not alone with its edge: what its two regions hold then differs. */
 static inline bool dea_point_is_loaded(const dea_point *point)
 {
-    return point->load > 0.0 || point->force != 0.0 || point->second.there;
+    return point->load > 0.0 || dea_point_is_shared(point);
+}
+
+/* What the springs hold against a displacement u of the edge. */
+static inline dea_spring dea_point_spring(const dea_point *point, double u)
+{
+    dea_spring sum = {point->load * u, point->load};
+    for (size_t i = 0; i < point->spring_count; i++) {
+        const dea_spring one = point->springs[i].kind->spring(point->springs[i].number, u);
+        sum.force += one.force;
+        sum.slope += one.slope;
+    }
+    return sum;
 }
 
 /* The second film as a point of its own, without what else acts on the edge. */

@@ -1,7 +1,7 @@
 /* From rest at the begin of the edge, y' = f(t, y) by Dormand and Prince's Runge-Kutta pair of orders 5 and 4 (RK5(4)7M, 1980), whose
  * last stage is the first of the next step. Between two steps the displacement of the edge is the cubic through both with their
  * velocities; a peak is where that velocity turns. */
-#include "needs/first_peak.h"
+#include "needs/nearness.h"
 
 #include <math.h>
 #include <stdlib.h>

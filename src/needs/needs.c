@@ -46,7 +46,7 @@ typedef struct planner {
 static bool pays(const planner *p, dea_part part)
 {
     const dea_scene *scene = p->surrogate.scene;
-    if (p->many_nodes && (scene->load.damping > 0.0 || scene->electrode.sheet_resistance > 0.0)) {
+    if (p->many_nodes && (dea_scene_edge(scene).damping > 0.0 || scene->electrode.sheet_resistance > 0.0)) {
         return false;
     }
     return (p->engine->omits & 1u << part) != 0 && (!p->many_nodes || part == DEA_PART_MASS);
@@ -66,7 +66,7 @@ static bool is_start(const planner *p, size_t probe)
 {
     const dea_scene *scene = p->surrogate.scene;
     const bool held = !isnan(scene->material.density) || dea_electrode_mass(scene) > 0.0 ||
-                      !isnan(scene->material.retardation) || scene->load.damping > 0.0 || dea_series_resistance(scene) > 0.0;
+                      !isnan(scene->material.retardation) || dea_scene_edge(scene).damping > 0.0 || dea_series_resistance(scene) > 0.0;
     return held && scene->transient.from_bias && probe == 0;
 }
 

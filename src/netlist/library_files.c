@@ -1,4 +1,4 @@
-#include "netlist/library_files.h"
+#include "netlist/part.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -115,8 +115,6 @@ static dea_symbols symbols_of(dea_pool *pool, const part *p)
                            .coverage = s[COVER],
                            .film_thickness = MUL(s[LAYERS], s[THICK]),
                            .layers = s[LAYERS],
-                           .load = NUM(0.0),
-                           .force = NUM(0.0),
                            .prestretch = s[STRETCH],
                            .permittivity = MUL(SCALE(DEA_EPSILON_0, s[EPS_R]), SQUARE(s[LAYERS])),
                            .electrostriction = p->follows ? DIV(dea_expr_symbol(pool, EPS_SLOPE), s[EPS_R]) : NUM(0.0),

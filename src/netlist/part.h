@@ -12,6 +12,7 @@
 
 #include "deaspice/model.h"
 #include "netlist/dialect.h"
+#include "deaspice/status.h"
 
 /* Room for a name with its ending; longest name that a user gives; what the names of the library's helpers begin with. */
 enum { DEA_PART_TITLE = 48, DEA_PART_NAME_LENGTH = 32 };
@@ -59,5 +60,11 @@ size_t dea_part_parameters(const dea_scene *scene, const dea_model *model, dea_p
 
 /* The scene behind the library's defaults: the film of the base paper, at rest. It owns nothing. */
 dea_scene dea_part_paper(dea_kind kind);
+
+/* ---- The ready-made library of netlists/: parts in every dialect and symbols. */
+
+/* Writes the library below @p folder, one folder a tool, made where they are missing; files of the same names are replaced whole.
+ * DEA_ERROR_IO, DEA_ERROR_MEMORY. */
+dea_status dea_library_write(const char *folder, dea_error *error);
 
 #endif

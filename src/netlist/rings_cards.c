@@ -118,7 +118,8 @@ void dea_rings_cards_make(const dea_symbols *symbols, dea_rings_mesh mesh, dea_r
         make_stress(&cards->symbols, (dea_rings_strain)strain, true, pressure, cards->stress[strain][1]);
     }
     const dea_expr thickness = DIV(SQUARE(symbols->prestretch), symbols->film_thickness);
-    cards->load = SCALE(0.5 / (DEA_PI * mega), MUL(symbols->load, thickness));
+    const dea_expr held = dea_symbols_springs(symbols, MUL(symbols->frame_radius, dea_expr_node(pool, DEA_RINGS_E1)));
+    cards->load = SCALE(0.5 / (DEA_PI * mega), MUL(DIV(held, symbols->frame_radius), thickness));
     dea_rings_slopes_of(mesh.disc, &cards->slopes[0]);
     dea_rings_slopes_of(mesh.annulus, &cards->slopes[1]);
     make_element(cards, true);
@@ -233,17 +234,14 @@ static void write_forces(const dea_rings_writer *w, const dea_rings_ring *ring, 
     }
 }
 
-/* The spring between edge and frame. */
+/* The springs between edge and frame. */
 static void write_load(const dea_rings_writer *w)
 {
     if (dea_expr_constant(w->cards->symbols.pool, w->cards->load) == 0.0) {
         return;
     }
     const dea_rings_label u = dea_rings_node(w, 'u', w->cards->edge);
-    dea_dialect_source_begin(w->text->dialect, w->out, DEA_CURRENT, "load", u.text, "0");
-    dea_part_text_write(w->text, w->cards->load);
-    fprintf(w->out, "*v(%s)", u.text);
-    dea_rings_end(w);
+    dea_rings_spring(w, u.text, u.text, w->cards->load);
 }
 
 void dea_rings_cards_write(const dea_rings_cards *cards, dea_part_text *text)

@@ -5,10 +5,31 @@
 
 #include "expression/formula.h"
 #include "deaspice/model.h"
+#include "geometry/edge.h"
 
 static bool is_free(const dea_membrane *m)
 {
     return !m->heavy && m->film.retardation == 0.0;
+}
+
+/* Damper and steady force of the loads stand as numbers. */
+static void make_loads(const dea_scene *scene, dea_rings_motion_cards *c)
+{
+    dea_pool *pool = &c->pool;
+    dea_symbols *s = &c->symbols;
+    dea_expr *mass = &c->moving.masses[c->moving.cards.edge - 1];
+    for (size_t i = 0; i < DEA_LOADS; i++) {
+        const dea_load_kind *kind = dea_load_is_given(&scene->loads[i]) ? scene->loads[i].kind : NULL;
+        const double weight = kind && c->membrane->heavy ? kind->adds.mass : 0.0;
+        if (kind && (weight > 0.0 || kind->adds.stiffness > 0.0 || kind->spring)) {
+            char name[DEA_QUANTITY_NAME];
+            dea_expr number = NUM(scene->loads[i].number);
+            dea_rings_quantity(&c->quantities, pool, dea_load_parameter(kind, name), kind->unit, &number);
+            *mass = ADD(*mass, SCALE(weight, number));
+            s->loads[i] = s->load_kinds[i] ? number : s->loads[i];
+        }
+    }
+    c->springs = dea_symbols_springs(s, dea_expr_node(pool, DEA_RINGS_E1));
 }
 
 /* Symbols of the scene, and what else the rings are made of. */
@@ -35,16 +56,7 @@ static void make(const dea_scene *scene, dea_rings_motion_cards *c)
     dea_rings_moving_make(&c->symbols, &numbers, m->rings.mesh, m->film.branch_count, &c->moving);
     c->moving.free = is_free(m);
     c->moving.whole = true;
-    c->load = c->symbols.load;
-    dea_expr mass = NUM(m->heavy && scene->load.mass > 0.0 ? scene->load.mass : 0.0);
-    if (m->film.point.load > 0.0) {
-        dea_rings_quantity(q, pool, "load_stiffness", "N/m", &c->load);
-    }
-    if (dea_expr_constant(pool, mass) > 0.0) {
-        dea_rings_quantity(q, pool, "load_mass", "kg", &mass);
-    }
-    dea_expr *edge = &c->moving.masses[c->moving.cards.edge - 1];
-    *edge = ADD(*edge, mass);
+    make_loads(scene, c);
     const dea_symbols *s = &c->symbols;
     c->per_r = DIV(NUM(1.0), s->frame_radius);
     c->newton = SCALE(2.0 * DEA_PI, MUL(s->film_thickness, DIV(s->frame_radius, SQUARE(s->prestretch))));
@@ -63,8 +75,8 @@ static void declare(dea_rings_motion_cards *c)
     for (size_t n = 0; n < m->rings.node_count && m->heavy; n++) {
         dea_rings_name(text, c->moving.masses[n], "mass", n + 1);
     }
-    if (m->film.point.load > 0.0) {
-        dea_part_text_use(text, c->load);
+    if (dea_expr_constant(text->pool, c->springs) != 0.0) {
+        dea_part_text_use(text, c->springs);
     }
 }
 
@@ -137,9 +149,9 @@ static void write_load(const dea_rings_motion_cards *c, const dea_rings_writer *
 {
     const dea_dynamics *film = &c->membrane->film;
     const char *edge = c->moving.free ? "u" : "edge";
-    if (film->point.load > 0.0) {
+    if (dea_expr_constant(&c->pool, c->springs) != 0.0) {
         fputs("* spring of the load between edge and frame\n", w->out);
-        fprintf(w->out, "GLOAD %s 0 u 0 {%s}\n", edge, dea_rings_parameter(w, c->load).text);
+        dea_rings_spring(w, edge, "u", c->springs);
     }
     if (film->damping > 0.0) {
         dea_part_print(w->out, "* mechanical resistance of the load [N s/m], whose inverse is the resistor\nRLOAD %s 0 %g\n",
@@ -210,4 +222,15 @@ dea_rings_label dea_rings_state_node(const dea_membrane *m, size_t index)
         return l;
     }
     return (dea_rings_label){"charge"};
+}
+
+dea_rings_label dea_rings_state_element(const dea_membrane *m, size_t index)
+{
+    const size_t nodes = m->rings.node_count, moving = m->heavy ? 2 * nodes : nodes;
+    if (index < moving) {
+        return dea_rings_label_of(index < nodes ? "CDISP" : "CMASS", index % nodes + 1);
+    }
+    dea_rings_label l;
+    snprintf(l.text, sizeof l.text, "C%.40s", dea_rings_state_node(m, index).text);
+    return l;
 }

@@ -15,7 +15,8 @@ typedef struct dea_rings_motion_cards {
     dea_symbols symbols;
     dea_rings_quantities quantities;
     dea_rings_moving moving;
-    dea_expr per_r, newton, load;
+    dea_expr per_r, newton;
+    dea_expr springs; /* what they hold at the edge, of node DEA_RINGS_E1 as its displacement */
     dea_part_text text; /* owned */
     double *values;     /* owned: of all terms at rest */
     const char *names[DEA_RINGS_SYMBOLS];
@@ -42,5 +43,7 @@ void dea_rings_motion_cards_write_swell(dea_rings_motion_cards *cards);
  * resistance; each has a node of that name. */
 size_t dea_rings_states(const dea_membrane *membrane);
 dea_rings_label dea_rings_state_node(const dea_membrane *membrane, size_t index);
+/* The capacitor that holds it, of a film whose displacements are states: not those of one without mass and damper. */
+dea_rings_label dea_rings_state_element(const dea_membrane *membrane, size_t index);
 
 #endif

@@ -169,9 +169,10 @@ void dea_rings_small_write(const dea_rings_small *small, FILE *out)
         dea_part_print(out, "* mechanical resistance of the load [N s/m]\nRLOAD v%zu 0 %g\n",
                        m->rings.edge + 1, 1.0 / m->film.damping);
     }
-    if (m->film.point.load > 0.0) {
+    const double stiffness = dea_point_spring(&m->film.point, look.edge).slope;
+    if (stiffness > 0.0) {
         dea_part_print(out, "* spring of the load between edge and frame [N/m]\nGLOAD v%zu 0 u%zu 0 %g\n",
-                       m->rings.edge + 1, m->rings.edge + 1, m->film.point.load);
+                       m->rings.edge + 1, m->rings.edge + 1, stiffness);
     }
     for (size_t q = 0; q < m->rings.ring_count; q++) {
         write_ring(out, small, q, &look);

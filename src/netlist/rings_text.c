@@ -133,6 +133,20 @@ void dea_rings_thickness(const dea_rings_writer *w, dea_rings_strain strain, siz
     dea_rings_end(w);
 }
 
+void dea_rings_spring(const dea_rings_writer *w, const char *from, const char *u, dea_expr ref)
+{
+    char voltage[2 * DEA_PART_NAME];
+    const char *const nodes[DEA_RINGS_VARIABLES] = {[DEA_RINGS_E1] = voltage};
+    dea_rings_place here = {.nodes = nodes};
+    snprintf(voltage, sizeof voltage, "v(%s)", u);
+    dea_rings_enter(w, &here, w->cards->edge, "load");
+    dea_part_text_nodes_of(w->text, ref);
+    dea_dialect_source_begin(w->text->dialect, w->out, DEA_CURRENT, "load", from, "0");
+    dea_part_text_write(w->text, ref);
+    dea_dialect_source_end(w->text->dialect, w->out);
+    dea_rings_leave(w);
+}
+
 void dea_rings_name(dea_part_text *text, dea_expr ref, const char *what, size_t number)
 {
     dea_part_text_name(text, ref, dea_rings_label_of(what, number).text, "");

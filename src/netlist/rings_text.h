@@ -46,6 +46,9 @@ void dea_rings_gradient(const dea_rings_writer *w, const dea_rings_ring *ring, c
 /* Currents factor slope_n v(control) out of the nodes of a kind. */
 void dea_rings_spread(const dea_rings_writer *w, const dea_rings_ring *ring, const char *control, char kind, const char *factor);
 
+/* A current out of node @p from, of the displacement at node @p u, which the pool has as DEA_RINGS_E1. */
+void dea_rings_spring(const dea_rings_writer *w, const char *from, const char *u, dea_expr ref);
+
 /* v(w<q>) = e_3 of a ring: (1 + e_1)(1 + e_2)(1 + e_3) = 1. */
 void dea_rings_thickness(const dea_rings_writer *w, dea_rings_strain strain, size_t number);
 
@@ -53,7 +56,7 @@ void dea_rings_thickness(const dea_rings_writer *w, dea_rings_strain strain, siz
 void dea_rings_name(dea_part_text *text, dea_expr ref, const char *what, size_t number);
 
 /* Numbers of a scene that stay symbols in a text: parameters of that name. */
-enum { DEA_RINGS_SYMBOLS = 16 + 2 * DEA_LAW_CONSTANTS };
+enum { DEA_RINGS_SYMBOLS = 16 + DEA_LOADS + 2 * DEA_LAW_CONSTANTS };
 typedef struct dea_rings_quantities {
     size_t count; /* number 0 is the axis */
     char names[DEA_RINGS_SYMBOLS][DEA_PART_NAME];

@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 
+#include "model/models.h"
 #include "support/gauss.h"
 
 enum { TENSION, PUSH, CAPACITANCE, STRESSES, OUTPUTS = STRESSES + 2 * DEA_STRESSES };
@@ -177,9 +178,7 @@ dea_status dea_dynamics_settle(const dea_scene *scene, const dea_model *model, d
                         .radius = NAN,
                         .focal_length = scene->actuator.focal_length,
                         .refractive_index = scene->actuator.refractive_index,
-                        .linear = model->linear != NULL && !scene->electrode.law && !(scene->load.stiffness > 0.0) &&
-                                  !(fabs(scene->load.force) > 0.0) && !scene->antagonist.there};
-    d->damping = scene->load.damping > 0.0 ? scene->load.damping : 0.0;
+                        .damping = dea_scene_edge(scene).damping};
     d->softens = !scene->reduction.softening;
     const double shift = dea_material_shift(&scene->material);
     if (!(shift > 0.0 && isfinite(shift))) {
@@ -192,7 +191,8 @@ dea_status dea_dynamics_settle(const dea_scene *scene, const dea_model *model, d
     if (status != DEA_OK) {
         return status;
     }
-    if ((d->point.force != 0.0 || d->point.second.there) && !dea_dynamics_equilibrium(d, 0.0, &d->rest)) {
+    d->linear = model->linear != NULL && !scene->electrode.law && !dea_point_is_loaded(&d->point);
+    if (dea_point_is_pulled(&d->point) && !dea_dynamics_equilibrium(d, 0.0, &d->rest)) {
         d->rest = (double)NAN;
     }
     set_port(scene, d);
@@ -462,6 +462,16 @@ dea_sample dea_sample_refused(double time, double voltage, dea_state state)
 {
     const double none = (double)NAN;
     return (dea_sample){time, voltage, none, none, none, none, none, none, none, none, none, state, {none, none, none, none}};
+}
+
+void dea_samples_refuse(const dea_scene *scene, const dea_signal *signal, size_t from, dea_state state, dea_sample *samples)
+{
+    size_t near = 0;
+    for (size_t i = from; i < dea_layout_of(scene).rows; i++) {
+        const double time = dea_layout_place(scene, i);
+        near = dea_signal_find(signal, near, time);
+        samples[i] = dea_sample_refused(time, dea_segment_voltage(signal, &signal->segments[near], time), state);
+    }
 }
 
 /* Within the limit; NAN stays. */

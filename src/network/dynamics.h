@@ -10,6 +10,7 @@
 #ifndef DEA_DYNAMICS_H
 #define DEA_DYNAMICS_H
 
+#include "drive/signal.h"
 #include "network/balance.h"
 
 /* Most stresses of a film, and most states of its branches: z_ai stands at a branch_count + i. */
@@ -150,6 +151,8 @@ double dea_dynamics_rest(const dea_dynamics *dynamics, double source);
 double dea_dynamics_current(dea_dynamics *dynamics, const dea_moment *moment);
 /* A row without numbers but time and voltage. */
 dea_sample dea_sample_refused(double time, double voltage, dea_state state);
+/* Such rows of a run from number @p from on. */
+void dea_samples_refuse(const dea_scene *scene, const dea_signal *signal, size_t from, dea_state state, dea_sample *samples);
 
 /* Energy balance of a run, from the states between its samples. */
 typedef struct dea_audit {

@@ -50,14 +50,6 @@ dea_expr dea_hyperelastic_skin(const dea_symbols *symbols, dea_expr e1, dea_expr
     return MUL(MUL(symbols->skin_share, SQUARE(symbols->prestretch)), dea_expr_change(pool, form.stress[0]));
 }
 
-void dea_hyperelastic_nominal(const dea_symbols *symbols, dea_expr e1, dea_expr e2, dea_expr stress[2])
-{
-    dea_pool *pool = symbols->pool;
-    const dea_law_form form = form_at(symbols, e1, e2);
-    stress[0] = dea_expr_change(pool, DIV(form.stress[0], ADD(NUM(1.0), e1)));
-    stress[1] = dea_expr_change(pool, DIV(form.stress[1], ADD(NUM(1.0), e2)));
-}
-
 dea_expr dea_hyperelastic_change(const dea_symbols *symbols, dea_expr e)
 {
     return dea_hyperelastic_principal(symbols, e, e);

@@ -12,8 +12,6 @@ dea_expr dea_hyperelastic_principal(const dea_symbols *symbols, dea_expr e1, dea
 void dea_hyperelastic_cauchy(const dea_symbols *symbols, dea_expr e1, dea_expr e2, dea_expr stress[2]);
 /* Change of lambda_3^2 = 1/(lambda_1 lambda_2)^2 as it stands in them, of a law of the invariants. */
 dea_expr dea_hyperelastic_thin(const dea_symbols *symbols, dea_expr e1, dea_expr e2);
-/* lambda_pre (P_a - P_a(lambda_pre)) [Pa] at these stretches, likewise: work-conjugate to e_a. */
-void dea_hyperelastic_nominal(const dea_symbols *symbols, dea_expr e1, dea_expr e2, dea_expr stress[2]);
 
 /* t lambda_pre^2/H sigma_e(1 + e1, 1 + e2) [Pa], the Cauchy stress that the skin adds to the film under it. Only where there is a
  * skin. */

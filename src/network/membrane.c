@@ -17,15 +17,15 @@ static void set_masses(const dea_scene *scene, dea_membrane *m)
         m->masses[n] = density * point->film_thickness * m->rings.areas[n] +
                        electrode * point->film.square * m->rings.coated[n]; /* it lies on the pre-stretched film */
     }
-    m->masses[m->rings.edge] += m->heavy && scene->load.mass > 0.0 ? scene->load.mass : 0.0;
+    m->masses[m->rings.edge] += m->heavy ? dea_scene_edge(scene).mass : 0.0;
 }
 
-const char dea_load_stalled[] = "load.damping alone leaves the other nodes of the membrane without an equation of motion: it takes "
+const char dea_load_stalled[] = "a damper at the edge alone leaves the other nodes of the membrane without an equation of motion: it takes "
                                 "material.density or material.retardation too";
 
 bool dea_load_stalls(const dea_scene *scene)
 {
-    return scene->load.damping > 0.0 && isnan(scene->material.density) && isnan(scene->material.retardation);
+    return dea_scene_edge(scene).damping > 0.0 && isnan(scene->material.density) && isnan(scene->material.retardation);
 }
 
 /* A ring at the frame has no node of its own: any does, with a hoop of 0. */
@@ -238,7 +238,7 @@ void dea_membrane_force(const dea_membrane *m, const dea_membrane_look *look, do
         }
         pull_ring(m, r, s, force);
     }
-    force[m->rings.edge] += m->film.point.force - m->film.point.load * look->edge;
+    force[m->rings.edge] += m->film.point.force - dea_point_spring(&m->film.point, look->edge).force;
 }
 
 /* ds_a/dlambda_b of a ring: of the film, of its electrical part k lambda_a lambda_b^2, of x_a/lambda_a at constant x_a, and of a
@@ -298,7 +298,7 @@ void dea_membrane_stiffness(const dea_membrane *m, const dea_membrane_look *look
         ring_tangent(&m->film.point.film, &look->rings[r], square_at(m, look, r, voltage), x ? x[r] : NULL, share, t);
         assemble_ring(m, r, t, stiffness);
     }
-    stiffness[m->rings.edge * (m->rings.node_count + 1)] += m->film.point.load;
+    stiffness[m->rings.edge * (m->rings.node_count + 1)] += dea_point_spring(&m->film.point, look->edge).slope;
 }
 
 void dea_membrane_damping(const dea_membrane *m, const dea_membrane_look *look, double share, double *damping)
@@ -753,11 +753,10 @@ static double way_integral(const dea_membrane *m, const double *u, const double 
         for (size_t r = 0; r < m->rings.ring_count && !z; r++) {
             memcpy(f[r], look.rings[r].nominal, sizeof f[r]);
         }
-        sum += dea_gauss_weight(g) * ring_power(m, f, rates);
+        const double load = z ? 0.0 : dea_point_spring(&m->film.point, look.edge).force - m->film.point.force;
+        sum += dea_gauss_weight(g) * (ring_power(m, f, rates) + load * way[m->rings.edge]);
     }
-    const size_t edge = m->rings.edge;
-    const double way_of_edge = to[edge] - u[edge];
-    return z ? sum : sum + (0.5 * m->film.point.load * (to[edge] + u[edge]) - m->film.point.force) * way_of_edge;
+    return sum;
 }
 
 void dea_membrane_audit_jump(dea_audit *audit, const dea_membrane *m, const double *u, const double *to, const double *z)

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "expression/derivative.h"
+#include "geometry/edge.h"
 #include "geometry/second.h"
 #include "material/form.h"
 
@@ -276,9 +277,12 @@ dea_symbols dea_symbols_of(const dea_scene *scene, const dea_axis *axis, dea_poo
     const dea_expr breakdown = scalar(pool, scene, axis, &material->breakdown);
     s.breakdown = given(pool, breakdown) ? breakdown : NUM(INFINITY);
     coat(scene, axis, &s);
-    s.load = scene->load.stiffness > 0.0 ? scalar(pool, scene, axis, &scene->load.stiffness) : NUM(0.0);
-    s.force = isnan(scene->load.force) ? NUM(0.0) : scalar(pool, scene, axis, &scene->load.force);
-    s.loaded = scene->load.stiffness > 0.0 || dea_expr_constant(pool, s.force) != 0.0;
+    for (size_t i = 0; i < DEA_LOADS; i++) {
+        const dea_edge_load *load = &scene->loads[i];
+        s.load_kinds[i] = dea_load_is_given(load) && load->kind->element ? load->kind : NULL;
+        s.loads[i] = s.load_kinds[i] ? scalar(pool, scene, axis, &load->number) : NUM(0.0);
+        s.loaded = s.loaded || dea_expr_constant(pool, s.loads[i]) != 0.0;
+    }
     s.voltage = film_voltage(pool, scene, axis, &s);
     s.focal_length = scalar(pool, scene, axis, &actuator->focal_length);
     s.refractive_index = scalar(pool, scene, axis, &actuator->refractive_index);
@@ -421,6 +425,39 @@ static void add_second(const dea_symbols *symbols, const dea_model *model, dea_n
     dea_network_free(&second);
 }
 
+dea_expr dea_symbols_springs(const dea_symbols *symbols, dea_expr u)
+{
+    dea_pool *pool = symbols->pool;
+    dea_expr sum = NUM(0.0);
+    for (size_t i = 0; i < DEA_LOADS; i++) {
+        const dea_load_kind *kind = symbols->load_kinds[i];
+        sum = kind ? ADD(sum, MUL(SCALE(kind->adds.stiffness, symbols->loads[i]), u)) : sum;
+        sum = kind && kind->spring ? ADD(sum, kind->form(pool, symbols->loads[i], u)) : sum;
+    }
+    return sum;
+}
+
+/* What a load adds in one role, if anything. */
+static void add_load(dea_network *network, const dea_load_kind *kind, dea_role role, dea_expr value)
+{
+    if (dea_expr_constant(&network->pool, value) != 0.0) {
+        dea_network_add(network, role, kind->element, kind->meaning, value);
+    }
+}
+
+static void add_loads(const dea_symbols *symbols, dea_network *network)
+{
+    dea_pool *pool = symbols->pool;
+    for (size_t i = 0; i < DEA_LOADS; i++) {
+        const dea_load_kind *kind = symbols->load_kinds[i];
+        if (kind) {
+            add_load(network, kind, DEA_ROLE_BESIDE, SCALE(kind->adds.stiffness, symbols->loads[i]));
+            add_load(network, kind, DEA_ROLE_STEADY, SCALE(kind->adds.force, symbols->loads[i]));
+            add_load(network, kind, DEA_ROLE_TENSION, kind->spring ? kind->form(pool, symbols->loads[i], network->edge) : NUM(0.0));
+        }
+    }
+}
+
 dea_status dea_network_build_symbols(const dea_symbols *symbols, const dea_model *model, dea_network *network, dea_error *error)
 {
     dea_pool *pool = symbols->pool;
@@ -431,12 +468,7 @@ dea_status dea_network_build_symbols(const dea_symbols *symbols, const dea_model
     if (symbols->second) {
         add_second(symbols->second, model, network);
     }
-    if (dea_expr_constant(&network->pool, symbols->load) != 0.0) {
-        dea_network_add(network, DEA_ROLE_BESIDE, "n_load", "compliance of the load between edge and frame [m/N]", symbols->load);
-    }
-    if (dea_expr_constant(&network->pool, symbols->force) != 0.0) {
-        dea_network_add(network, DEA_ROLE_STEADY, "f_load", "force of the load onto the edge, outward [N]", symbols->force);
-    }
+    add_loads(symbols, network);
     if (network->pool.exhausted) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a network is built");
     }
@@ -453,6 +485,12 @@ void dea_constant_name(const dea_law *law, size_t index, char name[DEA_QUANTITY_
     for (char *c = name; *c; c++) {
         *c = (char)tolower((unsigned char)*c);
     }
+}
+
+const char *dea_load_parameter(const dea_load_kind *kind, char name[DEA_QUANTITY_NAME])
+{
+    snprintf(name, DEA_QUANTITY_NAME, "load_%s", kind->name);
+    return name;
 }
 
 /* Makes a number a symbol; 0 stays, so that it vanishes. */
@@ -487,8 +525,12 @@ static void lift_all(dea_quantities *quantities, dea_symbols *s, const char *who
     if (dea_expr_constant(s->pool, s->voltage) != 1.0) { /* 1 V where a text multiplies by that of the film */
         lift(quantities, s->pool, whose, "voltage", &s->voltage);
     }
-    lift(quantities, s->pool, whose, "load_stiffness", &s->load);
-    lift(quantities, s->pool, whose, "load_force", &s->force);
+    for (size_t i = 0; i < DEA_LOADS; i++) {
+        char name[DEA_QUANTITY_NAME];
+        if (s->load_kinds[i]) {
+            lift(quantities, s->pool, whose, dea_load_parameter(s->load_kinds[i], name), &s->loads[i]);
+        }
+    }
     lift_law(quantities, s->pool, s->law, whose, s->constants);
     if (s->skin) {
         lift_law(quantities, s->pool, s->skin, "skin_", s->skin_constants);

@@ -29,8 +29,8 @@ typedef struct dea_symbols {
     const dea_law *skin;                        /* of the electrodes' skin, NULL: there is none */
     dea_expr skin_constants[DEA_LAW_CONSTANTS]; /* of it */
     dea_expr skin_share;                        /* t/H [1] */
-    dea_expr load;                 /* stiffness of a spring between edge and frame [N/m], NUM(0): none */
-    dea_expr force;                /* onto the edge, outward [N], NUM(0): none */
+    const dea_load_kind *load_kinds[DEA_LOADS]; /* of the elements that act on the edge, NULL: none */
+    dea_expr loads[DEA_LOADS];                  /* its numbers */
     bool loaded;                   /* the film is not alone with its edge */
     const struct dea_symbols *second; /* of the other film on the edge, NULL: there is none */
     dea_expr voltage;              /* across the film [V] */
@@ -96,7 +96,7 @@ dea_status dea_network_build(const dea_scene *scene, const dea_model *model, con
                              dea_error *error);
 /* Numbers of a scene that have a dimension and stay symbols 1, 2, ... of its network: its expressions are then the same whatever
  * the units. Symbol 0 is that of the axis. */
-enum { DEA_QUANTITIES = 2 * (7 + 2 * DEA_LAW_CONSTANTS), DEA_QUANTITY_NAME = 24 }; /* of two films */
+enum { DEA_QUANTITIES = 2 * (5 + DEA_LOADS + 2 * DEA_LAW_CONSTANTS), DEA_QUANTITY_NAME = 24 }; /* of two films */
 typedef struct dea_quantities {
     int count;
     char names[DEA_QUANTITIES + 1][DEA_QUANTITY_NAME]; /* by symbol; of symbol 0 "" */
@@ -106,6 +106,8 @@ dea_status dea_network_build_named(const dea_scene *scene, const dea_model *mode
                                    dea_quantities *quantities, dea_network *network, dea_error *error);
 /* Name of a law's constant as a parameter: in lower case, of a list with the number of its entry. */
 void dea_constant_name(const dea_law *law, size_t index, char name[DEA_QUANTITY_NAME]);
+/* Name of the number of a load as a parameter. */
+const char *dea_load_parameter(const dea_load_kind *kind, char name[DEA_QUANTITY_NAME]);
 /* The same from symbols whose pool is that of the zeroed network. */
 dea_status dea_network_build_symbols(const dea_symbols *symbols, const dea_model *model, dea_network *network, dea_error *error);
 void dea_network_free(dea_network *network);
@@ -142,6 +144,8 @@ dea_expr dea_network_steady(dea_network *network);
 dea_expr dea_network_load(dea_network *network);
 
 /* Shared pieces of the models' networks. */
+/* What springs at the edge hold against u [N]; NUM(0): there is none. */
+dea_expr dea_symbols_springs(const dea_symbols *symbols, dea_expr u);
 /* The symbols of a scene: numbers, or expressions of symbol 0 where the axis (may be NULL) enters. */
 dea_symbols dea_symbols_of(const dea_scene *scene, const dea_axis *axis, dea_pool *pool);
 /* Cauchy stress of the film at the pre-stretch, the same in all directions of its plane [Pa]. */

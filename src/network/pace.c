@@ -111,21 +111,80 @@ dea_pace dea_pace_of_rings(const dea_membrane *membrane, const dea_membrane_rest
     return pace;
 }
 
-dea_matching dea_matching_of(dea_dynamics *dynamics, double u, double voltage, double step)
+/* Fit of a film to steps [s]; its mass alone where they are too long, or the fit makes another film of it. */
+static dea_matching match(const film *f, double step)
 {
-    const film f = film_at(dynamics, u, voltage);
-    const double complex ring = ring_of(&f);
-    const dea_matching none = {.mass = f.mass};
+    const double complex ring = ring_of(f);
+    const dea_matching none = {.mass = f->mass};
     if (cimag(ring) == 0.0 || !(cimag(ring) * step < 2.0)) {
         return none;
     }
     double complex slope;
     const double complex s = 2.0 / step * ctanh(0.5 * step * ring);
-    const double complex rest = -springs(&f, s, &slope); /* = M s^2 + R s, with real M and R */
-    const double complex over = rest / s;                /* = M s + R */
+    const double complex rest = -springs(f, s, &slope); /* = M s^2 + R s, with real M and R */
+    const double complex over = rest / s;               /* = M s + R */
     const dea_matching fit = {.mass = cimag(over) / cimag(s),
-                              .resistance = creal(over) - cimag(over) / cimag(s) * creal(s) - f.resistance,
+                              .resistance = creal(over) - cimag(over) / cimag(s) * creal(s) - f->resistance,
                               .ring = ring,
                               .root = s};
-    return fit.mass > 0.1 * f.mass && fit.mass < 10.0 * f.mass ? fit : none;
+    return fit.mass > 0.1 * f->mass && fit.mass < 10.0 * f->mass ? fit : none;
+}
+
+dea_matching dea_matching_of(dea_dynamics *dynamics, double u, double voltage, double step)
+{
+    const film f = film_at(dynamics, u, voltage);
+    return match(&f, step);
+}
+
+/* x A x of a symmetric matrix. */
+static double square_of(size_t n, const double *a, const double *x)
+{
+    double sum = 0.0;
+    for (size_t j = 0; j < n; j++) {
+        for (size_t i = 0; i < n; i++) {
+            sum += x[i] * a[j * n + i] * x[j];
+        }
+    }
+    return sum;
+}
+
+/* The slowest mode at a state, as a film of mass 1 whose displacement is that mode's share. */
+static bool slowest_at(const dea_membrane *m, const dea_membrane_look *look, double voltage, film *f)
+{
+    const size_t n = m->rings.node_count;
+    const dea_dynamics *d = &m->film;
+    double stiffness[DEA_RINGS_NODES * DEA_RINGS_NODES], viscous[DEA_RINGS_NODES * DEA_RINGS_NODES], shapes[DEA_RINGS_NODES * DEA_RINGS_NODES];
+    double frequencies[DEA_RINGS_NODES], push[DEA_RINGS_NODES], pushed = 0.0;
+    dea_membrane_stiffness(m, look, voltage, NULL, d->total_share, stiffness);
+    if (!dea_membrane_modes(m, stiffness, frequencies, shapes)) {
+        return false;
+    }
+    dea_membrane_stiffness(m, look, voltage, NULL, 0.0, stiffness);
+    dea_membrane_damping(m, look, 1.0, viscous);
+    dea_membrane_push(m, look, push);
+    for (size_t i = 0; i < n; i++) {
+        pushed += push[i] * shapes[i];
+    }
+    const double edge = shapes[m->rings.edge], own = square_of(n, viscous, shapes);
+    *f = (film){.dynamics = d,
+                .mass = 1.0,
+                .resistance = d->retardation * own + d->damping * edge * edge,
+                .stiffness = square_of(n, stiffness, shapes),
+                .viscous = own,
+                .transduction = d->series > 0.0 ? 2.0 * pushed * voltage : 0.0,
+                .capacitance = look->capacitance,
+                .conductance = d->conductance + (d->series > 0.0 ? 1.0 / d->series : 0.0)};
+    return true;
+}
+
+dea_matching dea_matching_of_rings(const dea_membrane *m, double voltage, double step)
+{
+    double u[DEA_RINGS_NODES];
+    dea_membrane_look look;
+    film f;
+    const bool loaded = dea_membrane_still(m, voltage, u), there = loaded || dea_membrane_still(m, 0.0, u);
+    if (!there || !dea_membrane_look_at(m, u, &look) || !slowest_at(m, &look, loaded ? voltage : 0.0, &f)) {
+        return (dea_matching){.mass = 1.0};
+    }
+    return match(&f, step);
 }

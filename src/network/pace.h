@@ -31,5 +31,8 @@ dea_pace dea_pace_of(dea_dynamics *dynamics, double u, double voltage);
 /* The same of the slowest mode of a membrane at rest, which decays as fast as that; as to the rest of its film. */
 dea_pace dea_pace_of_rings(const struct dea_membrane *membrane, const struct dea_membrane_rest *rest, double decay);
 dea_matching dea_matching_of(dea_dynamics *dynamics, double u, double voltage, double step);
+/* The same of the slowest mode of a membrane at its equilibrium under a voltage, by mass and resistance over the mass of each node
+ * [1], [1/s]: its other modes then turn a little too slow, as they do without. */
+dea_matching dea_matching_of_rings(const struct dea_membrane *membrane, double voltage, double step);
 
 #endif

@@ -129,8 +129,9 @@ bool dea_still_step(const dea_still *still, double share, const double *u, doubl
         add_ring(still, ring, &s, n, step, k);
     }
     const size_t edge = still->rings.edge;
-    step[edge] -= still->point->load * u[edge];
-    k[edge * n + edge] += still->point->load;
+    const dea_spring spring = dea_point_spring(still->point, u[edge]);
+    step[edge] -= spring.force;
+    k[edge * n + edge] += spring.slope;
     if (!factor(n, k)) {
         return false;
     }
@@ -151,7 +152,7 @@ static double size_of(size_t n, const double *u)
  * the edge keeps its digits. */
 static double rounding(const dea_still *still)
 {
-    return still->point->load > 0.0 ? 4.0 * DBL_EPSILON * still->point->frame_radius : 0.0;
+    return dea_point_is_loaded(still->point) ? 4.0 * DBL_EPSILON * still->point->frame_radius : 0.0;
 }
 
 /* Newton from @p u under a share of the load; false where it does not settle within @p reach or on something stable. */
@@ -259,7 +260,7 @@ static double radial_strain(const dea_still *still, const dea_ring *ring, strain
     return guess.e1;
 }
 
-/* Strains of all rings. Across r_a the radial stress goes on, but for what a load takes there, 2 pi H A [s_1] = K u, and
+/* Strains of all rings. Across r_a the radial stress goes on, but for what a load takes there, 2 pi H A [s_1] = K(u), and
  * d(R s_1)/dR = s_2 takes it to the frame; s_1 and s_2 may be changes from rest, which holds itself. */
 static void strains_all(const dea_still *still, const double *u, strains *e)
 {
@@ -276,7 +277,7 @@ static void strains_all(const dea_still *still, const double *u, strains *e)
             continue;
         }
         const bool edge = rings->rings[q - 1].disc, frame = q + 1 == rings->ring_count;
-        const double held = edge ? still->point->load * u[rings->edge] / (2.0 * DEA_PI * thickness) : 0.0;
+        const double held = edge ? dea_point_spring(still->point, u[rings->edge]).force / (2.0 * DEA_PI * thickness) : 0.0;
         stress += held * still->point->film.prestretch / dea_point_divide(still->point);
         moment += held + ring->volume / (2.0 * DEA_PI * ring->radius * thickness) * s.p2;
         if (edge || frame) {

@@ -1,15 +1,16 @@
-#define _GNU_SOURCE /* memmem */
+#define _GNU_SOURCE /* pipe2 */
 #include "output/gnuplot.h"
 
-#include "output/image.h"
+#include "support/file.h"
 #include "support/number.h"
-#include "support/scratch.h"
 #include "support/text.h"
 
 #include <ctype.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <spawn.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -18,30 +19,28 @@
 
 extern char **environ;
 
-enum { TEXT_MAX = 110, WORDS_MAX = 1000, CHARACTER_MOST = 4, WIDTH = 960 };
+enum { TEXT_MAX = 110, WORDS_MAX = 1000, CHARACTER_MOST = 4, WIDTH = 960, PICTURE_MOST = 1 << 30 };
 
 static const double screen = 1.0 / 96.0;            /* a pixel of one [inch] */
 static const double small_unit = 7.0 / 12.0 / 72.0;                                /* of a picture of a wanted size [inch] */
 static const double wide = 18.0 / 2.54;                                            /* from here on letters grow [inch] */
 
-/* What gnuplot calls a kind of picture, and how it is seen whether it is whole. */
+/* What gnuplot calls a kind of picture. */
 struct dea_picture_kind {
     const char *ending, *terminal;
     bool inches;       /* its size is in inches, else in pixels */
     double pixel[2];   /* of its letters and points [inch], without a wanted size and with one */
     double line, dash; /* what it takes for a line one pixel wide, for a dash one pixel long */
     const char *words; /* of its setting */
-    bool (*whole)(const char *bytes, size_t size); /* NULL: only drawing it again tells */
-    bool again;        /* is drawn a second time to be compared */
     bool script;       /* is the script itself, which draws a picture of that terminal */
 };
 
 static const dea_picture_kind kinds[] = {
-    {".svg", "svg", false, {1.0 / 96.0, 1.0 / 96.0}, 1.0, 1.0, "background '#ffffff'", dea_image_svg_whole, true, false},
-    {".png", "pngcairo", false, {1.0 / 192.0, 1.0 / 300.0}, 1.0, 1.0, "", dea_image_png_whole, false, false},
-    {".pdf", "pdfcairo", true, {1.0 / 72.0, 1.0 / 72.0}, 2.0, 3.5, "", dea_image_pdf_whole, true, false},
-    {".eps", "epscairo", true, {1.0 / 72.0, 1.0 / 72.0}, 2.0, 3.5, "", NULL, true, false},
-    {".gp", "svg", false, {1.0 / 96.0, 1.0 / 96.0}, 1.0, 1.0, "background '#ffffff'", NULL, false, true},
+    {".svg", "svg", false, {1.0 / 96.0, 1.0 / 96.0}, 1.0, 1.0, "background '#ffffff'", false},
+    {".png", "pngcairo", false, {1.0 / 192.0, 1.0 / 300.0}, 1.0, 1.0, "", false},
+    {".pdf", "pdfcairo", true, {1.0 / 72.0, 1.0 / 72.0}, 2.0, 3.5, "", false},
+    {".eps", "epscairo", true, {1.0 / 72.0, 1.0 / 72.0}, 2.0, 3.5, "", false},
+    {".gp", "svg", false, {1.0 / 96.0, 1.0 / 96.0}, 1.0, 1.0, "background '#ffffff'", true},
 };
 
 static dea_status gnuplot_missing(dea_error *error)
@@ -128,45 +127,34 @@ static void write_head(const dea_gnuplot *picture)
     char drawn[TEXT_MAX + 1];
     name = name ? name + 1 : picture->file.target;
     snprintf(drawn, sizeof drawn, "%.*s.svg", (int)(strlen(name) - strlen(picture->kind->ending)), name);
-    fputs("# Data and drawing of a picture by deaspice: gnuplot FILE draws it. For other formats change the terminal (pngcairo,\n"
-          "# pdfcairo, epscairo) and the name of the output.\n"
-          "set output ",
-          picture->script);
-    dea_gnuplot_text(picture->script, drawn);
-    fputc('\n', picture->script);
+    dea_gnuplot_put(picture->script,
+                    "# Data and drawing of a picture by deaspice: gnuplot FILE draws it. For other formats change the terminal (pngcairo,\n"
+                    "# pdfcairo, epscairo) and the name of the output.\n"
+                    "set output %q\n",
+                    drawn);
 }
 
-static void write_side(FILE *script, double units, const dea_gnuplot *picture, const char *end)
+/* A side of the canvas as the terminal takes it. */
+static double side_of(const dea_gnuplot *picture, double units)
 {
     const double inches = units * picture->canvas.unit;
     const double whole = round(inches / picture->kind->pixel[picture->canvas.height > 0]);
-    dea_gnuplot_number(script, picture->kind->inches ? (whole + 0.01) / 72.0 : whole); /* of which it cuts the points */
-    fprintf(script, "%s%s", picture->kind->inches ? "in" : "", end);
-}
-
-static void write_scale(FILE *script, const char *before, double scale)
-{
-    fputs(before, script);
-    dea_gnuplot_number(script, scale);
+    return picture->kind->inches ? (whole + 0.01) / 72.0 : whole; /* of which it cuts the points */
 }
 
 void dea_gnuplot_size(dea_gnuplot *picture, int height)
 {
-    FILE *script = picture->script;
     const dea_picture_kind *kind = picture->kind;
     const double scale = picture->canvas.unit / kind->pixel[picture->canvas.height > 0];
+    const char *unit = kind->inches ? "in" : "";
     if (kind->script) {
         write_head(picture);
     }
-    fprintf(script, "set encoding utf8\nset terminal %s size ", kind->terminal);
-    write_side(script, picture->canvas.width, picture, ",");
-    write_side(script, height, picture, " font 'DejaVu Sans,12'");
-    write_scale(script, " fontscale ", scale);
-    write_scale(script, " linewidth ", scale * kind->line);
-    write_scale(script, " dashlength ", scale * kind->dash);
-    fprintf(script, " rounded noenhanced %s\n", kind->words);
-    write_scale(script, "ps = ", scale);
-    fputc('\n', script);
+    dea_gnuplot_put(picture->script,
+                    "set encoding utf8\nset terminal %s size %g%s,%g%s font 'DejaVu Sans,12' fontscale %g linewidth %g dashlength %g "
+                    "rounded noenhanced %s\nps = %g\n",
+                    kind->terminal, side_of(picture, picture->canvas.width), unit, side_of(picture, height), unit, scale,
+                    scale * kind->line, scale * kind->dash, kind->words, scale);
 }
 
 /* Length of the UTF-8 character at @p text, 0 where it is none that may be shown: controls, and what XML has not. */
@@ -186,7 +174,7 @@ static bool is_plain(unsigned char letter)
 
 /* What is not plain ASCII or a whole character beyond it is written as an octal escape, and so is a digit behind one: gnuplot
  * reads an octal number as long as digits follow. */
-void dea_gnuplot_text(FILE *script, const char *text)
+static void write_text(FILE *script, const char *text)
 {
     const unsigned char *next = (const unsigned char *)text;
     int brackets = 0;
@@ -214,55 +202,70 @@ void dea_gnuplot_text(FILE *script, const char *text)
     fputc('"', script);
 }
 
-void dea_gnuplot_number(FILE *script, double value)
+void dea_gnuplot_put(FILE *script, const char *format, ...)
 {
-    char text[DEA_NUMBER_LENGTH];
-    fputs(isfinite(value) ? dea_number_text(text, value, 9) : "NaN", script);
+    va_list values;
+    va_start(values, format);
+    for (; *format; format++) {
+        if (*format != '%') {
+            fputc(*format, script);
+        } else if (*++format == 'g') {
+            char text[DEA_NUMBER_LENGTH];
+            const double value = va_arg(values, double);
+            fputs(isfinite(value) ? dea_number_text(text, value, 9) : "NaN", script);
+        } else if (*format == 'q') {
+            write_text(script, va_arg(values, const char *));
+        } else if (*format == 's') {
+            fputs(va_arg(values, const char *), script);
+        } else if (*format == 'd') {
+            fprintf(script, "%d", va_arg(values, int));
+        } else if (*format == 'z') {
+            fprintf(script, "%zu", va_arg(values, size_t));
+        } else {
+            fputc(*format, script); /* %% */
+        }
+    }
+    va_end(values);
 }
 
-/* Runs gnuplot from one file into two others; its wait status. */
-static dea_status gnuplot_spawn(FILE *script, FILE *image, FILE *words, int *ended, dea_error *error)
+/* Starts gnuplot, from a file into a pipe and its words into another file. */
+static dea_status gnuplot_spawn(FILE *script, int picture, FILE *words, pid_t *child, dea_error *error)
 {
     char *const arguments[] = {"gnuplot", "-d", NULL};
     posix_spawn_file_actions_t actions;
     if (posix_spawn_file_actions_init(&actions) != 0) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
-    pid_t child;
     int failed = posix_spawn_file_actions_adddup2(&actions, fileno(script), STDIN_FILENO);
-    failed = failed ? failed : posix_spawn_file_actions_adddup2(&actions, fileno(image), STDOUT_FILENO);
+    failed = failed ? failed : posix_spawn_file_actions_adddup2(&actions, picture, STDOUT_FILENO);
     failed = failed ? failed : posix_spawn_file_actions_adddup2(&actions, fileno(words), STDERR_FILENO);
-    failed = failed ? failed : posix_spawnp(&child, arguments[0], &actions, NULL, arguments, environ);
+    failed = failed ? failed : posix_spawnp(child, arguments[0], &actions, NULL, arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
     if (failed == ENOENT) {
         return gnuplot_missing(error);
     }
-    if (failed) {
-        return dea_fail(error, DEA_ERROR_ENGINE, "cannot start gnuplot: %s", strerror(failed));
+    return failed ? dea_fail(error, DEA_ERROR_ENGINE, "cannot start gnuplot: %s", strerror(failed)) : DEA_OK;
+}
+
+/* Takes in what gnuplot draws, malloc'd, and waits for its end. It looks at none of its writes and goes on behind one that failed;
+ * those into a pipe cannot fail while its other end is read. */
+static dea_status gnuplot_run(FILE *script, FILE *words, char **bytes, size_t *size, int *ended, dea_error *error)
+{
+    int ends[2];
+    pid_t child;
+    if (pipe2(ends, O_CLOEXEC) != 0) {
+        return dea_fail(error, DEA_ERROR_IO, "cannot make a pipe for gnuplot: %s", strerror(errno));
     }
-    while (waitpid(child, ended, 0) < 0) {
+    const dea_status status = gnuplot_spawn(script, ends[1], words, &child, error);
+    close(ends[1]);
+    const int failed = status == DEA_OK ? dea_file_drain(ends[0], PICTURE_MOST, bytes, size) : 0;
+    close(ends[0]); /* ends a gnuplot that draws too much */
+    while (status == DEA_OK && waitpid(child, ended, 0) < 0) {
         if (errno != EINTR) {
             return dea_fail(error, DEA_ERROR_ENGINE, "cannot wait for gnuplot: %s", strerror(errno));
         }
     }
-    return DEA_OK;
-}
-
-/* All of the image, malloc'd, a NUL behind it; NULL with errno. */
-static char *image_read(FILE *image, size_t *size)
-{
-    const long length = fseek(image, 0, SEEK_END) == 0 ? ftell(image) : -1;
-    char *bytes = length >= 0 ? malloc((size_t)length + 1) : NULL;
-    rewind(image);
-    *size = bytes ? fread(bytes, 1, (size_t)length, image) : 0;
-    if (bytes) {
-        bytes[*size] = '\0';
-    }
-    if (bytes && *size != (size_t)length) {
-        free(bytes);
-        bytes = NULL;
-    }
-    return bytes;
+    return failed ? dea_fail(error, DEA_ERROR_IO, "cannot read the picture: %s", strerror(failed)) : status;
 }
 
 /* What gnuplot said, as an error. */
@@ -287,95 +290,33 @@ static dea_status gnuplot_complain(FILE *words, int ended, dea_error *error)
 /* Draws the script into malloc'd bytes. */
 static dea_status script_draw(FILE *script, char **bytes, size_t *size, dea_error *error)
 {
-    FILE *image = dea_scratch_open();
     FILE *words = dea_scratch_open();
     int ended = 0;
     dea_status status = DEA_OK;
-    if (!image || !words || fflush(script) != 0 || ferror(script)) {
-        status = dea_fail(error, DEA_ERROR_IO, "cannot write a temporary file for gnuplot: %s", strerror(errno));
-    } else {
-        rewind(script);
-        status = gnuplot_spawn(script, image, words, &ended, error);
+    if (!words) {
+        return dea_fail(error, DEA_ERROR_IO, "cannot write a temporary file for gnuplot: %s", strerror(errno));
     }
+    status = gnuplot_run(script, words, bytes, size, &ended, error);
     if (status == DEA_OK && (!WIFEXITED(ended) || WEXITSTATUS(ended) != 0)) {
         status = gnuplot_complain(words, ended, error);
     }
-    if (status == DEA_OK && !(*bytes = image_read(image, size))) {
-        status = dea_fail(error, DEA_ERROR_IO, "cannot read the picture back: %s", strerror(errno));
-    }
-    if (image) {
-        fclose(image);
-    }
-    if (words) {
-        fclose(words);
-    }
+    fclose(words);
     return status;
 }
 
-/* The same script behind a word to standard error, which makes one write more of it. */
-static FILE *script_again(FILE *script)
-{
-    FILE *again = dea_scratch_open();
-    rewind(script);
-    if (again) {
-        fputs("print 'again'\n", again);
-        for (int letter; (letter = getc(script)) != EOF;) {
-            putc(letter, again);
-        }
-    }
-    return again;
-}
-
-/* Are two drawings the same but for the line that tells when they were made? */
-static bool is_same(const char *bytes, size_t size, const char *others, size_t other_size)
-{
-    static const char dated[] = "CreationDate";
-    const char *first = size == other_size ? memmem(bytes, size, dated, sizeof dated - 1) : bytes;
-    const size_t before = first ? (size_t)(first - bytes) : size;
-    const char *line = first ? memchr(first, '\n', size - before) : NULL;
-    const size_t after = line ? (size_t)(line - bytes) : size;
-    return size == other_size && memcmp(bytes, others, before) == 0 && memcmp(bytes + after, others + after, size - after) == 0;
-}
-
-/* Is the same drawn again? gnuplot looks at none of its writes and goes on behind one that failed. A line that a picture lacks can
- * be anything, and seldom breaks its form; to be lost twice it would have to be another line, since the second time has one
- * write more before it. */
-static dea_status picture_compare(FILE *script, const char *bytes, size_t size, bool *same, dea_error *error)
-{
-    char *others = NULL;
-    size_t other_size = 0;
-    FILE *again = script_again(script);
-    if (!again) {
-        return dea_fail(error, DEA_ERROR_IO, "cannot write a temporary file for gnuplot: %s", strerror(errno));
-    }
-    const dea_status status = script_draw(again, &others, &other_size, error);
-    *same = status == DEA_OK && is_same(bytes, size, others, other_size);
-    free(others);
-    fclose(again);
-    return status;
-}
-
-/* The picture, malloc'd: drawn and found whole, or the script itself. */
+/* The picture, malloc'd: drawn, or the script itself. */
 static dea_status gnuplot_make(dea_gnuplot *picture, char **bytes, size_t *size, dea_error *error)
 {
-    const dea_picture_kind *kind = picture->kind;
-    bool whole = true;
-    if (kind->script) {
-        const bool written = fflush(picture->script) == 0 && !ferror(picture->script);
-        *bytes = written ? image_read(picture->script, size) : NULL;
-        return *bytes ? DEA_OK : dea_fail(error, DEA_ERROR_IO, "cannot write a temporary file: %s", strerror(errno));
+    FILE *script = picture->script;
+    fputs("unset multiplot\nunset output\n", script);
+    if (fflush(script) != 0 || ferror(script) || lseek(fileno(script), 0, SEEK_SET) != 0) {
+        return dea_fail(error, DEA_ERROR_IO, "cannot write a temporary file: %s", strerror(errno));
     }
-    dea_status status = script_draw(picture->script, bytes, size, error);
-    if (status == DEA_OK && kind->whole) {
-        whole = kind->whole(*bytes, *size);
+    if (!picture->kind->script) {
+        return script_draw(script, bytes, size, error);
     }
-    if (status == DEA_OK && whole && kind->again) {
-        status = picture_compare(picture->script, *bytes, *size, &whole, error);
-    }
-    if (status == DEA_OK && !whole) {
-        status = dea_fail(error, DEA_ERROR_ENGINE, "gnuplot could not write the whole picture");
-    }
-    return status;
+    const int failed = dea_file_drain(fileno(script), PICTURE_MOST, bytes, size);
+    return failed ? dea_fail(error, DEA_ERROR_IO, "cannot read a temporary file: %s", strerror(failed)) : DEA_OK;
 }
 
 static dea_status gnuplot_draw(dea_gnuplot *picture, dea_error *error)

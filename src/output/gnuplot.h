@@ -1,5 +1,5 @@
 /* One picture through gnuplot: the script goes into a private file, gnuplot draws into another, and the picture is then put in
- * place; or the script itself is. Text of users enters a script only through dea_gnuplot_text(), which gives gnuplot nothing to
+ * place; or the script itself is. Text of users enters a script only as %q of dea_gnuplot_put(), which gives gnuplot nothing to
  * interpret. */
 #ifndef DEASPICE_OUTPUT_GNUPLOT_H
 #define DEASPICE_OUTPUT_GNUPLOT_H
@@ -39,11 +39,10 @@ dea_status dea_gnuplot_begin(dea_gnuplot *picture, const char *path, const dea_p
 /* First lines of every script: the canvas, of its width and a height that is now known [units]; the script then has `ps`, the size
  * of points at this scale. */
 void dea_gnuplot_size(dea_gnuplot *picture, int height);
-/* Writes @p text as a quoted string of the script; control characters are dropped, long text is cut. */
-void dea_gnuplot_text(FILE *script, const char *text);
-/* Writes a number, or NaN. */
-void dea_gnuplot_number(FILE *script, double value);
-/* Draws, and puts the picture in place when @p keep is true; a zeroed picture is fine. */
+/* Writes a piece of a script: %g stands for a number, or NaN, whatever the locale; %q for a text as a quoted string, in which control
+ * characters are dropped and long text is cut; %s for a text as it is, %d for an int, %z for a size_t, %% for itself. */
+void dea_gnuplot_put(FILE *script, const char *format, ...);
+/* Ends the script, draws, and puts the picture in place when @p keep is true; a zeroed picture is fine. */
 dea_status dea_gnuplot_finish(dea_gnuplot *picture, bool keep, dea_error *error);
 
 #endif

@@ -1,4 +1,4 @@
-#include "output/identity.h"
+#include "output/journal.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -107,6 +107,9 @@ static void put_lists(FILE *out, const dea_scene *scene)
         put_numbers(out, "antagonist.material.prony", &other->material.prony[0].g, 2 * other->material.prony_count);
         fprintf(out, "antagonist.material.moduli=%s\nantagonist.material.permittivity.follows=%d\n",
                 other->material.instantaneous ? "instantaneous" : "long-term", other->material.permittivity_follows ? 1 : 0);
+    }
+    for (size_t i = dea_load_count(); i < DEA_LOADS && scene->loads[i].kind; i++) { /* those without a key */
+        put_number(out, scene->loads[i].kind->name, scene->loads[i].number);
     }
     put_numbers(out, "material.prony", &material->prony[0].g, 2 * material->prony_count);
     put_numbers(out, "material.shift", material->shift.table[0], 2 * material->shift.count);

@@ -12,8 +12,8 @@
 #include <unistd.h>
 
 #include "output/atomic.h"
-#include "output/identity.h"
 #include "output/stream.h"
+#include "support/clock.h"
 
 enum { IDENTITY_MOST = 1 << 20, LOCK_TRIES = 50, LOCK_WAIT_MS = 20, ROW_MOST = DEA_LAYOUT_COLUMNS * sizeof(double) + 1 };
 
@@ -68,13 +68,6 @@ struct dea_journal {
     double waiting;      /* since when a record has waited for the disk [s], 0: none does */
     int broken;          /* errno of the disk that did not take one, 0: fine */
 };
-
-static double seconds_now(void)
-{
-    struct timespec now = {0};
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static dea_status fail_io(dea_error *error, const char *verb, const char *path)
 {
@@ -578,6 +571,17 @@ static dea_status journal_start(dea_journal *journal, dea_error *error)
     return status;
 }
 
+/* Hands over a journal whose opening came to @p status, or ends it. */
+static dea_status journal_hand(dea_journal *opened, dea_status status, dea_journal **journal)
+{
+    if (status != DEA_OK) {
+        dea_journal_close(opened, DEA_JOURNAL_STAYS, NULL, NULL);
+        return status;
+    }
+    *journal = opened;
+    return DEA_OK;
+}
+
 dea_status dea_journal_open(const dea_journal_study *study, dea_shard shard, const char *path, dea_journal **journal,
                             dea_error *error)
 {
@@ -598,13 +602,8 @@ dea_status dea_journal_open(const dea_journal_study *study, dea_shard shard, con
     if (status == DEA_OK) {
         status = records_find(opened, false, error);
     }
-    if (status != DEA_OK) {
-        dea_journal_close(opened, DEA_JOURNAL_STAYS, NULL, NULL);
-        return status;
-    }
-    opened->open = true;
-    *journal = opened;
-    return DEA_OK;
+    opened->open = status == DEA_OK;
+    return journal_hand(opened, status, journal);
 }
 
 dea_status dea_journal_create(const dea_journal_study *study, dea_shard shard, const char *target, dea_journal **journal,
@@ -627,12 +626,7 @@ dea_status dea_journal_create(const dea_journal_study *study, dea_shard shard, c
     if (status == DEA_OK) {
         status = head_write(opened, error);
     }
-    if (status != DEA_OK) {
-        dea_journal_close(opened, DEA_JOURNAL_STAYS, NULL, NULL);
-        return status;
-    }
-    *journal = opened;
-    return DEA_OK;
+    return journal_hand(opened, status, journal);
 }
 
 dea_status dea_journal_read(const dea_journal_study *study, const char *path, dea_journal **journal, dea_error *error)
@@ -661,12 +655,7 @@ dea_status dea_journal_read(const dea_journal_study *study, const char *path, de
     if (status == DEA_OK) {
         status = records_find(opened, true, error);
     }
-    if (status != DEA_OK) {
-        dea_journal_close(opened, DEA_JOURNAL_STAYS, NULL, NULL);
-        return status;
-    }
-    *journal = opened;
-    return DEA_OK;
+    return journal_hand(opened, status, journal);
 }
 
 dea_shard dea_journal_shard(const dea_journal *journal)
@@ -733,7 +722,7 @@ static void journal_sync(dea_journal *journal)
 
 void dea_journal_settle(dea_journal *journal)
 {
-    if (journal->waiting > 0.0 && seconds_now() - journal->waiting >= sync_interval) {
+    if (journal->waiting > 0.0 && dea_clock() - journal->waiting >= sync_interval) {
         journal_sync(journal);
     }
 }
@@ -766,7 +755,7 @@ dea_status dea_journal_append(dea_journal *journal, size_t first, const void *po
     }
     record_keep(journal, &head, journal->end);
     journal->end += record_size(journal, count);
-    journal->waiting = journal->waiting > 0.0 ? journal->waiting : seconds_now();
+    journal->waiting = journal->waiting > 0.0 ? journal->waiting : dea_clock();
     dea_journal_settle(journal);
     errno = journal->broken;
     return journal->broken ? fail_io(error, "write", journal->path) : DEA_OK;

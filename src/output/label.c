@@ -4,6 +4,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -152,4 +153,35 @@ void dea_label_value(const dea_axis *axis, const dea_scale *scale, size_t index,
     axis_names(axis, words, &symbol);
     dea_number_text(number, axis->values[index] * scale->factor, 4);
     snprintf(label, DEA_LABEL_LENGTH, "%s = %s%s%s", *symbol ? symbol : words, number, *scale->unit ? " " : "", scale->unit);
+}
+
+dea_scale dea_scale_column(const dea_column *column, double largest)
+{
+    const bool strain = strstr(column->name, "strain") != NULL;
+    return strain ? (dea_scale){.factor = 100.0, .unit = "%"} : dea_scale_choose(largest, column->unit);
+}
+
+void dea_label_column(const dea_column *column, const dea_scale *scale, bool absolute, char label[DEA_LABEL_LENGTH])
+{
+    static const struct {
+        size_t offset;
+        const char *words, *symbol;
+    } known[] = {
+        {offsetof(dea_row, strain), "Strain", "s"},
+        {offsetof(dea_row, displacement), "Displacement", "u"},
+        {offsetof(dea_row, force), "Force", "F"},
+        {offsetof(dea_row, field), "Field", "E"},
+        {offsetof(dea_row, capacitance), "Capacitance", "C"},
+        {offsetof(dea_row, charge), "Charge", "Q"},
+        {offsetof(dea_row, area_strain), "Area strain", "α"},
+        {offsetof(dea_row, focal_length), "Focal length", "f"},
+        {offsetof(dea_row, energy), "Energy", "W"},
+        {offsetof(dea_row, second_field), "Antagonist field", "E"},
+    };
+    size_t i = 0;
+    while (i + 1 < sizeof known / sizeof *known && known[i].offset != column->offset) {
+        i++;
+    }
+    const char *bar = absolute ? "|" : "";
+    snprintf(label, DEA_LABEL_LENGTH, "%s %s%s%s [%s]", known[i].words, bar, known[i].symbol, bar, scale->unit);
 }

@@ -2,6 +2,7 @@
 #ifndef DEASPICE_OUTPUT_LABEL_H
 #define DEASPICE_OUTPUT_LABEL_H
 
+#include "deaspice/result.h"
 #include "deaspice/scene.h"
 
 enum { DEA_LABEL_LENGTH = 160 };
@@ -20,5 +21,9 @@ dea_scale dea_scale_axis(const dea_axis *axis);
 void dea_label_axis(const dea_axis *axis, const dea_scale *scale, char label[DEA_LABEL_LENGTH]);
 /* One value of an axis, as a legend has it: "U = 4.5 kV". */
 void dea_label_value(const dea_axis *axis, const dea_scale *scale, size_t index, char label[DEA_LABEL_LENGTH]);
+/* Scale of a column of a sweep, strains in percent. */
+dea_scale dea_scale_column(const dea_column *column, double largest);
+/* Label of a column of a sweep: "Capacitance C [pF]", @p absolute without its sign: "Strain |s| [%]". */
+void dea_label_column(const dea_column *column, const dea_scale *scale, bool absolute, char label[DEA_LABEL_LENGTH]);
 
 #endif

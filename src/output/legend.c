@@ -2,6 +2,7 @@
 
 #include "output/gnuplot.h"
 #include "output/panel.h"
+#include "support/text.h"
 
 static const double sample = 34.0;   /* length of a line */
 static const double apart = 8.0;     /* from the line to its text */
@@ -19,11 +20,7 @@ dea_legend_entry *dea_legend_add(dea_legend *legend)
 
 static double entry_room(const dea_legend_entry *entry)
 {
-    size_t letters = 0;
-    for (const char *byte = entry->label; *byte; byte++) {
-        letters += ((unsigned char)*byte & 0xc0) != 0x80;
-    }
-    return sample + apart + character * (double)letters + gap;
+    return sample + apart + character * (double)dea_text_letters(entry->label) + gap;
 }
 
 static double room_of(const dea_legend *legend, size_t from, size_t to)
@@ -69,33 +66,20 @@ int dea_legend_lay(dea_legend *legend, const size_t *kinds, size_t kind_count, i
     return (int)-y + (y < 0.0 ? 8 : 0);
 }
 
-static void write_pair(FILE *script, double x, double y, const char *end)
-{
-    dea_gnuplot_number(script, x);
-    fputc(' ', script);
-    dea_gnuplot_number(script, y);
-    fputs(end, script);
-}
-
 /* Data of one entry: the middle of its sample, then its ends. */
 static void write_sample(FILE *script, const dea_legend_entry *entry, size_t number)
 {
-    fprintf(script, "$point%zu << END\n", number);
-    write_pair(script, entry->x + sample / 2.0, entry->y, "\nEND\n");
-    fprintf(script, "$line%zu << END\n", number);
-    write_pair(script, entry->x, entry->y, "\n");
-    write_pair(script, entry->x + sample, entry->y, "\nEND\n");
-    fprintf(script, "set label %zu ", number + 1);
-    dea_gnuplot_text(script, entry->label);
-    fputs(" at ", script);
-    dea_gnuplot_number(script, entry->x + sample + apart);
-    fputs(", ", script);
-    dea_gnuplot_number(script, entry->y);
-    fputs(" left textcolor '#202020'\n", script);
+    dea_gnuplot_put(script, "$point%z << END\n%g %g\nEND\n", number, entry->x + sample / 2.0, entry->y);
+    dea_gnuplot_put(script, "$line%z << END\n%g %g\n%g %g\nEND\n", number, entry->x, entry->y, entry->x + sample, entry->y);
+    dea_gnuplot_put(script, "set label %z %q at %g, %g left textcolor '#202020'\n", number + 1, entry->label,
+                    entry->x + sample + apart, entry->y);
 }
 
 void dea_legend_draw(const dea_legend *legend, FILE *script, int width, int height)
 {
+    if (legend->count == 0) {
+        return;
+    }
     fprintf(
         script,
         "unset label\nunset colorbox\nunset title\nunset xlabel\nunset ylabel\nunset border\nunset tics\nunset grid\nunset logscale\nunset key\n"

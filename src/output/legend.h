@@ -25,7 +25,7 @@ dea_legend_entry *dea_legend_add(dea_legend *legend);
 /* Puts the entries into centred rows at the foot of a canvas of that width: in one, or each kind on its own, in several where it
  * must; entries kinds[i] to kinds[i + 1] are of kind i. Returns the height of the rows. */
 int dea_legend_lay(dea_legend *legend, const size_t *kinds, size_t kind_count, int width);
-/* Draws the entries over a canvas of that size, as the last plot of a multiplot. */
+/* Draws the entries, if there are any, over a canvas of that size, as the last plot of a multiplot. */
 void dea_legend_draw(const dea_legend *legend, FILE *script, int width, int height);
 
 #endif

@@ -10,6 +10,7 @@
 #include "deaspice/model.h"
 #include "drive/wave.h"
 #include "scene/keys.h"
+#include "scene/line.h"
 #include "study/study.h"
 
 #include <dlfcn.h>
@@ -24,7 +25,7 @@
 #define DEA_VERSION "unknown"
 #endif
 
-enum { SLAB_VALUES = 4096, HELD_BYTES = 1 << 25, TEXT_LENGTH = 512, FIGURES = 16, AVERAGES = 2 };
+enum { SLAB_VALUES = 4096, HELD_BYTES = 1 << 25, TEXT_LENGTH = 512, FIGURES = 16, AVERAGES = 2, WINDOW_FIGURES = 3 + 2 * DEA_HARMONICS };
 
 /* Largest number of doubles in one variable of the 64-bit offset format: 2^32 - 4 bytes. */
 static const uint64_t offset_values = UINT64_C(4294967292) / sizeof(double);
@@ -74,7 +75,7 @@ typedef struct grid {
     int *axes;                       /* variable of each axis */
     int columns[DEA_LAYOUT_COLUMNS]; /* variables of the rows; that of the first may be a coordinate */
     int state, model;
-    int figures[FIGURES], averages[AVERAGES], window[2];
+    int figures[FIGURES], averages[AVERAGES], window[2], window_figures[WINDOW_FIGURES];
     int radius, spread[DEA_SPREAD_COLUMNS]; /* what rows tell over the radius */
     int *spread_dimensions;                 /* of those: of the rows, the radius, the points */
     int failed; /* first status of the library that is not 0 */
@@ -220,11 +221,11 @@ static void put_scalars(grid *file)
     }
 }
 
-/* The constants of a law that is a list, entry after entry, under one name each. */
-static void put_listed_law(grid *file, const char *of, const dea_law *law, const double *constants, size_t count)
+/* The constants of a law, entry after entry, under one name each. */
+static void put_law(grid *file, const char *of, const dea_law *law, const double *constants, size_t count)
 {
-    const size_t stride = law ? law->constant_count : 0;
-    for (size_t k = 0; k < stride && law->entries > 1; k++) {
+    const size_t stride = law->constant_count;
+    for (size_t k = 0; k < stride; k++) {
         char name[DEA_NAME_LENGTH];
         double values[DEA_LAW_CONSTANTS];
         for (size_t i = 0; i < count; i++) {
@@ -232,6 +233,30 @@ static void put_listed_law(grid *file, const char *of, const dea_law *law, const
         }
         snprintf(name, sizeof name, "%s%s_%s%s", of, law->name, law->constants[k].name, law->constants[k].modulus ? "_Pa" : "");
         grid_keep(file, file->nc.nc_put_att_double(file->file, NC_GLOBAL, name, NC_DOUBLE, count, values));
+    }
+}
+
+/* Those of a law that is a list: others are scalars of the scene. */
+static void put_listed_law(grid *file, const char *of, const dea_law *law, const double *constants, size_t count)
+{
+    if (law && law->entries > 1) {
+        put_law(file, of, law, constants, count);
+    }
+}
+
+/* A second film: what it is made of, and what it does not have from the first. */
+static void put_antagonist(grid *file)
+{
+    const dea_antagonist *film = &file->scene->antagonist;
+    if (!film->there) {
+        return;
+    }
+    put_text(file, NC_GLOBAL, "antagonist_actuator", film->kind == DEA_DOT ? "dot" : "lens");
+    if (film->own_material) {
+        put_text(file, NC_GLOBAL, "antagonist_material", film->material.name);
+        put_text(file, NC_GLOBAL, "antagonist_material_source", film->material.source);
+        put_law(file, "antagonist_", film->material.law, film->material.constants, film->material.entry_count);
+        put_number(file, NC_GLOBAL, "antagonist_permittivity", film->material.permittivity);
     }
 }
 
@@ -288,6 +313,7 @@ static void put_provenance(grid *file, const char *engine)
     put_scalars(file);
     put_listed_law(file, "", scene->material.law, scene->material.constants, scene->material.entry_count);
     put_listed_law(file, "electrode_", scene->electrode.law, scene->electrode.constants, scene->electrode.entry_count);
+    put_antagonist(file);
     put_prony(file);
     put_shift(file);
     if (file->study->timed) {
@@ -414,12 +440,14 @@ static void define_spread(grid *file)
     file->dimensions = saved;
 }
 
-/* Averages of a transient over a dimension of windows. */
-static void define_averages(grid *file)
+/* Averages and further figures of a transient over a dimension of windows. */
+static void define_windows(grid *file)
 {
     if (file->scene->transient.average_count == 0) {
         return;
     }
+    size_t told;
+    const dea_column *columns = dea_window_columns(file->scene, &told);
     static const char *const ends[] = {"window_from_s", "window_to_s"}, *const words[] = {"begin of the window",
                                                                                           "end of the window"};
     int *window = &file->dimensions[file->lead + file->point_rank];
@@ -427,6 +455,10 @@ static void define_averages(grid *file)
     for (size_t i = 0; i < AVERAGES; i++) {
         file->averages[i] = define_numbers(file, averages[i].name, averages[i].long_name, averages[i].unit, file->lead,
                                            file->point_rank + 1);
+    }
+    for (size_t i = 0; i < told; i++) {
+        file->window_figures[i] =
+            define_numbers(file, columns[i].name, columns[i].long_name, columns[i].unit, file->lead, file->point_rank + 1);
     }
     for (size_t i = 0; i < 2; i++) {
         grid_keep(file, file->nc.nc_def_var(file->file, ends[i], NC_DOUBLE, 1, window, &file->window[i]));
@@ -513,7 +545,7 @@ static void grid_define(grid *file, const char *path, const char *engine)
         define_spread(file);
     }
     if (file->study->timed) {
-        define_averages(file);
+        define_windows(file);
     }
     grid_keep(file, file->nc.nc_enddef(file->file));
     put_coordinates(file);
@@ -601,26 +633,51 @@ static void slab_put(grid *file, const char *row, size_t count, size_t rows)
     grid_keep(file, file->nc.nc_put_vara_schar(file->file, file->state, file->start, file->edge, file->states));
 }
 
-/* Figures of @p count points, which stand at @p values, a point's size apart. */
-static void put_figures(grid *file, const int *variables, const dea_column *figures, size_t kinds, const char *values, size_t count)
+/* Figures of @p count points, which stand at @p values, @p apart bytes from one to the next. */
+static void put_figures(grid *file, const int *variables, const dea_column *figures, size_t kinds, const void *values, size_t apart,
+                        size_t count)
 {
     for (size_t i = 0; i < kinds; i++) {
         for (size_t j = 0; j < count; j++) {
-            memcpy(&file->values[j], values + j * file->layout.point_size + figures[i].offset, sizeof *file->values);
+            memcpy(&file->values[j], (const char *)values + j * apart + figures[i].offset, sizeof *file->values);
         }
         grid_keep(file, file->nc.nc_put_vara_double(file->file, variables[i], &file->start[file->lead], &file->edge[file->lead],
                                                     file->values));
     }
 }
 
-static void put_averages(grid *file, const char *summary, size_t count)
+/* What a window of @p count points holds, the first of them number @p first. */
+static void put_window(grid *file, size_t window, size_t first, const char *point, size_t count)
+{
+    const dea_layout *layout = &file->layout;
+    size_t told;
+    const dea_column *columns = dea_window_columns(file->scene, &told);
+    dea_window_figures *figures = calloc(count, sizeof *figures);
+    if (!figures) {
+        grid_keep(file, NC_ENOMEM);
+        return;
+    }
+    for (size_t j = 0; j < count; j++) {
+        dea_scene placed = *file->scene;
+        dea_axes_place(&placed, first + j);
+        const char *samples = point + j * layout->point_size;
+        dea_summary summary;
+        memcpy(&summary, samples + layout->rows * layout->row_size, sizeof summary);
+        figures[j] = dea_measure_window(&placed, (const dea_sample *)(const void *)samples, layout->rows, &summary, window);
+    }
+    put_figures(file, file->window_figures, columns, told, figures, sizeof *figures, count);
+    free(figures);
+}
+
+static void put_windows_of(grid *file, size_t first, const char *point, size_t count)
 {
     const size_t window = file->lead + file->point_rank;
+    const char *means = point + file->layout.rows * file->layout.row_size + offsetof(dea_summary, averages);
     file->edge[window] = 1;
     for (size_t i = 0; i < file->scene->transient.average_count; i++) {
         file->start[window] = i;
-        put_figures(file, file->averages, averages, AVERAGES, summary + offsetof(dea_summary, averages) + i * sizeof(dea_average),
-                    count);
+        put_figures(file, file->averages, averages, AVERAGES, means + i * sizeof(dea_average), file->layout.point_size, count);
+        put_window(file, i, first, point, count);
     }
 }
 
@@ -659,8 +716,8 @@ static void put_spread(grid *file, const char *point, size_t count)
     free(start);
 }
 
-/* Puts a slab of points: rows as many at a time as there is room for. */
-static void put_slab(grid *file, const char *point, size_t count)
+/* Puts a slab of points, the first of them number @p first: rows as many at a time as there is room for. */
+static void put_slab(grid *file, size_t first, const char *point, size_t count)
 {
     const size_t rows = file->layout.rows, most = SLAB_VALUES / count;
     for (size_t row = 0; row < rows && !file->failed; row += most) {
@@ -672,12 +729,12 @@ static void put_slab(grid *file, const char *point, size_t count)
         slab_put(file, point + row * file->layout.row_size, count, taken);
     }
     const char *behind = point + rows * file->layout.row_size;
-    put_figures(file, file->figures, file->study->figures, file->study->figure_count, behind, count);
+    put_figures(file, file->figures, file->study->figures, file->study->figure_count, behind, file->layout.point_size, count);
     if (file->layout.spread_count > 0) {
         put_spread(file, point, count);
     }
     if (file->study->timed) {
-        put_averages(file, behind, count);
+        put_windows_of(file, first, point, count);
     }
 }
 
@@ -686,7 +743,7 @@ static void put_points(grid *file, size_t first, const char *points, size_t coun
     for (size_t done = 0; done < count && !file->failed;) {
         const size_t left = count - done;
         const size_t taken = slab_next(file, first + done, left < SLAB_VALUES ? left : SLAB_VALUES);
-        put_slab(file, points + done * file->layout.point_size, taken);
+        put_slab(file, first + done, points + done * file->layout.point_size, taken);
         done += taken;
     }
 }

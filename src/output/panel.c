@@ -1,5 +1,7 @@
 #include "output/panel.h"
 
+#include "support/text.h"
+
 #include <math.h>
 
 enum {
@@ -57,9 +59,7 @@ void dea_plot_place(FILE *script, int width, int height, dea_box box)
         {"bmargin", 1.0 - (box.top + box.height) / height},
     };
     for (size_t i = 0; i < sizeof margins / sizeof *margins; i++) {
-        fprintf(script, "set %s at screen ", margins[i].name);
-        dea_gnuplot_number(script, margins[i].share);
-        fputc('\n', script);
+        dea_gnuplot_put(script, "set %s at screen %g\n", margins[i].name, margins[i].share);
     }
 }
 
@@ -82,20 +82,11 @@ double dea_plot_top(const char *title)
 /* A title that is wider than its canvas gets smaller letters, to two thirds of them. */
 void dea_plot_title(FILE *script, const char *title, int width, int height)
 {
-    size_t letters = 0;
     fputs("set datafile missing 'NaN'\nset datafile separator whitespace\nunset key\nset multiplot\n", script);
-    for (const char *byte = title; *byte; byte++) {
-        letters += ((unsigned char)*byte & 0xc0) != 0x80;
-    }
-    const double fitting = (width - 16.0) / (0.66 * (double)(letters + 1));
+    const double fitting = (width - 16.0) / (0.66 * (double)(dea_text_letters(title) + 1));
     if (*title) {
-        fputs("set label 2 ", script);
-        dea_gnuplot_text(script, title);
-        fputs(" at screen 0.5, screen ", script);
-        dea_gnuplot_number(script, 1.0 - 17.0 / height);
-        fputs(" center font ',", script);
-        dea_gnuplot_number(script, fmin(TITLE_LETTERS, fmax(fitting, TITLE_LETTERS * 2.0 / 3.0)));
-        fputs("'\n", script);
+        dea_gnuplot_put(script, "set label 2 %q at screen 0.5, screen %g center font ',%g'\n", title, 1.0 - 17.0 / height,
+                        fmin(TITLE_LETTERS, fmax(fitting, TITLE_LETTERS * 2.0 / 3.0)));
     }
 }
 
@@ -225,9 +216,7 @@ void dea_span_steps(FILE *script, const char *axis, const dea_span *span, double
         const double digit = step / pow(10.0, floor(log10(step) + 1e-9));
         step *= digit > 4.5 ? 0.8 : 0.5;
     }
-    fprintf(script, "set %stics ", axis);
-    dea_gnuplot_number(script, step);
-    fputc('\n', script);
+    dea_gnuplot_put(script, "set %stics %g\n", axis, step);
 }
 
 static bool needs_tenths(const dea_span *span)
@@ -254,11 +243,7 @@ void dea_span_tics(FILE *script, const char *axis, const dea_span *span, double 
             if (named) {
                 name(value, text);
             }
-            fputs(before, script);
-            dea_gnuplot_text(script, text);
-            fputc(' ', script);
-            dea_gnuplot_number(script, placed ? place : value);
-            fputs(named ? "" : " 1", script);
+            dea_gnuplot_put(script, "%s%q %g%s", before, text, placed ? place : value, named ? "" : " 1");
             before = ", ";
         }
     }
@@ -267,11 +252,8 @@ void dea_span_tics(FILE *script, const char *axis, const dea_span *span, double 
 
 void dea_span_write(FILE *script, const char *axis, const dea_span *span, double length, dea_name *name)
 {
-    fprintf(script, "set %srange [", axis);
-    dea_gnuplot_number(script, span->low);
-    fputc(':', script);
-    dea_gnuplot_number(script, span->high);
-    fprintf(script, "]\nset format %s '%%h'\n%sset logscale %s\n", axis, span->logarithmic ? "" : "un", axis);
+    dea_gnuplot_put(script, "set %srange [%g:%g]\nset format %s '%%h'\n%sset logscale %s\n", axis, span->low, span->high, axis,
+                    span->logarithmic ? "" : "un", axis);
     if (span->logarithmic && !needs_tenths(span)) {
         dea_span_tics(script, axis, span, length, name, false);
     } else if (span->logarithmic) {

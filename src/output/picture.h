@@ -6,9 +6,12 @@
 #include "output/panel.h"
 #include "output/runs.h"
 
-/* What a picture keeps of a static point. */
+/* Columns of a sweep that a picture draws at most. */
+enum { DEA_DRAWN = 2 };
+
+/* What a picture keeps of a static point: the columns that it draws. */
 typedef struct dea_dot {
-    double strain, displacement;
+    double values[DEA_DRAWN];
     dea_state state;
 } dea_dot;
 
@@ -29,6 +32,7 @@ extern const dea_drawer dea_drawer_points, dea_drawer_runs, dea_drawer_modes, de
 struct dea_plot {
     const dea_scene *scene;
     bool loops; /* as in the options */
+    const char *columns;
     const dea_drawer *drawer;
     dea_gnuplot picture;
     dea_runs runs; /* of runs along time, frequency or radius */
@@ -38,6 +42,8 @@ struct dea_plot {
     dea_thinning across, up;
     size_t curves; /* models times values of all other axes; for a map the kept values of y */
     dea_dot *dots; /* curves rows of across.kept dots */
+    dea_column drawn[DEA_DRAWN];
+    size_t drawn_count;
 };
 
 /* Index that kept value number @p kept has on its axis. */

@@ -102,9 +102,52 @@ static dea_status plot_choose(dea_plot *plot, dea_error *error)
     return DEA_OK;
 }
 
+/* The column of a sweep named by the first @p length bytes of @p name; NULL: none. */
+static const dea_column *column_find(const dea_layout *layout, const char *name, size_t length)
+{
+    for (size_t i = 0; i < layout->column_count; i++) {
+        if (strlen(layout->columns[i].name) == length && strncmp(layout->columns[i].name, name, length) == 0) {
+            return &layout->columns[i];
+        }
+    }
+    return NULL;
+}
+
+static dea_status column_refuse(const dea_layout *layout, const char *name, dea_error *error)
+{
+    char names[512] = "";
+    for (size_t i = 0, used = 0; i < layout->column_count && used < sizeof names; i++) {
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? ", " : "", layout->columns[i].name);
+    }
+    return dea_fail(error, DEA_ERROR_USAGE, "there is no column \"%.*s\" to draw; the study has %s", (int)strcspn(name, ","), name,
+                    names);
+}
+
+/* The columns that are wanted: of a map one, of curves two at most. */
+static dea_status columns_choose(dea_plot *plot, dea_error *error)
+{
+    const dea_layout layout = dea_layout_of(plot->scene);
+    const char *name = plot->columns ? plot->columns : plot->map ? "displacement_m" : "strain,displacement_m";
+    const size_t most = plot->map ? 1 : DEA_DRAWN;
+    for (bool more = true; more; name += strcspn(name, ",") + 1) {
+        const dea_column *column = column_find(&layout, name, strcspn(name, ","));
+        if (!column) {
+            return column_refuse(&layout, name, error);
+        }
+        if (plot->drawn_count == most) {
+            return dea_fail(error, DEA_ERROR_USAGE, "too many columns \"%s\"; accepted: %s", plot->columns,
+                            plot->map ? "one, of a map" : "one or two");
+        }
+        plot->drawn[plot->drawn_count++] = *column;
+        more = name[strcspn(name, ",")] == ',';
+    }
+    return DEA_OK;
+}
+
 static dea_status dots_open(dea_plot *plot, dea_error *error)
 {
-    const dea_status status = plot_choose(plot, error);
+    dea_status status = plot_choose(plot, error);
+    status = status ? status : columns_choose(plot, error);
     if (status != DEA_OK) {
         return status;
     }
@@ -114,7 +157,7 @@ static dea_status dots_open(dea_plot *plot, dea_error *error)
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
     for (size_t i = 0; i < count; i++) {
-        plot->dots[i] = (dea_dot){NAN, NAN, DEA_STATE_FAILED};
+        plot->dots[i] = (dea_dot){{NAN, NAN}, DEA_STATE_FAILED};
     }
     return DEA_OK;
 }
@@ -131,12 +174,16 @@ dea_status dea_plot_begin(const dea_scene *scene, const char *path, const dea_pl
     if (options && options->loops && !dea_study_of(scene)->timed) {
         return dea_fail(error, DEA_ERROR_USAGE, "loops are drawn of a transient, but the study is %s", dea_study_of(scene)->name);
     }
+    if (options && options->columns && dea_study_of(scene)->drawer != &dea_drawer_points) {
+        return dea_fail(error, DEA_ERROR_USAGE, "columns are chosen of a sweep, but the study is %s", dea_study_of(scene)->name);
+    }
     dea_plot *begun = calloc(1, sizeof *begun);
     if (!begun) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
     begun->scene = scene;
     begun->loops = options && options->loops;
+    begun->columns = options ? options->columns : NULL;
     const dea_study *study = dea_study_of(scene);
     begun->drawer = study->spread_drawer && dea_layout_of(scene).spread_count > 0 ? study->spread_drawer : study->drawer;
     dea_status status = begun->drawer->open(begun, error);
@@ -179,7 +226,10 @@ static void dots_take(dea_plot *plot, size_t first, const void *points, size_t c
     for (size_t i = 0; i < count; i++) {
         dea_dot *dot = plot_dot(plot, first + i);
         if (dot) {
-            *dot = (dea_dot){rows[i].strain, rows[i].displacement, rows[i].state};
+            dot->state = rows[i].state;
+            for (size_t k = 0; k < plot->drawn_count; k++) {
+                memcpy(&dot->values[k], (const char *)&rows[i] + plot->drawn[k].offset, sizeof *dot->values);
+            }
         }
     }
 }
@@ -194,7 +244,7 @@ static void runs_take(dea_plot *plot, size_t first, const void *points, size_t c
 static dea_status dots_draw(dea_plot *plot, dea_error *error)
 {
     for (size_t i = 0; i < plot->curves * plot->across.kept; i++) {
-        if (isfinite(plot->dots[i].displacement)) {
+        if (isfinite(plot->dots[i].values[0])) {
             return plot->map ? dea_plot_draw_map(plot, error) : dea_plot_draw_curves(plot, error);
         }
     }

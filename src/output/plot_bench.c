@@ -8,6 +8,7 @@
 #include "output/bench.h"
 #include "output/picture.h"
 #include "output/series.h"
+#include "support/text.h"
 
 enum {
     LEFT = 96,
@@ -170,11 +171,7 @@ static void take_mark(sheet *page, const panel *part, double x, double y)
 /* Writes a label beside a mark, where nothing stands. */
 static void write_word(sheet *page, FILE *script, const panel *part, double x, double y, const char *text, const char *colour)
 {
-    size_t letters = 0;
-    for (const char *byte = text; *byte; byte++) {
-        letters += ((unsigned char)*byte & 0xc0) != 0x80;
-    }
-    const double width = letter * (double)letters, across = place_in(&part->x, x) * part->box.width;
+    const double width = letter * (double)dea_text_letters(text), across = place_in(&part->x, x) * part->box.width;
     const double side = across + width + 14.0 < part->box.width ? 1.0 : -1.0;
     const dea_box box = {part->box.left + across + side * (8.0 + 0.5 * width),
                          part->box.top + (1.0 - place_in(&part->y, y)) * part->box.height, width, line_height};
@@ -187,13 +184,8 @@ static void write_word(sheet *page, FILE *script, const panel *part, double x, d
         return;
     }
     page->words[page->word_count++] = box;
-    fprintf(script, "set label %zu ", 10 + page->word_count);
-    dea_gnuplot_text(script, text);
-    fputs(" at screen ", script);
-    dea_gnuplot_number(script, box.left / page->canvas.width);
-    fputs(", screen ", script);
-    dea_gnuplot_number(script, 1.0 - box.top / page->height);
-    fprintf(script, " center font ',9' textcolor '%s'\n", colour);
+    dea_gnuplot_put(script, "set label %z %q at screen %g, screen %g center font ',9' textcolor '%s'\n", 10 + page->word_count, text,
+                    box.left / page->canvas.width, 1.0 - box.top / page->height, colour);
 }
 
 static bool begins_curve(const dea_bench *bench, size_t i)
@@ -239,16 +231,10 @@ static void write_settings(const sheet *page, FILE *script)
         }
         if (is_drawn(setting)) {
             const double y = error_of(page, setting);
-            const double columns[] = {time_of(bench, setting),
-                                      setting->reference ? none : y,
-                                      !setting->reference && !setting->dominated ? y : none,
-                                      !setting->reference && setting->dominated ? y : none,
-                                      setting->broken ? y : none,
-                                      setting->reference ? y : none};
-            for (size_t c = 0; c < sizeof columns / sizeof *columns; c++) {
-                dea_gnuplot_number(script, columns[c]);
-                fputc(c + 1 < sizeof columns / sizeof *columns ? ' ' : '\n', script);
-            }
+            dea_gnuplot_put(script, "%g %g %g %g %g %g\n", time_of(bench, setting), setting->reference ? none : y,
+                            !setting->reference && !setting->dominated ? y : none,
+                            !setting->reference && setting->dominated ? y : none, setting->broken ? y : none,
+                            setting->reference ? y : none);
         }
     }
     fputs("END\n", script);
@@ -283,11 +269,8 @@ static const char *error_label(const dea_bench *bench)
 static void write_panel(const sheet *page, FILE *script, const panel *part, const char *across, const char *up, const char *tag)
 {
     dea_plot_place(script, page->canvas.width, page->height, part->box);
-    fputs("set xlabel ", script);
-    dea_gnuplot_text(script, across);
-    fputs("\nset ylabel ", script);
-    dea_gnuplot_text(script, up);
-    fprintf(script, "\nset label 1 '%s' at graph 0, graph 1 offset character 0, character 0.8\n", tag);
+    dea_gnuplot_put(script, "set xlabel %q\nset ylabel %q\nset label 1 '%s' at graph 0, graph 1 offset character 0, character 0.8\n",
+                    across, up, tag);
     dea_span_write(script, "x", &part->x, 0.7 * part->box.width, time_text);
 }
 
@@ -301,9 +284,7 @@ static void write_work(sheet *page, FILE *script)
     if (page->references) {
         errors.low = 3.0 * page->floor;
         dea_span_tics(script, "y", &errors, part->box.height, dea_name_power, false);
-        fputs("set ytics add ('ref.' ", script);
-        dea_gnuplot_number(script, page->floor);
-        fputs(")\n", script);
+        dea_gnuplot_put(script, "set ytics add ('ref.' %g)\n", page->floor);
     }
     write_accuracies(page, script);
     for (size_t i = 0; i < bench->setting_count; i++) {
@@ -326,12 +307,7 @@ static void write_model(sheet *page, FILE *script, size_t number)
     fprintf(script, "$model%zu << END\nNaN NaN NaN\n", number);
     for (int end = 0; end < (line ? 2 : marked); end++) {
         const double y[] = {page->models.y.low, page->models.y.high};
-        dea_gnuplot_number(script, time);
-        fputc(' ', script);
-        dea_gnuplot_number(script, line ? y[end] : median_of(model));
-        fputc(' ', script);
-        dea_gnuplot_number(script, line ? y[end] : model->error_worst);
-        fputc('\n', script);
+        dea_gnuplot_put(script, "%g %g %g\n", time, line ? y[end] : median_of(model), line ? y[end] : model->error_worst);
     }
     fputs("END\n", script);
     if (marked || line) {
@@ -457,6 +433,5 @@ dea_status dea_bench_picture(const dea_bench *bench, dea_gnuplot *picture, dea_e
         write_models(&page, picture->script);
     }
     dea_legend_draw(&legend, picture->script, page.canvas.width, page.height);
-    fputs("unset multiplot\nunset output\n", picture->script);
     return DEA_OK;
 }

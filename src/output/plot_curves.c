@@ -1,4 +1,4 @@
-/* Strain and displacement: a curve for each model and each value of the other axes. */
+/* Strain and displacement, or columns that are wanted: a curve for each model and each value of the other axes. */
 #include "output/label.h"
 #include "output/picture.h"
 #include "output/series.h"
@@ -7,17 +7,18 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-enum { MARKS_PER_CURVE = 20, FEW_POINTS = 25, PANELS = 2 };
+enum { MARKS_PER_CURVE = 20, FEW_POINTS = 25, PANELS = DEA_DRAWN };
 
 /* What the whole picture needs to know. */
 typedef struct sheet {
     const dea_plot *plot;
     const dea_axis *axis;
     const size_t *order; /* kept values by size */
-    dea_scale across, displacement;
+    dea_scale across, scales[PANELS];
+    int panels;
     dea_series series;
     bool seen[DEA_MARKS];
-    bool negative[PANELS];           /* strain, displacement have values below zero */
+    bool negative[PANELS];           /* the columns have values below zero */
     dea_span along, spans[PANELS];   /* as drawn */
     dea_pair pair;
 } sheet;
@@ -40,15 +41,14 @@ static bool is_marked(const sheet *page, size_t curve, size_t place, size_t mark
     }
     const bool before = place > 0 && sheet_dot(page, curve, place - 1)->state == DEA_STATE_PULL_IN;
     const bool after = place + 1 < kept && sheet_dot(page, curve, place + 1)->state == DEA_STATE_PULL_IN;
-    return isfinite(dot->strain) && (before || after);
+    return isfinite(dot->values[0]) && (before || after);
 }
 
-/* Strain and displacement of a dot as drawn: on a logarithmic axis without their sign. */
+/* Columns of a dot as drawn: on a logarithmic axis without their sign. */
 static void dot_values(const sheet *page, const dea_dot *dot, double drawn[PANELS])
 {
-    drawn[0] = 100.0 * dot->strain;
-    drawn[1] = page->displacement.factor * dot->displacement;
     for (int i = 0; i < PANELS; i++) {
+        drawn[i] = page->scales[i].factor * dot->values[i];
         drawn[i] = !page->spans[i].logarithmic ? drawn[i] : drawn[i] != 0.0 ? fabs(drawn[i]) : (double)NAN;
     }
 }
@@ -84,15 +84,15 @@ static bool has_symbol(const sheet *page, size_t curve, size_t place)
 static void scan_scale(sheet *page)
 {
     const dea_plot *plot = page->plot;
-    double largest = 0.0;
-    for (size_t i = 0; i < plot->curves * plot->across.kept; i++) {
-        if (isfinite(plot->dots[i].displacement)) {
-            largest = fmax(largest, fabs(plot->dots[i].displacement));
-            page->negative[0] = page->negative[0] || plot->dots[i].strain < 0.0;
-            page->negative[1] = page->negative[1] || plot->dots[i].displacement < 0.0;
+    for (int k = 0; k < page->panels; k++) {
+        double largest = 0.0;
+        for (size_t i = 0; i < plot->curves * plot->across.kept; i++) {
+            const double value = plot->dots[i].values[k];
+            largest = isfinite(value) ? fmax(largest, fabs(value)) : largest;
+            page->negative[k] = page->negative[k] || value < 0.0;
         }
+        page->scales[k] = dea_scale_column(&plot->drawn[k], largest);
     }
-    page->displacement = dea_scale_choose(largest, "m");
 }
 
 static void sheet_scan(sheet *page)
@@ -106,7 +106,7 @@ static void sheet_scan(sheet *page)
         for (size_t place = 0; place < plot->across.kept; place++) {
             double drawn[PANELS];
             dot_values(page, sheet_dot(page, curve, place), drawn);
-            for (int i = 0; i < PANELS && (place_value(page, place) > 0.0 || !page->along.logarithmic); i++) {
+            for (int i = 0; i < page->panels && (place_value(page, place) > 0.0 || !page->along.logarithmic); i++) {
                 dea_span_take(&page->spans[i], drawn[i]);
             }
             for (size_t mark = 0; mark < DEA_MARKS; mark++) {
@@ -119,12 +119,11 @@ static void sheet_scan(sheet *page)
 static void write_values(FILE *script, const double drawn[PANELS], bool shown)
 {
     for (int i = 0; i < PANELS; i++) {
-        fputc(' ', script);
-        dea_gnuplot_number(script, shown ? drawn[i] : (double)NAN);
+        dea_gnuplot_put(script, " %g", shown ? drawn[i] : (double)NAN);
     }
 }
 
-/* A block a curve: x, then pairs of strain and displacement: all of it, its marks of limits, those of its group. */
+/* A block a curve: x, then pairs of columns: all of it, its marks of limits, those of its group. */
 static void write_data(const sheet *page, FILE *script)
 {
     const dea_plot *plot = page->plot;
@@ -137,7 +136,7 @@ static void write_data(const sheet *page, FILE *script)
             if (page->along.logarithmic && !(x > 0.0)) {
                 continue;
             }
-            dea_gnuplot_number(script, x);
+            dea_gnuplot_put(script, "%g", x);
             write_values(script, drawn, true);
             for (size_t mark = 0; mark < DEA_MARKS; mark++) {
                 write_values(script, drawn, is_marked(page, curve, place, mark));
@@ -184,20 +183,18 @@ static void write_curve(const sheet *page, FILE *script, size_t curve, int colum
     }
 }
 
-/* One panel: its place on the canvas, its labels, its curves in column 2 (strain) or 3 (displacement). */
+/* One panel: its place on the canvas, its labels, its curves in column 2 or 3. */
 static void write_panel(sheet *page, FILE *script, int number)
 {
-    static const char *const words[PANELS] = {"Strain", "Displacement"};
     const dea_plot *plot = page->plot;
     const dea_box *box = &page->pair.boxes[number];
-    const char *bar = page->negative[number] && page->spans[number].logarithmic ? "|" : "";
-    char label[DEA_LABEL_LENGTH + 24];
+    char label[DEA_LABEL_LENGTH];
     dea_plot_place(script, plot->picture.canvas.width, page->pair.height, *box);
-    snprintf(label, sizeof label, "%s %s%c%s [%s]", words[number], bar, number == 0 ? 's' : 'u', bar,
-             number == 0 ? "%" : page->displacement.unit);
-    fputs("set ylabel ", script);
-    dea_gnuplot_text(script, label);
-    fprintf(script, "\nset label 1 '(%c)' at graph 0, graph 1 offset character 0, character 0.8 left\n", 'a' + number);
+    dea_label_column(&plot->drawn[number], &page->scales[number], page->negative[number] && page->spans[number].logarithmic, label);
+    dea_gnuplot_put(script, "set ylabel %q\n", label);
+    if (page->panels > 1) {
+        dea_gnuplot_put(script, "set label 1 '(%s)' at graph 0, graph 1 offset character 0, character 0.8 left\n", number == 0 ? "a" : "b");
+    }
     dea_span_write(script, "x", &page->along, box->width, dea_name_plain);
     dea_span_write(script, "y", &page->spans[number], box->height, dea_name_plain);
     if (number == 0 && page->series.bar != SIZE_MAX) {
@@ -212,10 +209,10 @@ static void write_panel(sheet *page, FILE *script, int number)
     fputs("\nunset label 2\nunset colorbox\n", script);
 }
 
-/* Ranges: strain and displacement from zero, with room above; one value along x is put in the middle. */
+/* Ranges: columns from zero, with room above; one value along x is put in the middle. */
 static void sheet_settle(sheet *page)
 {
-    for (int i = 0; i < PANELS; i++) {
+    for (int i = 0; i < page->panels; i++) {
         dea_span *span = &page->spans[i];
         if (!span->logarithmic) {
             dea_span_take(span, 0.0);
@@ -237,23 +234,18 @@ static void write_picture(sheet *page, const dea_legend *legend)
     dea_plot_style(script);
     dea_plot_title(script, plot->scene->title, plot->picture.canvas.width, page->pair.height);
     dea_label_axis(page->axis, &page->across, label);
-    fputs("set xlabel ", script);
-    dea_gnuplot_text(script, label);
-    fputc('\n', script);
-    for (int i = 0; i < PANELS; i++) {
+    dea_gnuplot_put(script, "set xlabel %q\n", label);
+    for (int i = 0; i < page->panels; i++) {
         write_panel(page, script, i);
     }
-    if (legend->count > 0) {
-        dea_legend_draw(legend, script, plot->picture.canvas.width, page->pair.height);
-    }
-    fputs("unset multiplot\nunset output\n", script);
+    dea_legend_draw(legend, script, plot->picture.canvas.width, page->pair.height);
 }
 
 /* Fails where a logarithmic axis has nothing to show. */
 static dea_status sheet_check(const sheet *page, dea_error *error)
 {
     const dea_span *spans[] = {&page->along, &page->spans[0], &page->spans[1]};
-    for (size_t i = 0; i < sizeof spans / sizeof *spans; i++) {
+    for (int i = 0; i < 1 + page->panels; i++) {
         if (spans[i]->low > spans[i]->high) {
             return dea_fail(error, DEA_ERROR_USAGE, "nothing to draw: nothing is above zero along the logarithmic axis %c",
                             i == 0 ? 'x' : 'y');
@@ -262,10 +254,17 @@ static dea_status sheet_check(const sheet *page, dea_error *error)
     return DEA_OK;
 }
 
+/* The room of both panels for one. */
+static dea_box joined(const dea_pair *pair)
+{
+    const dea_box *first = &pair->boxes[0], *last = &pair->boxes[1];
+    return (dea_box){first->left, first->top, last->left + last->width - first->left, last->top + last->height - first->top};
+}
+
 dea_status dea_plot_draw_curves(dea_plot *plot, dea_error *error)
 {
     const dea_span none = {INFINITY, -INFINITY, plot->picture.log_y};
-    sheet page = {.plot = plot, .axis = &plot->scene->axes[plot->x], .spans = {none, none}, .along = none};
+    sheet page = {.plot = plot, .axis = &plot->scene->axes[plot->x], .panels = (int)plot->drawn_count, .spans = {none, none}, .along = none};
     size_t *order = dea_plot_order(page.axis, &plot->across);
     if (!order) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
@@ -284,6 +283,7 @@ dea_status dea_plot_draw_curves(dea_plot *plot, dea_error *error)
                                error);
     }
     if (status == DEA_OK) {
+        page.pair.boxes[0] = page.panels == 1 ? joined(&page.pair) : page.pair.boxes[0];
         dea_gnuplot_size(&plot->picture, page.pair.height);
         write_picture(&page, &legend);
     }

@@ -1,4 +1,4 @@
-/* Displacement as colour over the two long axes, with level lines; where a limit is passed the map is hatched, where there is no
+/* A column, the displacement if no other is wanted, as colour over the two long axes, with level lines; where a limit is passed the map is hatched, where there is no
  * equilibrium it is grey. Values of any spacing are first brought onto an even grid, by the nearest neighbours. */
 #include "output/label.h"
 #include "output/picture.h"
@@ -89,17 +89,17 @@ static const dea_dot *chart_dot(const chart *map, size_t x, size_t y)
     return &map->plot->dots[map->y.order[y] * map->plot->across.kept + map->x.order[x]];
 }
 
-/* Displacement and state at any place: linear between four neighbours that have an equilibrium, else the nearest of them. */
+/* Value and state at any place: linear between four neighbours that have an equilibrium, else the nearest of them. */
 static dea_dot chart_sample(const chart *map, double x, double y)
 {
     double p, q;
     const size_t i = side_find(&map->x, x, &p), j = side_find(&map->y, y, &q);
     dea_dot sample = *chart_dot(map, i + (p > 0.5), j + (q > 0.5));
     const double mixed =
-        (1.0 - q) * ((1.0 - p) * chart_dot(map, i, j)->displacement + p * chart_dot(map, i + 1, j)->displacement) +
-        q * ((1.0 - p) * chart_dot(map, i, j + 1)->displacement + p * chart_dot(map, i + 1, j + 1)->displacement);
+        (1.0 - q) * ((1.0 - p) * chart_dot(map, i, j)->values[0] + p * chart_dot(map, i + 1, j)->values[0]) +
+        q * ((1.0 - p) * chart_dot(map, i, j + 1)->values[0] + p * chart_dot(map, i + 1, j + 1)->values[0]);
     if (isfinite(mixed)) {
-        sample.displacement = mixed;
+        sample.values[0] = mixed;
     }
     return sample;
 }
@@ -116,16 +116,6 @@ static double side_place(const side *edge, double value)
     return edge->logarithmic ? log10(value * edge->scale.factor) : value * edge->scale.factor;
 }
 
-static void write_triple(FILE *script, double x, double y, double value)
-{
-    dea_gnuplot_number(script, x);
-    fputc(' ', script);
-    dea_gnuplot_number(script, y);
-    fputc(' ', script);
-    dea_gnuplot_number(script, value);
-    fputc('\n', script);
-}
-
 static void write_grid(chart *map, FILE *script)
 {
     fputs("$grid << END\n", script);
@@ -133,8 +123,8 @@ static void write_grid(chart *map, FILE *script)
         for (int i = 0; i < COLUMNS; i++) {
             const double x = side_at(&map->x, i / (COLUMNS - 1.0)), y = side_at(&map->y, j / (ROWS - 1.0));
             const dea_dot dot = chart_sample(map, x, y);
-            map->gaps = map->gaps || !isfinite(dot.displacement);
-            write_triple(script, side_place(&map->x, x), side_place(&map->y, y), dot.displacement * map->colour.factor);
+            map->gaps = map->gaps || !isfinite(dot.values[0]);
+            dea_gnuplot_put(script, "%g %g %g\n", side_place(&map->x, x), side_place(&map->y, y), dot.values[0] * map->colour.factor);
         }
         fputc('\n', script);
     }
@@ -153,7 +143,7 @@ static void write_diagonal(chart *map, FILE *script, int number, double c)
         const double x = side_at(&map->x, along / map->box.width), y = side_at(&map->y, hatches[number].rising ? up : 1.0 - up);
         const bool past = chart_sample(map, x, y).state == hatches[number].state;
         if (past) {
-            write_triple(script, side_place(&map->x, x), side_place(&map->y, y), 0.0);
+            dea_gnuplot_put(script, "%g %g %g\n", side_place(&map->x, x), side_place(&map->y, y), 0.0);
         } else if (drawing) {
             fputc('\n', script);
         }
@@ -177,13 +167,8 @@ static void write_side(FILE *script, const side *edge, const char *letter, doubl
     char label[DEA_LABEL_LENGTH];
     const dea_span span = {edge->from * edge->scale.factor, edge->to * edge->scale.factor, true};
     dea_label_axis(edge->axis, &edge->scale, label);
-    fprintf(script, "set %slabel ", letter);
-    dea_gnuplot_text(script, label);
-    fprintf(script, "\nset %srange [", letter);
-    dea_gnuplot_number(script, side_place(edge, edge->from));
-    fputc(':', script);
-    dea_gnuplot_number(script, side_place(edge, edge->to));
-    fputs("]\n", script);
+    dea_gnuplot_put(script, "set %slabel %q\nset %srange [%g:%g]\n", letter, label, letter, side_place(edge, edge->from),
+                    side_place(edge, edge->to));
     if (!edge->logarithmic) {
         dea_span_steps(script, letter, &span, length / (*letter == 'x' ? 50.0 : 36.0));
     } else {
@@ -199,15 +184,12 @@ static void write_legend(const chart *map, FILE *script)
              map->hatched[1] ? hatches[1].legend : "", map->hatched[1] ? "      " : "",
              map->gaps ? "grey: no equilibrium (pull-in)" : "");
     if (*label) {
-        fputs("set label 3 ", script);
-        dea_gnuplot_text(script, label);
-        fputs(" at graph 0.5, screen ", script);
-        dea_gnuplot_number(script, LEGEND / 2.0 / map->height);
-        fputs(" center textcolor '#202020'\n", script);
+        dea_gnuplot_put(script, "set label 3 %q at graph 0.5, screen %g center textcolor '#202020'\n", label,
+                        LEGEND / 2.0 / map->height);
     }
 }
 
-/* Lines of equal displacement as a table: gnuplot draws no contours over an image. */
+/* Lines of equal values as a table: gnuplot draws no contours over an image. */
 static void write_levels(FILE *script)
 {
     fputs("set contour base\nset cntrparam levels auto 8\nunset surface\n"
@@ -219,10 +201,7 @@ static void write_levels(FILE *script)
 static void write_within(FILE *script, const side *edge, const char *letter)
 {
     const double from = side_place(edge, edge->from), width = side_place(edge, edge->to) - from;
-    fprintf(script, "abs(%s - (", letter);
-    dea_gnuplot_number(script, from + 0.5 * width);
-    fputs(")) < ", script);
-    dea_gnuplot_number(script, 0.47 * fabs(width));
+    dea_gnuplot_put(script, "abs(%s - (%g)) < %g", letter, from + 0.5 * width, 0.47 * fabs(width));
 }
 
 /* Levels are black on white with their value, hatches white with black dots: seen on light and dark, in colour and in grey. */
@@ -263,13 +242,13 @@ static void write_chart(chart *map, FILE *script)
     dea_plot_palette(script, 1.0);
     write_side(script, &map->x, "x", map->box.width);
     write_side(script, &map->y, "y", map->box.height);
-    snprintf(label, sizeof label, "Displacement u [%s]", map->colour.unit);
-    fputs("set cblabel offset 1,0 textcolor '#202020' ", script);
-    dea_gnuplot_text(script, label);
-    fputs("\nset object 1 rectangle from graph 0,0 to graph 1,1 behind fillstyle solid 1.0 noborder fillcolor '#d4d4d4'\n", script);
+    dea_label_column(&map->plot->drawn[0], &map->colour, false, label);
+    dea_gnuplot_put(script,
+                    "set cblabel offset 1,0 textcolor '#202020' %q\n"
+                    "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillstyle solid 1.0 noborder fillcolor '#d4d4d4'\n",
+                    label);
     write_legend(map, script);
     write_layers(map, script);
-    fputs("unset multiplot\nunset output\n", script);
 }
 
 /* Puts the map on its canvas. */
@@ -296,9 +275,9 @@ static dea_status draw_chart(chart *map, dea_gnuplot *picture, dea_error *error)
         return dea_fail(error, DEA_ERROR_USAGE, "nothing to draw: nothing is above zero along a logarithmic axis");
     }
     for (size_t i = 0; i < plot->curves * plot->across.kept; i++) {
-        largest = isfinite(plot->dots[i].displacement) ? fmax(largest, fabs(plot->dots[i].displacement)) : largest;
+        largest = isfinite(plot->dots[i].values[0]) ? fmax(largest, fabs(plot->dots[i].values[0])) : largest;
     }
-    map->colour = dea_scale_choose(largest, "m");
+    map->colour = dea_scale_column(&plot->drawn[0], largest);
     const dea_status status = place_chart(map, &picture->canvas, error);
     if (status == DEA_OK) {
         dea_gnuplot_size(picture, map->height);

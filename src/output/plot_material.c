@@ -16,21 +16,6 @@ static const struct {
     int symbol;
 } loads[DEA_LOAD_COUNT] = {{"uniaxial", "#404040", 1, 6}, {"equi-biaxial", "#b03060", 2, 8}};
 
-static void write_setting(FILE *script, const char *setting, const char *text)
-{
-    fprintf(script, "set %s ", setting);
-    dea_gnuplot_text(script, text);
-    fputc('\n', script);
-}
-
-static void write_pair(FILE *script, double x, double y)
-{
-    dea_gnuplot_number(script, x);
-    fputc(' ', script);
-    dea_gnuplot_number(script, y);
-    fputc('\n', script);
-}
-
 /* In the looks of a load. */
 static void add_entry(dea_legend *legend, dea_load load, const char *title, const char *what, bool line, bool point)
 {
@@ -66,7 +51,7 @@ static void write_stress(FILE *script, const dea_law *law, const double *constan
     fprintf(script, "$fit%d << END\n", (int)load);
     for (int i = 0; i <= CURVE_STEPS; i++) {
         const double stretch = from + (to - from) * i / CURVE_STEPS;
-        write_pair(script, stretch, 1e-3 * dea_fit_stress(law, constants, load, stretch));
+        dea_gnuplot_put(script, "%g %g\n", stretch, 1e-3 * dea_fit_stress(law, constants, load, stretch));
     }
     fputs("END\n", script);
 }
@@ -81,7 +66,7 @@ static void write_material_data(const dea_material *material, double to, FILE *s
     fputs("$modulus0 << END\n", script);
     for (int i = 0; i <= CURVE_STEPS; i++) {
         const double stretch = 1.0 + (to - 1.0) * i / CURVE_STEPS;
-        write_pair(script, stretch, 1e-6 * dea_law_modulus(material->law, constants, stretch));
+        dea_gnuplot_put(script, "%g %g\n", stretch, 1e-6 * dea_law_modulus(material->law, constants, stretch));
     }
     fputs("END\n", script);
 }
@@ -93,24 +78,21 @@ static void write_material(const dea_material *material, double to, const dea_gn
     write_material_data(material, to, script);
     dea_plot_style(script);
     dea_plot_title(script, material->name, picture->canvas.width, pair->height);
-    fputs("set xrange [1:", script);
-    dea_gnuplot_number(script, to);
-    fputs("]\nset yrange [0:*]\nset offsets graph 0, graph 0, graph 0.06, graph 0\n"
-          "set label 1 '(a)' at graph 0, graph 1 offset character 0, character 0.8\n",
-          script);
-    write_setting(script, "xlabel", "Stretch λ");
-    write_setting(script, "ylabel", "Engineering stress P [kPa]");
+    dea_gnuplot_put(script,
+                    "set xrange [1:%g]\nset yrange [0:*]\nset offsets graph 0, graph 0, graph 0.06, graph 0\n"
+                    "set label 1 '(a)' at graph 0, graph 1 offset character 0, character 0.8\n"
+                    "set xlabel %q\nset ylabel %q\n",
+                    to, "Stretch λ", "Engineering stress P [kPa]");
     dea_plot_place(script, picture->canvas.width, pair->height, pair->boxes[0]);
     for (int load = 0; load < DEA_LOAD_COUNT; load++) {
         write_line(script, load > 0 ? ", " : "plot ", "fit", load, (dea_load)load);
     }
     fputs("\nunset label 2\nset label 1 '(b)' at graph 0, graph 1 offset character 0, character 0.8\n", script);
-    write_setting(script, "ylabel", "Operating modulus Y [MPa]");
+    dea_gnuplot_put(script, "set ylabel %q\n", "Operating modulus Y [MPa]");
     dea_plot_place(script, picture->canvas.width, pair->height, pair->boxes[1]);
     write_line(script, "plot ", "modulus", 0, DEA_LOAD_EQUIBIAXIAL);
     fputs("\nunset offsets\n", script);
     dea_legend_draw(legend, script, picture->canvas.width, pair->height);
-    fputs("unset multiplot\nunset output\n", script);
 }
 
 dea_status dea_plot_material(const dea_material *material, double to, const char *path, const dea_plot_options *options,
@@ -143,7 +125,7 @@ static void write_points(FILE *script, const dea_fit_data *data, const dea_fit *
     fprintf(script, "$data%d << END\n", (int)load);
     for (size_t i = 0; i < data->count; i++) {
         if (data->points[i].load == load && seen++ % step == 0) {
-            write_pair(script, data->points[i].stretch, 1e-3 * data->points[i].stress);
+            dea_gnuplot_put(script, "%g %g\n", data->points[i].stretch, 1e-3 * data->points[i].stress);
         }
     }
     fputs("END\n", script);
@@ -159,13 +141,7 @@ typedef struct panel {
 /* Opens axes with their titles. */
 static void write_panel(FILE *script, const panel *at, double from, double to, const char *across, const char *up)
 {
-    fputs("set xrange [", script);
-    dea_gnuplot_number(script, from);
-    fputc(':', script);
-    dea_gnuplot_number(script, to);
-    fputs("]\n", script);
-    write_setting(script, "xlabel", across);
-    write_setting(script, "ylabel", up);
+    dea_gnuplot_put(script, "set xrange [%g:%g]\nset xlabel %q\nset ylabel %q\n", from, to, across, up);
     dea_plot_place(script, at->picture->canvas.width, at->height, at->box);
 }
 
@@ -203,8 +179,7 @@ static void write_time_tics(FILE *script, double first, double last)
     for (double tic = pow(10.0, floor(log10(first))); tic <= last; tic *= 10.0) {
         if (tic >= 0.99 * first) {
             char label[DEA_NUMBER_LENGTH];
-            fprintf(script, ", \"%s\" ", dea_number_text(label, tic, 3));
-            dea_gnuplot_number(script, time_place(tic, first));
+            dea_gnuplot_put(script, ", \"%s\" %g", dea_number_text(label, tic, 3), time_place(tic, first));
         }
     }
     fputs(")\n", script);
@@ -241,13 +216,13 @@ static void write_test_data(FILE *script, const dea_relaxation *fit, const dea_r
     for (size_t curve = 0; curve < drawn_tests[fit->kind].curves; curve++) {
         fprintf(script, "$held%zu << END\n", curve);
         for (size_t i = 0; i < data->count; i += step) {
-            write_pair(script, test_place(fit, points[i].time, first), scale * (curve == 0 ? points[i].stress : points[i].loss));
+            dea_gnuplot_put(script, "%g %g\n", test_place(fit, points[i].time, first), scale * (curve == 0 ? points[i].stress : points[i].loss));
         }
         fprintf(script, "END\n$relaxed%zu << END\n", curve);
         for (int i = 0; i <= CURVE_STEPS; i++) {
             const double place = from + (to - from) * i / CURVE_STEPS, power = pow(10.0, place);
             const double at = swings ? 2.0 * DEA_PI * power : first * (power - 1.0);
-            write_pair(script, place, scale * (curve == 0 ? dea_relaxation_stress(fit, at) : dea_relaxation_loss(fit, at)));
+            dea_gnuplot_put(script, "%g %g\n", place, scale * (curve == 0 ? dea_relaxation_stress(fit, at) : dea_relaxation_loss(fit, at)));
         }
         fputs("END\n", script);
     }
@@ -260,8 +235,7 @@ static void write_frequency_tics(FILE *script, double from, double to)
     fputs("set xtics (", script);
     for (double power = ceil(from - 1e-9); power <= to + 1e-9; power += 1.0) {
         char label[DEA_NUMBER_LENGTH];
-        fprintf(script, "%s\"%s\" ", before, dea_number_text(label, pow(10.0, power), 3));
-        dea_gnuplot_number(script, power);
+        dea_gnuplot_put(script, "%s\"%s\" %g", before, dea_number_text(label, pow(10.0, power), 3), power);
         before = ", ";
     }
     fputs(")\n", script);
@@ -353,7 +327,6 @@ dea_status dea_plot_fit(const dea_fit *fit, const dea_fit_data *data, const dea_
             write_relaxation(relaxation, held, &panels[1]);
         }
         dea_legend_draw(&legend, picture.script, picture.canvas.width, panels[0].height);
-        fputs("unset multiplot\nunset output\n", picture.script);
     }
     const dea_status drawn = dea_gnuplot_finish(&picture, status == DEA_OK, status == DEA_OK ? error : NULL);
     return status != DEA_OK ? status : drawn;

@@ -254,14 +254,6 @@ static double share_along(const sheet *page, double x)
     return span->logarithmic ? log(x / span->low) / log(span->high / span->low) : (x - span->low) / (span->high - span->low);
 }
 
-static void write_point(FILE *script, double x, double y)
-{
-    dea_gnuplot_number(script, x);
-    fputc(' ', script);
-    dea_gnuplot_number(script, y);
-    fputc('\n', script);
-}
-
 static void write_trace(const sheet *page, FILE *script, size_t run, size_t number)
 {
     const panel *part = &page->panels[number];
@@ -269,7 +261,7 @@ static void write_trace(const sheet *page, FILE *script, size_t run, size_t numb
     fprintf(script, "$run%zu_%zu << END\n", run, number);
     for (size_t i = 0; i < trace->count; i++) {
         if (is_along(page, trace->x[i])) {
-            write_point(script, trace->x[i] * page->time.factor, value_drawn(part, trace->y[i]));
+            dea_gnuplot_put(script, "%g %g\n", trace->x[i] * page->time.factor, value_drawn(part, trace->y[i]));
         }
     }
     fputs("END\n", script);
@@ -302,7 +294,7 @@ static void write_symbols(const sheet *page, FILE *script, size_t run, size_t nu
         const double share = page->runs->abscissa > 0 ? (double)i / (double)trace->count : share_along(page, x);
         const int place = dea_series_mark(&page->series, run % page->series.groups, share);
         if (part->peaks ? i == peak : begun && place != before) {
-            write_point(script, x, value_drawn(part, trace->y[i]));
+            dea_gnuplot_put(script, "%g %g\n", x, value_drawn(part, trace->y[i]));
         }
         before = place;
         begun = true;
@@ -318,7 +310,7 @@ static void write_spots(const sheet *page, FILE *script, size_t run, size_t mark
     for (size_t i = 0; i < marked->spot_count; i++) {
         const dea_spot *spot = &marked->spots[i];
         if (spot->mark == mark && is_along(page, spot->x)) {
-            write_point(script, spot->x * page->time.factor, value_drawn(&page->panels[0], spot->y));
+            dea_gnuplot_put(script, "%g %g\n", spot->x * page->time.factor, value_drawn(&page->panels[0], spot->y));
         }
     }
     fputs("END\n", script);
@@ -434,9 +426,7 @@ static void write_second_axis(FILE *script, const panel *part)
     if (!span.logarithmic) {
         dea_span_steps(script, "y2", &span, part->intervals);
     }
-    fputs("set y2label ", script);
-    dea_gnuplot_text(script, part->second_label);
-    fputc('\n', script);
+    dea_gnuplot_put(script, "set y2label %q\n", part->second_label);
 }
 
 /* Tics of a linear panel: gnuplot's own would crowd a small one. */
@@ -464,9 +454,7 @@ static void write_label(FILE *script, const panel *part)
     } else {
         snprintf(label, sizeof label, "%s", part->label);
     }
-    fputs("set ylabel ", script);
-    dea_gnuplot_text(script, label);
-    fputc('\n', script);
+    dea_gnuplot_put(script, "set ylabel %q\n", label);
 }
 
 static void write_panel(const sheet *page, FILE *script, size_t number, const char *across)
@@ -477,9 +465,7 @@ static void write_panel(const sheet *page, FILE *script, size_t number, const ch
     write_label(script, part);
     write_upward(script, part);
     dea_span_write(script, "x", &page->along, part->box.width, name);
-    fprintf(script, "%sset xlabel ", part->bottom ? "" : "set format x ''\n");
-    dea_gnuplot_text(script, part->bottom ? across : "");
-    fputc('\n', script);
+    dea_gnuplot_put(script, "%sset xlabel %q\n", part->bottom ? "" : "set format x ''\n", part->bottom ? across : "");
     if (number == 0 && page->series.bar != SIZE_MAX) {
         dea_series_bar(&page->series, script, page->canvas, page->height, part->box);
     }
@@ -500,10 +486,7 @@ static void write_frame(const sheet *page, FILE *script, const dea_legend *legen
     for (size_t i = 0; i < page->count; i++) {
         write_panel(page, script, i, label);
     }
-    if (legend->count > 0) {
-        dea_legend_draw(legend, script, page->canvas.width, page->height);
-    }
-    fputs("unset multiplot\nunset output\n", script);
+    dea_legend_draw(legend, script, page->canvas.width, page->height);
 }
 
 /* Loops lie along the voltages of all runs. */

@@ -86,12 +86,8 @@ static void write_grid(const page *p, FILE *script, size_t map, dea_scale scale)
     fprintf(script, "$map%zu << END\n", map);
     for (size_t k = 0; k < p->layout.spread_points; k += p->up) {
         for (size_t i = p->first; i < p->layout.rows; i += p->across) {
-            dea_gnuplot_number(script, place_of(p, i));
-            fputc(' ', script);
-            dea_gnuplot_number(script, p->radius.factor * dea_layout_radius(p->plot->scene, &p->layout, k));
-            fputc(' ', script);
-            dea_gnuplot_number(script, scale.factor * value_at(p, i, k, map));
-            fputc('\n', script);
+            dea_gnuplot_put(script, "%g %g %g\n", place_of(p, i), p->radius.factor * dea_layout_radius(p->plot->scene, &p->layout, k),
+                            scale.factor * value_at(p, i, k, map));
         }
         fputc('\n', script);
     }
@@ -107,16 +103,10 @@ static void write_colours(FILE *script, size_t map, const dea_span *span, dea_sc
     if (!(drawn.high - drawn.low > 1e-9 * fabs(middle))) { /* the same everywhere */
         drawn = (dea_span){middle - 0.5 * fabs(middle) - 1e-9, middle + 0.5 * fabs(middle) + 1e-9, false};
     }
-    fputs("set cbrange [", script);
-    dea_gnuplot_number(script, drawn.low);
-    fputc(':', script);
-    dea_gnuplot_number(script, drawn.high);
-    fputs("]\n", script);
+    dea_gnuplot_put(script, "set cbrange [%g:%g]\n", drawn.low, drawn.high);
     dea_span_steps(script, "cb", &drawn, box.height / 26.0);
     snprintf(label, sizeof label, "%s%s%s%s", maps[map].words, *scale.unit ? " [" : "", scale.unit, *scale.unit ? "]" : "");
-    fputs("set cblabel offset 1.5,0 textcolor '#202020' ", script);
-    dea_gnuplot_text(script, label);
-    fputc('\n', script);
+    dea_gnuplot_put(script, "set cblabel offset 1.5,0 textcolor '#202020' %q\n", label);
 }
 
 static void write_map(const page *p, FILE *script, size_t map, dea_box box)
@@ -127,12 +117,9 @@ static void write_map(const page *p, FILE *script, size_t map, dea_box box)
     const dea_span radii = {0.0, p->radius.factor * scene->actuator.frame_radius, false};
     char label[DEA_LABEL_LENGTH];
     snprintf(label, sizeof label, "Radius [%s]", p->radius.unit);
-    fputs("set ylabel ", script);
-    dea_gnuplot_text(script, label);
+    dea_gnuplot_put(script, "set ylabel %q\n", label);
     snprintf(label, sizeof label, "Time [%s]", p->time.unit);
-    fputs("\nset xlabel ", script);
-    dea_gnuplot_text(script, bottom ? label : "");
-    fputc('\n', script);
+    dea_gnuplot_put(script, "set xlabel %q\n", bottom ? label : "");
     dea_span_write(script, "x", &times, box.width, bottom ? dea_name_plain : dea_name_none);
     fprintf(script, "set format x '%s'\n", bottom ? "%h" : "");
     if (scene->transient.logarithmic) {
@@ -141,11 +128,10 @@ static void write_map(const page *p, FILE *script, size_t map, dea_box box)
     }
     dea_span_write(script, "y", &radii, box.height, dea_name_plain);
     const double edge = p->radius.factor * edge_of(scene);
-    fputs("set arrow 1 from graph 0, first ", script);
-    dea_gnuplot_number(script, edge);
-    fputs(" to graph 1, first ", script);
-    dea_gnuplot_number(script, edge);
-    fprintf(script, " nohead front dashtype (6, 4) linewidth 1 linecolor '#ffffff'\nplot $map%zu using 1:2:3 with image notitle\nunset label 2\n", map);
+    dea_gnuplot_put(script,
+                    "set arrow 1 from graph 0, first %g to graph 1, first %g nohead front dashtype (6, 4) linewidth 1 linecolor '#ffffff'\n"
+                    "plot $map%z using 1:2:3 with image notitle\nunset label 2\n",
+                    edge, edge, map);
 }
 
 static dea_status waves_draw(dea_plot *plot, dea_error *error)
@@ -187,7 +173,6 @@ static dea_status waves_draw(dea_plot *plot, dea_error *error)
         write_colours(script, i, &spans[i], scales[i], box);
         write_map(&p, script, i, box);
     }
-    fputs("unset multiplot\nunset output\n", script);
     return DEA_OK;
 }
 

@@ -1,10 +1,10 @@
 #include "output/progress.h"
+#include "support/clock.h"
 
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 enum { BAR_WIDTH = 30, TEXT_LENGTH = 320 };
@@ -19,13 +19,6 @@ struct dea_progress {
 static const double interval = 0.1; /* between two bars [s] */
 static const double patience = 0.3; /* work that is over by then never shows a bar [s] */
 
-static double clock_now(void)
-{
-    struct timespec now = {0};
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 dea_progress *dea_progress_begin(void)
 {
     const char *terminal = getenv("TERM");
@@ -35,7 +28,7 @@ dea_progress *dea_progress_begin(void)
     }
     dea_progress *bar = calloc(1, sizeof *bar);
     if (bar) {
-        *bar = (dea_progress){.coloured = !plain || !*plain, .begun = clock_now()};
+        *bar = (dea_progress){.coloured = !plain || !*plain, .begun = dea_clock()};
     }
     return bar;
 }
@@ -71,7 +64,7 @@ void dea_progress_show(dea_progress *bar, size_t done, size_t total)
     if (!bar || total == 0) {
         return;
     }
-    const double now = clock_now(), spent = now - bar->begun;
+    const double now = dea_clock(), spent = now - bar->begun;
     if (spent < patience || now - bar->last < interval) {
         return;
     }

@@ -341,6 +341,21 @@ static dea_status raw_open(const dea_scene *scene, const char *engine, dea_atomi
     return DEA_OK;
 }
 
+/* Readers that know one plot a file are many, and none has room for numbers over the radius in each row. */
+static bool raw_note(const void *state, char text[DEA_NOTE_LENGTH])
+{
+    const raw *out = state;
+    const size_t points = dea_scene_point_count(out->scene) * out->scene->model_count, plots = out->is_sweep ? points / out->length : points;
+    const bool spread = out->layout.spread_count > 0;
+    char many[96] = "";
+    if (plots > 1) {
+        snprintf(many, sizeof many, " holds a plot for each of %zu runs, and many viewers show the first alone", plots);
+    }
+    snprintf(text, DEA_NOTE_LENGTH, "%s%s%s%s", out->file->target, many, spread && *many ? ", and" : "",
+             spread ? " leaves out what the film does along its radius: csv and nc have it" : "");
+    return spread || *many;
+}
+
 /* Takes one point: a whole run, or a row of a run of a sweep. */
 static dea_status raw_point(raw *out, const char *point, dea_error *error)
 {
@@ -369,4 +384,4 @@ static dea_status raw_points(void *state, size_t first, const void *points, size
     return out->file->direct ? raw_flush(out, error) : DEA_OK; /* a reader at the other end sees runs as they come */
 }
 
-const dea_format dea_format_raw = {.name = "raw", .straight = true, .open = raw_open, .points = raw_points, .close = raw_close};
+const dea_format dea_format_raw = {.name = "raw", .straight = true, .open = raw_open, .note = raw_note, .points = raw_points, .close = raw_close};

@@ -138,8 +138,7 @@ dea_look dea_series_look(const dea_series *series, size_t model, size_t group)
 void dea_look_colour(FILE *script, const dea_look *look)
 {
     if (look->scaled) {
-        fputs("linecolor palette cb ", script);
-        dea_gnuplot_number(script, look->value);
+        dea_gnuplot_put(script, "linecolor palette cb %g", look->value);
     } else {
         fprintf(script, "linecolor '%s'", look->colour);
     }
@@ -162,17 +161,11 @@ void dea_series_bar(const dea_series *series, FILE *script, dea_canvas canvas, i
     dea_plot_palette(script, bar_end);
     dea_span_write(script, "cb", &span, panel.height, dea_name_plain);
     dea_label_axis(axis, &series->scale, label);
-    fputs("set cblabel offset 1.5,0 textcolor '#202020' ", script);
-    dea_gnuplot_text(script, label);
-    fputs("\nset colorbox vertical user origin screen ", script);
-    dea_gnuplot_number(script, (canvas.width - DEA_BAR + 12.0) / canvas.width);
-    fputs(", screen ", script);
-    dea_gnuplot_number(script, 1.0 - (panel.top + panel.height) / height);
-    fputs(" size screen ", script);
-    dea_gnuplot_number(script, 14.0 / canvas.width);
-    fputs(", screen ", script);
-    dea_gnuplot_number(script, panel.height / height);
-    fputc('\n', script);
+    dea_gnuplot_put(script,
+                    "set cblabel offset 1.5,0 textcolor '#202020' %q\n"
+                    "set colorbox vertical user origin screen %g, screen %g size screen %g, screen %g\n",
+                    label, (canvas.width - DEA_BAR + 12.0) / canvas.width, 1.0 - (panel.top + panel.height) / height,
+                    14.0 / canvas.width, panel.height / height);
 }
 
 /* Groups, or marks where the groups have a colour scale. */

@@ -66,10 +66,7 @@ static void write_curves(const dea_strips *s, FILE *script)
             if (isnan(s->curves[i].y[2 * k])) {
                 fputc('\n', script); /* a blank line breaks a curve, a missing number does not */
             } else if (x > 0.0 || !s->logarithmic) {
-                dea_gnuplot_number(script, x);
-                fputc(' ', script);
-                dea_gnuplot_number(script, s->curves[i].y[2 * k]);
-                fputc('\n', script);
+                dea_gnuplot_put(script, "%g %g\n", x, s->curves[i].y[2 * k]);
             }
         }
         fputs("\nNaN NaN\nEND\n", script); /* never empty */
@@ -93,14 +90,10 @@ static void write_strip(const dea_strips *s, FILE *script, size_t strip)
 static void write_frame(const dea_strips *s, FILE *script, const dea_span *along, const dea_span *span, const char *label, dea_box box,
                         bool bottom)
 {
-    fputs("set ylabel ", script);
-    dea_gnuplot_text(script, label);
-    fputc('\n', script);
+    dea_gnuplot_put(script, "set ylabel %q\n", label);
     dea_span_write(script, "y", span, box.height, dea_name_plain);
     dea_span_write(script, "x", along, box.width, bottom ? dea_name_plain : dea_name_none);
-    fprintf(script, "%sset xlabel ", bottom ? "" : "set format x ''\n");
-    dea_gnuplot_text(script, bottom ? s->label : "");
-    fputc('\n', script);
+    dea_gnuplot_put(script, "%sset xlabel %q\n", bottom ? "" : "set format x ''\n", bottom ? s->label : "");
 }
 
 static dea_span span_along(const dea_strips *s)
@@ -148,10 +141,7 @@ dea_status dea_strips_draw(dea_strips *s, dea_plot *plot, dea_error *error)
         box.top += box.height + stretch * GAP;
         box.height = stretch * SMALL;
     }
-    if (s->legend.count > 0) {
-        dea_legend_draw(&s->legend, script, canvas.width, height);
-    }
-    fputs("unset multiplot\nunset output\n", script);
+    dea_legend_draw(&s->legend, script, canvas.width, height);
     return DEA_OK;
 }
 

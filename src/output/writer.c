@@ -80,6 +80,11 @@ dea_status dea_writer_open(const dea_scene *scene, const char *engine, const cha
     return DEA_OK;
 }
 
+bool dea_writer_note(const dea_writer *writer, char text[DEA_NOTE_LENGTH])
+{
+    return writer->format->note && writer->format->note(writer->state, text);
+}
+
 dea_status dea_writer_points(dea_writer *writer, size_t first, const void *points, size_t count, dea_error *error)
 {
     if (first != writer->next || count > writer->total - first) {

@@ -10,6 +10,8 @@ typedef struct dea_format {
     bool straight;    /* can be written to a pipe or device */
     /* Starts a file; scene and file outlive the state. Returns the state through @p state, which the caller ends with close(). */
     dea_status (*open)(const dea_scene *scene, const char *engine, dea_atomic *file, void **state, dea_error *error);
+    /* What a reader ought to know: dea_writer_note(); NULL: nothing. */
+    bool (*note)(const void *state, char text[DEA_NOTE_LENGTH]);
     /* Appends points as the scene's dea_layout has them; they come in order, without gaps. */
     dea_status (*points)(void *state, size_t first, const void *points, size_t count, dea_error *error);
     /* Writes what is left when @p keep is true and frees the state; NULL is fine. */

@@ -8,6 +8,7 @@
 #include "needs/nearness.h"
 #include "network/swing.h"
 #include "program/omissions.h"
+#include "scene/line.h"
 #include "study/study.h"
 #include "support/number.h"
 
@@ -78,24 +79,16 @@ static int digits_of(double error)
     return error < 5e-5 ? 4 : error < 5e-4 ? 3 : 2;
 }
 
-static void print_quantity(double value, const char *unit, int digits)
-{
-    char text[64];
-    fputs(dea_quantity_digits(value, unit, digits, text), stderr);
-}
-
 /* @p before, "coverage = 0.5, voltage = 4.5 kV"; what is to stand before a further number, @p before itself where there is no
  * axis. */
 static const char *print_axes(const dea_scene *scene, const dea_spot *spot, const char *before)
 {
-    size_t step = dea_scene_point_count(scene);
     for (size_t i = 0; i < scene->axis_count; i++) {
         const dea_axis *axis = &scene->axes[i];
         const char *dot = strrchr(axis->key, '.');
-        step /= axis->count;
         const char *whose = strncmp(axis->key, "antagonist.", 11) == 0 ? "antagonist " : "";
-        fprintf(stderr, "%s%s%s = ", before, whose, dot ? dot + 1 : axis->key);
-        print_quantity(axis->values[spot->number / step % axis->count], axis->unit, 6);
+        fprintf(stderr, "%s%s%s = %s", before, whose, dot ? dot + 1 : axis->key,
+                DEA_QUANTITY(axis->values[dea_axis_index(scene, i, spot->number)], axis->unit, 6));
         before = ", ";
     }
     return before;
@@ -107,8 +100,8 @@ static void print_place(const dea_scene *scene, const dea_spot *spot)
     const char *before = print_axes(scene, spot, " at ");
     const char *sign = dea_study_of(scene)->sign;
     if (sign) {
-        fprintf(stderr, "%s%s = ", before, sign);
-        print_quantity(dea_layout_place(scene, spot->row), dea_layout_of(scene).columns[0].unit, 6);
+        fprintf(stderr, "%s%s = %s", before, sign,
+                DEA_QUANTITY(dea_layout_place(scene, spot->row), dea_layout_of(scene).columns[0].unit, 6));
     }
 }
 
@@ -152,8 +145,7 @@ static void print_stroke(const dea_answer *answer, const dea_scene *scene)
     } else {
         fputs(" and", stderr);
     }
-    fputs(" displacement ", stderr);
-    print_quantity(answer->displacement.value, "m", digits);
+    fprintf(stderr, " displacement %s", DEA_QUANTITY(answer->displacement.value, "m", digits));
     print_place(scene, &answer->displacement);
     print_state(&answer->displacement);
     fputc('\n', stderr);
@@ -166,12 +158,10 @@ static void print_field(const dea_answer *answer, const dea_scene *scene)
     }
     const int digits = digits_of(10.0 * scene->accuracy);
     const double strength = dea_scene_of_run(scene, answer->field.number).material.breakdown;
-    fputs("  true field at most ", stderr);
-    print_quantity(answer->field.value, "V/m", digits);
+    fprintf(stderr, "  true field at most %s", DEA_QUANTITY(answer->field.value, "V/m", digits));
     print_place(scene, &answer->field);
     if (isfinite(strength)) {
-        fprintf(stderr, ", %.*g %% of the strength ", digits, 100.0 * answer->field.value / strength);
-        print_quantity(strength, "V/m", 6);
+        fprintf(stderr, ", %.*g %% of the strength %s", digits, 100.0 * answer->field.value / strength, DEA_QUANTITY(strength, "V/m", 6));
     } else {
         fputs("; strength unknown", stderr);
     }
@@ -185,16 +175,12 @@ static void print_charge(const dea_answer *answer, const dea_scene *scene)
     if (isnan(answer->charge.value)) {
         return;
     }
-    fputs("  charge at most ", stderr);
-    print_quantity(answer->charge.value, "C", digits);
+    fprintf(stderr, "  charge at most %s", DEA_QUANTITY(answer->charge.value, "C", digits));
     print_place(scene, &answer->charge);
     if (!isnan(answer->capacitance)) {
         const int fewer = digits_of(30.0 * scene->accuracy); /* two columns, one of them squared */
-        fputs(", capacitance ", stderr);
-        print_quantity(answer->capacitance, "F", fewer);
-        fputs(" and energy ", stderr);
-        print_quantity(0.5 * answer->charge.value * answer->charge.value / answer->capacitance, "J", fewer);
-        fputs(" there", stderr);
+        fprintf(stderr, ", capacitance %s and energy %s there", DEA_QUANTITY(answer->capacitance, "F", fewer),
+                DEA_QUANTITY(0.5 * answer->charge.value * answer->charge.value / answer->capacitance, "J", fewer));
     }
     fputc('\n', stderr);
 }
@@ -219,16 +205,13 @@ static void print_rest(const dea_answer *answer, const dea_scene *scene, const d
     } else if (scene->axis_count > 0) {
         fputs("there, ", stderr);
     }
-    fputs("at rest and 0 V: capacitance ", stderr);
-    print_quantity(capacitance, "F", 4);
+    fprintf(stderr, "at rest and 0 V: capacitance %s", DEA_QUANTITY(capacitance, "F", 4));
     const double series = dea_series_resistance(&here);
     if (!isnan(series)) {
-        fputs(", R_s C ", stderr);
-        print_quantity(series * capacitance, "s", 4);
+        fprintf(stderr, ", R_s C %s", DEA_QUANTITY(series * capacitance, "s", 4));
     }
     if (isfinite(swing.frequency) && !dea_study_of(scene)->timed) {
-        fputs(", first resonance ", stderr);
-        print_quantity(swing.frequency, "Hz", 4);
+        fprintf(stderr, ", first resonance %s", DEA_QUANTITY(swing.frequency, "Hz", 4));
     }
     fputc('\n', stderr);
 }

@@ -77,6 +77,10 @@ dea_status dea_audience_open(const dea_arguments *arguments, const dea_scene *sc
                              dea_audience *audience, dea_error *error)
 {
     const dea_status status = open_outputs(arguments, scene, audience, error);
+    char note[DEA_NOTE_LENGTH];
+    if (status == DEA_OK && !arguments->quiet && audience->writer && dea_writer_note(audience->writer, note)) {
+        dea_complain("%s", note);
+    }
     if (status == DEA_OK) {
         audience->findings = dea_findings_begin(scene, averages_stream(arguments));
         audience->findings.alone = arguments->no_truth;

@@ -1,4 +1,3 @@
-#include "program/check_omissions.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -25,14 +24,14 @@ static bool is_single(const dea_scene *scene)
 
 static void print_verdict(const dea_measured *m)
 {
-    char text[64];
+    char text[32];
     if (m->verdict == DEA_NOT_JUDGED) {
         printf("not judged: %s", m->why);
         if (isfinite(m->change) && isfinite(m->error)) {
             printf(" (measured %.1e, by a judge that may be off by %.1e)", m->change, m->error);
         }
     } else if (!isnan(m->ended)) {
-        printf("with or without it alone the run ends at %s", dea_quantity_text(m->ended, "s", text));
+        printf("with or without it alone the run ends at %s", DEA_QUANTITY(m->ended, "s", 3));
     } else if (m->change < m->error) {
         printf("measured below %s", dea_bound_text(m->error, text));
     } else {

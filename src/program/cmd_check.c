@@ -3,10 +3,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "program/check_omissions.h"
+#include "program/omissions.h"
 #include "program/program.h"
 #include "result/compare.h"
 #include "study/study.h"
+#include "support/clock.h"
 
 /* Rows of all runs that a check keeps as its reference. */
 enum { MOST_ROWS = DEA_SAMPLES_MAX };
@@ -114,9 +115,9 @@ static bool check_engine(const dea_arguments *arguments, const dea_engine *engin
                                      .log = take_log,
                                      .stop = dea_signals_stop,
                                      .user = comparison};
-    const double start = dea_seconds();
+    const double start = dea_clock();
     const dea_status status = dea_study_run(comparison->scene, engine, &options, &error);
-    const double seconds = dea_seconds() - start;
+    const double seconds = dea_clock() - start;
     if (status != DEA_OK) {
         tally->failed++;
         dea_complain_error(&error);

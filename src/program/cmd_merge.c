@@ -3,8 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "output/merge.h"
+#include "output/journal.h"
 #include "program/audience.h"
+#include "support/clock.h"
 
 typedef struct merging {
     dea_audience audience;
@@ -52,7 +53,7 @@ static dea_exit merge_scene(const dea_arguments *arguments, const dea_scene *sce
     dea_journal_study study = {0};
     merging merge = {0};
     dea_signals_catch();
-    const double start = dea_seconds();
+    const double start = dea_clock();
     dea_status status = dea_journal_study_make(scene, NULL, &study, &error);
     if (status == DEA_OK) {
         status = dea_audience_open(arguments, scene, &merge.audience, &error);
@@ -70,7 +71,7 @@ static dea_exit merge_scene(const dea_arguments *arguments, const dea_scene *sce
     if (status != DEA_OK) {
         return dea_complain_error(&error);
     }
-    return dea_audience_tell(arguments, &merge.audience.findings, dea_seconds() - start);
+    return dea_audience_tell(arguments, &merge.audience.findings, dea_clock() - start);
 }
 
 static dea_exit merge(const dea_arguments *arguments)
@@ -103,6 +104,7 @@ const dea_command dea_command_merge = {
             "      --size WxH        of the picture, for example 8.5x6cm (mm, cm, in, pt)\n"
             "      --log x|y|xy      draw these axes logarithmic\n"
             "      --loops           draw a transient over its voltage: hysteresis loops\n"
+            "      --columns C[,C]   draw these columns of a sweep, e.g. capacitance_F,force_N\n"
             "      --engine E        as in the runs\n"
             "      --model M         as in the runs\n"
             "      --set KEY=VALUE   as in the runs\n"

@@ -1,8 +1,9 @@
 #include <string.h>
 
 #include "program/audience.h"
-#include "program/journaled.h"
+#include "program/program.h"
 #include "study/study.h"
+#include "support/clock.h"
 
 static dea_exit run_scene(const dea_arguments *arguments, const dea_scene *scene)
 {
@@ -19,11 +20,11 @@ static dea_exit run_scene(const dea_arguments *arguments, const dea_scene *scene
                                      .log = dea_audience_log,
                                      .stop = dea_signals_stop,
                                      .user = &audience};
-    const double start = dea_seconds();
+    const double start = dea_clock();
     if (status == DEA_OK) {
         status = dea_study_run(scene, NULL, &options, &error);
     }
-    const double seconds = dea_seconds() - start;
+    const double seconds = dea_clock() - start;
     if (status != DEA_OK && dea_signals_caught()) {
         dea_audience_interrupted(&audience, arguments);
     }
@@ -72,6 +73,7 @@ const dea_command dea_command_run = {
             "      --size WxH        of the picture, for example 8.5x6cm (mm, cm, in, pt)\n"
             "      --log x|y|xy      draw these axes logarithmic\n"
             "      --loops           draw a transient over its voltage: hysteresis loops\n"
+            "      --columns C[,C]   draw these columns of a sweep, e.g. capacitance_F,force_N\n"
             "      --engine E        auto (default): for each model the cheapest that can do it;\n"
             "                        direct, ngspice, ida, or several with commas between, in the\n"
             "                        order in which they are asked\n"

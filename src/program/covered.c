@@ -1,4 +1,4 @@
-#include "program/covered.h"
+#include "program/findings.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -7,6 +7,7 @@
 #include "output/label.h"
 #include "program/omissions.h"
 #include "program/program.h"
+#include "scene/line.h"
 #include "support/number.h"
 
 /* Stretches that a table gives with six digits are met to this. */
@@ -54,12 +55,10 @@ void dea_covered_take(dea_covered *covered, const dea_scene *scene, const dea_la
 
 static void print_place(const dea_scene *scene, size_t number)
 {
-    size_t step = dea_scene_point_count(scene);
     for (size_t i = 0; i < scene->axis_count; i++) {
         char text[DEA_NUMBER_LENGTH];
-        step /= scene->axes[i].count;
         fprintf(stderr, "%s%s = %s", i > 0 ? ", " : " at ", scene->axes[i].column,
-                dea_number_text(text, scene->axes[i].values[number / step % scene->axes[i].count], 6));
+                dea_number_text(text, scene->axes[i].values[dea_axis_index(scene, i, number)], 6));
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include "deaspice/model.h"
 #include "program/omissions.h"
+#include "scene/line.h"
 #include "study/study.h"
 #include "support/number.h"
 
@@ -17,18 +18,6 @@ static void print_number(FILE *stream, double value)
     char text[DEA_NUMBER_LENGTH + 1];
     text[dea_number_write(text, value)] = '\0';
     fputs(text, stream);
-}
-
-/* "1.23 ms" */
-static void print_digits(double value, const char *unit, int digits)
-{
-    char text[64];
-    fputs(dea_quantity_digits(value, unit, digits, text), stderr);
-}
-
-static void print_quantity(double value, const char *unit)
-{
-    print_digits(value, unit, 4);
 }
 
 dea_findings dea_findings_begin(const dea_scene *scene, FILE *averages)
@@ -52,9 +41,11 @@ dea_findings dea_findings_begin(const dea_scene *scene, FILE *averages)
         for (size_t i = 0; i < scene->axis_count; i++) {
             fprintf(averages, "%s,", scene->axes[i].column);
         }
-        fputs("from_s,to_s,strain,displacement_m,least_m,largest_m,peak_to_peak_m", averages);
-        for (int k = 1; scene->drive.waveform.kind == DEA_WAVE_SINE && k <= DEA_HARMONICS; k++) {
-            fprintf(averages, ",amplitude_%d_m,phase_%d_deg", k, k);
+        size_t count;
+        const dea_column *columns = dea_window_columns(scene, &count);
+        fputs("from_s,to_s,strain,displacement_m", averages);
+        for (size_t i = 0; i < count; i++) {
+            fprintf(averages, ",%s", columns[i].name);
         }
         fputc('\n', averages);
     }
@@ -64,13 +55,11 @@ dea_findings dea_findings_begin(const dea_scene *scene, FILE *averages)
 /* Model and axes of run number @p number: last axis fastest, models slowest. */
 static void print_place(FILE *stream, const dea_scene *scene, size_t number)
 {
-    size_t step = dea_scene_point_count(scene);
     if (scene->model_count > 1) {
-        fprintf(stream, "%s,", scene->models[number / step]->name);
+        fprintf(stream, "%s,", scene->models[number / dea_scene_point_count(scene)]->name);
     }
     for (size_t i = 0; i < scene->axis_count; i++) {
-        step /= scene->axes[i].count;
-        print_number(stream, scene->axes[i].values[number / step % scene->axes[i].count]);
+        print_number(stream, scene->axes[i].values[dea_axis_index(scene, i, number)]);
         fputc(',', stream);
     }
 }
@@ -78,22 +67,23 @@ static void print_place(FILE *stream, const dea_scene *scene, size_t number)
 /* Windows of a run: means, then what the samples tell of them. */
 static void print_averages(const dea_findings *findings, size_t number, const dea_scene *placed, const dea_sample *samples)
 {
-    const bool sine = placed->drive.waveform.kind == DEA_WAVE_SINE;
+    size_t told;
+    const dea_column *columns = dea_window_columns(placed, &told);
     for (size_t i = 0; findings->averages && i < placed->transient.average_count; i++) {
         const dea_window window = placed->transient.averages[i];
         const dea_average mean = findings->summary.averages[i];
         const dea_window_figures f = dea_measure_window(placed, samples, findings->layout.rows, &findings->summary, i);
-        double numbers[7 + 2 * DEA_HARMONICS] = {window.from, window.to, mean.strain, mean.displacement,
-                                                 f.least,     f.largest, f.largest - f.least};
-        size_t count = 7;
-        for (size_t k = 0; sine && k < DEA_HARMONICS; k++) {
-            numbers[count++] = f.amplitude[k];
-            numbers[count++] = f.phase[k];
-        }
+        const double means[] = {window.from, window.to, mean.strain, mean.displacement};
         print_place(findings->averages, findings->scene, number);
-        for (size_t k = 0; k < count; k++) {
-            print_number(findings->averages, numbers[k]);
-            fputc(k + 1 < count ? ',' : '\n', findings->averages);
+        for (size_t k = 0; k < sizeof means / sizeof *means; k++) {
+            print_number(findings->averages, means[k]);
+            fputc(',', findings->averages);
+        }
+        for (size_t k = 0; k < told; k++) {
+            double value;
+            memcpy(&value, (const char *)&f + columns[k].offset, sizeof value);
+            print_number(findings->averages, value);
+            fputc(k + 1 < told ? ',' : '\n', findings->averages);
         }
     }
 }
@@ -243,16 +233,12 @@ static double outwards(double value, bool up)
 static void print_interval(dea_interval time)
 {
     if (time.late - time.early <= doubtful * time.late) {
-        fputs("in ", stderr);
-        print_digits(0.5 * (time.early + time.late), "s", 3);
-        return;
+        fprintf(stderr, "in %s", DEA_QUANTITY(0.5 * (time.early + time.late), "s", 3));
+    } else if (time.early > 0.0) {
+        fprintf(stderr, "in %s to %s", DEA_QUANTITY(outwards(time.early, false), "s", 3), DEA_QUANTITY(outwards(time.late, true), "s", 3));
+    } else {
+        fprintf(stderr, "in less than %s", DEA_QUANTITY(outwards(time.late, true), "s", 3));
     }
-    fputs(time.early > 0.0 ? "in " : "in less than ", stderr);
-    if (time.early > 0.0) {
-        print_digits(outwards(time.early, false), "s", 3);
-        fputs(" to ", stderr);
-    }
-    print_digits(outwards(time.late, true), "s", 3);
 }
 
 /* Digits behind the point of a percentage that may be off by that share. */
@@ -267,8 +253,7 @@ static void print_edge(const dea_findings *findings, const dea_edge_answer *edge
     if (isnan(edge->change) || !(fabs(edge->change) > 0.0)) {
         return;
     }
-    fprintf(stderr, "%s at ", edge->rising ? "switched on" : "switched off");
-    print_quantity(edge->time, "s");
+    fprintf(stderr, "%s at %s", edge->rising ? "switched on" : "switched off", DEA_QUANTITY(edge->time, "s", 4));
     if (!edge->reached) {
         fputs(": does not settle within the run\n", stderr);
         return;
@@ -296,16 +281,11 @@ static void print_aliases(const dea_findings *findings)
     const double every = dea_measure_interval(scene, &findings->summary), resonance = findings->summary.resonance;
     const dea_waveform *wave = &scene->drive.waveform;
     if (findings->edge_count == 0 && dea_measure_lives(scene, &findings->summary) && every * resonance > aliased) {
-        fputs("samples every ", stderr);
-        print_quantity(every, "s");
-        fputs(" alias the first resonance\n", stderr);
+        fprintf(stderr, "samples every %s alias the first resonance\n", DEA_QUANTITY(every, "s", 4));
     }
     if (wave->kind == DEA_WAVE_SINE && wave->sine.amplitude != 0.0 && 2.0 * every * wave->sine.frequency > aliased) {
-        fputs("samples every ", stderr);
-        print_quantity(every, "s");
-        fputs(" alias the displacement, which follows the square of a sine of ", stderr);
-        print_quantity(wave->sine.frequency, "Hz");
-        fputs("; means do not rest on samples\n", stderr);
+        fprintf(stderr, "samples every %s alias the displacement, which follows the square of a sine of %s; means do not rest on samples\n",
+                DEA_QUANTITY(every, "s", 4), DEA_QUANTITY(wave->sine.frequency, "Hz", 4));
     }
 }
 
@@ -316,11 +296,9 @@ static void print_edges(const dea_findings *findings)
     const double resonance = findings->summary.resonance;
     if (findings->edge_count > 0 && dea_measure_lives(scene, &findings->summary) &&
         !dea_measure_shows(scene, &findings->summary)) {
-        fputs("no rise and settling times: samples every ", stderr);
-        print_quantity(dea_measure_interval(scene, &findings->summary), "s");
-        fputs(" do not show the first resonance, those every ", stderr);
-        print_digits(outwards(1.0 / (DEA_SAMPLES_A_SWING * resonance), false), "s", 3);
-        fputs(" would\n", stderr);
+        fprintf(stderr, "no rise and settling times: samples every %s do not show the first resonance, those every %s would\n",
+                DEA_QUANTITY(dea_measure_interval(scene, &findings->summary), "s", 4),
+                DEA_QUANTITY(outwards(1.0 / (DEA_SAMPLES_A_SWING * resonance), false), "s", 3));
         return;
     }
     for (size_t i = 0; i < findings->edge_count; i++) {
@@ -377,45 +355,37 @@ static void print_errors(const dea_findings *findings)
     print_omissions(findings);
 }
 
-/* What films did in time. */
 /* Where a film is nearest to its limits, and in time when: of a uniform film there is no place, and in statics no time. */
 static void print_where(double radius, const double *time)
 {
     if (!isnan(radius)) {
-        fputs(" at radius ", stderr);
-        print_quantity(radius, "m");
+        fprintf(stderr, " at radius %s", DEA_QUANTITY(radius, "m", 4));
     }
     if (time) {
-        fputs(" at ", stderr);
-        print_quantity(*time, "s");
+        fprintf(stderr, " at %s", DEA_QUANTITY(*time, "s", 4));
     }
 }
 
 static void print_weakest(const dea_weakest *weakest, const double *times)
 {
-    fputs("largest true field ", stderr);
-    print_quantity(weakest->field, "V/m");
+    fprintf(stderr, "largest true field %s", DEA_QUANTITY(weakest->field, "V/m", 4));
     print_where(weakest->field_radius, times);
-    fputs(", least tension ", stderr);
-    print_quantity(weakest->tension, "Pa");
+    fprintf(stderr, ", least tension %s", DEA_QUANTITY(weakest->tension, "Pa", 4));
     print_where(weakest->tension_radius, times ? times + 1 : NULL);
     fputc('\n', stderr);
 }
 
+/* What films did in time. */
 static void print_motions(const dea_findings *findings)
 {
     if (findings->points == 1 && !isnan(findings->summary.resonance)) {
-        fputs("first resonance ", stderr);
-        print_quantity(findings->summary.resonance, "Hz");
-        fputs(findings->summary.decay > 0.0 ? "\n" : ", undamped: the material has no retardation and no branch\n", stderr);
+        fprintf(stderr, "first resonance %s%s\n", DEA_QUANTITY(findings->summary.resonance, "Hz", 4),
+                findings->summary.decay > 0.0 ? "" : ", undamped: the material has no retardation and no branch");
     }
     if (findings->points == 1 && findings->summary.peak_current > 0.0) {
         const double told = findings->summary.current_error, error = isnan(told) ? 10.0 * findings->summary.error : told;
-        fputs("peak current ", stderr);
-        print_digits(findings->summary.peak_current, "A", error < 5e-5 ? 4 : error < 2e-3 ? 3 : 2);
-        fputs(" at ", stderr);
-        print_quantity(findings->summary.peak_time, "s");
-        fputc('\n', stderr);
+        fprintf(stderr, "peak current %s at %s\n", DEA_QUANTITY(findings->summary.peak_current, "A", error < 5e-5 ? 4 : error < 2e-3 ? 3 : 2),
+                DEA_QUANTITY(findings->summary.peak_time, "s", 4));
     }
     if (findings->points == 1) {
         print_aliases(findings);
@@ -425,9 +395,7 @@ static void print_motions(const dea_findings *findings)
         print_weakest(&findings->weakest, findings->weakest_times);
     }
     if (findings->pulled > 0) {
-        fputs("pull_in from t = ", stderr);
-        print_quantity(findings->pull_in, "s");
-        fputs(" on", stderr);
+        fprintf(stderr, "pull_in from t = %s on", DEA_QUANTITY(findings->pull_in, "s", 4));
         if (findings->points > 1) {
             fprintf(stderr, " at the earliest, in %zu of %zu runs", findings->pulled, findings->points);
         }
@@ -438,19 +406,13 @@ static void print_motions(const dea_findings *findings)
 static void print_responses(const dea_findings *findings)
 {
     const double *resonance = findings->resonance;
-    if (!isnan(resonance[0])) {
-        fputs(findings->points > 1 ? "resonances from " : "resonance ", stderr);
-        print_quantity(resonance[0], "Hz");
-        if (findings->points > 1) {
-            fputs(" to ", stderr);
-            print_quantity(resonance[1], "Hz");
-        }
-        fputc('\n', stderr);
+    if (!isnan(resonance[0]) && findings->points > 1) {
+        fprintf(stderr, "resonances from %s to %s\n", DEA_QUANTITY(resonance[0], "Hz", 4), DEA_QUANTITY(resonance[1], "Hz", 4));
+    } else if (!isnan(resonance[0])) {
+        fprintf(stderr, "resonance %s\n", DEA_QUANTITY(resonance[0], "Hz", 4));
     }
     if (dea_study_of(findings->scene)->phasors && findings->points == 1 && !isnan(findings->band.bandwidth)) {
-        fputs("bandwidth (-3 dB) ", stderr);
-        print_quantity(findings->band.bandwidth, "Hz");
-        fputc('\n', stderr);
+        fprintf(stderr, "bandwidth (-3 dB) %s\n", DEA_QUANTITY(findings->band.bandwidth, "Hz", 4));
     }
 }
 

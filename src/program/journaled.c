@@ -1,4 +1,4 @@
-#include "program/journaled.h"
+#include "program/program.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +8,7 @@
 #include "output/journal.h"
 #include "program/audience.h"
 #include "study/study.h"
+#include "support/clock.h"
 
 /* A run that goes into a journal, and from there to its audience. */
 typedef struct recorder {
@@ -251,7 +252,7 @@ dea_exit dea_run_journaled(const dea_arguments *arguments, const dea_scene *scen
         run.shard = (dea_shard){arguments->shard, arguments->shards};
     }
     dea_signals_catch();
-    const double start = dea_seconds();
+    const double start = dea_clock();
     dea_status status = dea_journal_study_make(scene, NULL, &run.study, &error);
     if (status == DEA_OK && arguments->shard == 0) {
         status = dea_audience_try(arguments, scene, &error);
@@ -276,7 +277,7 @@ dea_exit dea_run_journaled(const dea_arguments *arguments, const dea_scene *scen
         tell_lost(&run, lost);
     }
     const dea_exit outcome = status == DEA_OK
-                                 ? dea_audience_tell(arguments, &run.audience.findings, dea_seconds() - start)
+                                 ? dea_audience_tell(arguments, &run.audience.findings, dea_clock() - start)
                                  : dea_complain_error(&error);
     dea_journal_study_free(&run.study);
     free(run.path);

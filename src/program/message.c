@@ -2,10 +2,10 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 #include "program/program.h"
 #include "support/text.h"
+#include "support/clock.h"
 
 void dea_complain(const char *format, ...)
 {
@@ -64,9 +64,3 @@ void dea_complain_unknown(const char *what, const char *given, const char *const
     fputc('\n', stderr);
 }
 
-double dea_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}

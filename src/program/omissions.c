@@ -29,21 +29,16 @@ static dea_scale scale_of(double value, const char *unit)
     return dea_scale_choose(value, unit);
 }
 
-const char *dea_quantity_digits(double value, const char *unit, int digits, char text[64])
+const char *dea_quantity_text(double value, const char *unit, int digits, char text[DEA_QUANTITY_LENGTH])
 {
     char number[DEA_NUMBER_LENGTH];
     if (strcmp(unit, "1") == 0) {
-        snprintf(text, 64, "%s", dea_number_text(number, value, digits));
+        snprintf(text, DEA_QUANTITY_LENGTH, "%s", dea_number_text(number, value, digits));
         return text;
     }
     const dea_scale scale = scale_of(fabs(value), unit);
-    snprintf(text, 64, "%s %s", dea_number_text(number, value * scale.factor, digits), scale.unit);
+    snprintf(text, DEA_QUANTITY_LENGTH, "%s %s", dea_number_text(number, value * scale.factor, digits), scale.unit);
     return text;
-}
-
-const char *dea_quantity_text(double value, const char *unit, char text[64])
-{
-    return dea_quantity_digits(value, unit, 3, text);
 }
 
 const char *dea_omission_text(const dea_omission *omission, const dea_scene *scene, char text[DEA_OMISSION_LENGTH])
@@ -58,14 +53,14 @@ const char *dea_omission_text(const dea_omission *omission, const dea_scene *sce
                                         [DEA_BRANCH_OUT] = "",
                                         [DEA_BRANCH_SPRING] = ", kept as a spring",
                                         [DEA_BRANCH_DAMPER] = ", kept as a damper"};
-    char time[64], bound[32];
+    char bound[32];
     dea_bound_text(omission->bound, bound);
     if (omission->part == DEA_PART_BRANCH) {
         snprintf(text, DEA_OMISSION_LENGTH, "branch %zu (tau %s%s, <= %s)", omission->branch + 1,
-                 dea_quantity_text(dea_material_branch(&scene->material, omission->branch).tau, "s", time), forms[omission->form], bound);
+                 DEA_QUANTITY(dea_material_branch(&scene->material, omission->branch).tau, "s", 3), forms[omission->form], bound);
     } else if (omission->part == DEA_PART_RING) {
         snprintf(text, DEA_OMISSION_LENGTH, "mass from %.40s behind each corner of the voltage on (<= %s)",
-                 dea_quantity_text(omission->from, "s", time), bound);
+                 DEA_QUANTITY(omission->from, "s", 3), bound);
     } else {
         snprintf(text, DEA_OMISSION_LENGTH, "%s (<= %s)", names[omission->part], bound);
     }

@@ -9,7 +9,7 @@
 #include "deaspice/needs.h"
 #include "deaspice/plot.h"
 #include "deaspice/scene.h"
-#include "support/files.h"
+#include "support/file.h"
 
 /** Exit status of the program. */
 typedef enum dea_exit {
@@ -56,7 +56,7 @@ typedef struct dea_arguments {
     const char *output;
     const char *format;
     const char *plot;
-    dea_plot_options picture; /**< --size, --log, --loops; zeroed: not given */
+    dea_plot_options picture; /**< --size, --log, --loops, --columns; zeroed: not given */
     size_t jobs; /**< 0: not given; "auto" is already the number of cores */
     bool quiet;
     bool full, no_truth;
@@ -148,8 +148,6 @@ bool dea_engines_unfit(const dea_scene *scene);
  * model that the engine (NULL: those of the scene) can do is good enough. @p choice: what was chosen, zeroed where the scene names
  * its models. */
 bool dea_model_settle(dea_scene *scene, const dea_engine *engine, bool quiet, dea_model_choice *choice, dea_exit *outcome);
-/** Seconds since some moment. */
-double dea_seconds(void);
 
 /** Lets SIGINT, SIGTERM, SIGHUP and SIGPIPE end the work cleanly from now on; a second one kills at once. */
 void dea_signals_catch(void);
@@ -161,5 +159,12 @@ bool dea_signals_broken_pipe(void);
 bool dea_signals_stop(void *user);
 /** Ends this process by the signal that came, if one did. */
 void dea_signals_raise(void);
+
+/* ---- Runs that keep their finished blocks in a journal: to go on after a crash, or as a shard. */
+
+/** False, with a complaint, where --shard or --resume are given and other arguments do not go with them. */
+bool dea_journaled_fits(const dea_arguments *arguments);
+/** Runs a scene with --shard or --resume. */
+dea_exit dea_run_journaled(const dea_arguments *arguments, const dea_scene *scene);
 
 #endif

@@ -1,4 +1,4 @@
-#include "result/state.h"
+#include "result/compare.h"
 
 #include <math.h>
 
@@ -36,7 +36,7 @@ static dea_state still_state(const dea_scene *scene, double voltage)
     dea_point_place(scene, &point);
     point.voltage = voltage;
     if (dea_point_valid(&point)) {
-        scene->models[0]->solve(&point, scene->accuracy, &row);
+        dea_model_solve(scene->models[0], &point, scene->accuracy, &row);
     }
     return row.state;
 }

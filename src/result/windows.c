@@ -241,11 +241,35 @@ static void tell_harmonics(const dea_scene *scene, const trace *window, double a
     }
 }
 
+#define HARMONIC(number, ordinal)                                                                                                \
+    {"amplitude_" #number "_m", "amplitude of the " ordinal " harmonic of the displacement in the window", "m",                   \
+     offsetof(dea_window_figures, amplitude[number - 1])},                                                                       \
+        {"phase_" #number "_deg", "its phase against as many times the argument of the drive's sine", "degree",                   \
+         offsetof(dea_window_figures, phase[number - 1])}
+
+static const dea_column window_columns[] = {
+    {"least_m", "least radial displacement of the disc edge in the window", "m", offsetof(dea_window_figures, least)},
+    {"largest_m", "largest radial displacement of the disc edge in the window", "m", offsetof(dea_window_figures, largest)},
+    {"peak_to_peak_m", "displacement from peak to peak in the window", "m", offsetof(dea_window_figures, range)},
+    HARMONIC(1, "first"),
+    HARMONIC(2, "second"),
+    HARMONIC(3, "third"),
+    HARMONIC(4, "fourth"),
+    HARMONIC(5, "fifth"),
+};
+
+const dea_column *dea_window_columns(const dea_scene *scene, size_t *count)
+{
+    const size_t all = sizeof window_columns / sizeof *window_columns;
+    *count = scene->drive.waveform.kind == DEA_WAVE_SINE ? all : all - 2 * DEA_HARMONICS;
+    return window_columns;
+}
+
 dea_window_figures dea_measure_window(const dea_scene *scene, const dea_sample *samples, size_t count, const dea_summary *summary,
                                       size_t window)
 {
     const double none = (double)NAN;
-    dea_window_figures figures = {.least = none, .largest = none};
+    dea_window_figures figures = {none, none, none, {none}, {none}};
     trace t;
     for (int k = 0; k < DEA_HARMONICS; k++) {
         figures.amplitude[k] = figures.phase[k] = none;
@@ -263,6 +287,7 @@ dea_window_figures dea_measure_window(const dea_scene *scene, const dea_sample *
     if (fmax(fabs(fine[0] - coarse[0]), fabs(fine[1] - coarse[1])) <= allowed) {
         figures.least = fine[0];
         figures.largest = fine[1];
+        figures.range = fine[1] - fine[0];
     }
     t.stride = 1;
     tell_harmonics(scene, &t, allowed, own, &figures);

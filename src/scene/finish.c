@@ -175,14 +175,23 @@ static dea_status load_check(dea_reader *reader)
 {
     const dea_scene *scene = reader->scene;
     const dea_node *load = dea_tree_child(reader->root, "load");
-    if (load && isnan(scene->load.mass) && isnan(scene->load.stiffness) && isnan(scene->load.damping) && isnan(scene->load.force)) {
-        return dea_place_fail(&load->place, reader->error, "load", "without a number; accepted: mass, stiffness, damping and force, e.g. {stiffness: 20 N/m}");
+    bool given = false;
+    for (size_t i = 0; i < dea_load_count(); i++) {
+        const dea_edge_load *one = &scene->loads[i];
+        given = given || !isnan(one->number);
+        if (!isnan(one->number) && one->kind->adds.mass > 0.0 && isnan(scene->material.density)) {
+            char path[DEA_NAME_LENGTH];
+            snprintf(path, sizeof path, "load.%s", one->kind->name);
+            return dea_place_fail(dea_reader_place(reader, (size_t)((const char *)&one->number - (const char *)scene), "load"), reader->error, path,
+                                  "moves with a film that has none; accepted: material.density beside it, e.g. 1080 kg/m^3");
+        }
     }
-    if (isnan(scene->load.mass) || !isnan(scene->material.density)) {
-        return DEA_OK;
+    if (load && !given) {
+        char accepted[DEA_KEY_ROOM];
+        dea_key_suggest("load", "", accepted);
+        return dea_place_fail(&load->place, reader->error, "load", "without a number%s, e.g. {stiffness: 20 N/m}", accepted);
     }
-    return dea_place_fail(dea_reader_place(reader, offsetof(dea_scene, load.mass), "load"), reader->error, "load.mass",
-                          "moves with a film that has none; accepted: material.density beside it, e.g. 1080 kg/m^3");
+    return DEA_OK;
 }
 
 /* A source gives less than its voltage only in time, and what it gives then needs a resistance to be told from that voltage. */

@@ -94,12 +94,12 @@ static const dea_key keys_behind[] = {
          "a density > 0, e.g. 1010 kg/m^3"),
     PART("electrode.sheet_resistance", electrode.sheet_resistance, "ohm", "_Ohm", 0, INFINITY, true, 2, "electrode",
          "a resistance per square > 0, e.g. 10 kOhm"),
-    OTHER("load", dea_read_mapping, "a mapping with mass, stiffness, damping and force, e.g. {mass: 2 g, stiffness: 20 N/m}"),
-    PART("load.mass", load.mass, "kg", "_kg", 0, INFINITY, true, 2, "load", "a mass > 0, e.g. 2 g"),
-    PART("load.stiffness", load.stiffness, "N/m", "_N_per_m", 0, INFINITY, true, 2, "load", "a stiffness > 0, e.g. 20 N/m"),
-    PART("load.damping", load.damping, "N s/m", "_N_s_per_m", 0, 1e20, true, 2, "load",
-         "a mechanical resistance > 0 and < 1e20 N s/m, e.g. 1e-3 N s/m"),
-    PART("load.force", load.force, "N", "_N", -INFINITY, INFINITY, true, 2, "load", "a force, outward positive, e.g. 50 mN"),
+    OTHER("load", dea_read_mapping, "a mapping of what is fixed to the edge, e.g. {mass: 2 g, stiffness: 20 N/m}"),
+};
+
+/* Here stand the keys of the loads, a number each. */
+
+static const dea_key keys_beside[] = {
     OTHER("antagonist", dea_read_antagonist, "a mapping with actuator, material and drive, e.g. {actuator: {kind: lens}, drive: {voltage: 3 kV}}"),
     OTHER("antagonist.actuator", dea_read_mapping, "a mapping with kind, film_thickness, layers and prestretch, e.g. {kind: lens}"),
     OTHER("antagonist.actuator.kind", dea_read_antagonist_kind, "dot, lens"),
@@ -206,6 +206,15 @@ static bool law_key(const holder *of, const dea_law *law, size_t index, dea_key 
     return true;
 }
 
+static void load_key(size_t index, dea_key *key)
+{
+    const dea_load_kind *kind = dea_load_at(index);
+    *key = (dea_key){.read = dea_read_scalar, .offset = AT(loads[0].number) + index * sizeof(dea_edge_load), .unit = kind->unit,
+                     .suffix = kind->suffix, .low = kind->low, .high = kind->high, .open = true, .kinds = DEA_KEY_BOTH, .words = 2,
+                     .within = "load", .accepted = kind->accepted};
+    snprintf(key->path, sizeof key->path, "load.%s", kind->name);
+}
+
 /* Key number *@p index of some keys; where there are fewer, it becomes the number in those that follow. */
 static bool listed_key(const dea_key *keys, size_t count, size_t *index, dea_key *key)
 {
@@ -281,6 +290,14 @@ bool dea_key_at(size_t index, dea_key *key)
         index -= count;
     }
     if (listed_key(keys_behind, COUNT(keys_behind), &index, key)) {
+        return true;
+    }
+    if (index < dea_load_count()) {
+        load_key(index, key);
+        return true;
+    }
+    index -= dea_load_count();
+    if (listed_key(keys_beside, COUNT(keys_beside), &index, key)) {
         return true;
     }
     for (dea_wave_kind kind = DEA_WAVE_STEP; dea_wave_of(kind); kind++) {

@@ -28,6 +28,11 @@ static size_t longest_axis(const dea_scene *scene, size_t count)
     return best;
 }
 
+size_t dea_axis_index(const dea_scene *scene, size_t axis, size_t point)
+{
+    return point / stride_of(scene, axis) % scene->axes[axis].count;
+}
+
 void dea_axes_place(dea_scene *scene, size_t point)
 {
     for (size_t i = scene->axis_count; i-- > 0;) {

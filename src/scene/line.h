@@ -23,6 +23,8 @@ typedef dea_status dea_line_visit(void *user, const dea_scene *scene, const dea_
 dea_status dea_lines_visit(const dea_scene *scene, size_t first, size_t count, dea_line_visit *visit, void *user,
                            dea_error *error);
 
+/** Index on axis number @p axis of a point, or of one of a further model. */
+size_t dea_axis_index(const dea_scene *scene, size_t axis, size_t point);
 /** Moves all axes of a scene to the point of that number. */
 void dea_axes_place(dea_scene *scene, size_t point);
 

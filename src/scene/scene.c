@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "deaspice/model.h"
 #include "deaspice/scene.h"
 #include "drive/wave.h"
 #include "support/file.h"
@@ -24,7 +25,6 @@ static dea_status scene_clear(dea_scene *scene)
                      .focal_length = NAN,
                      .refractive_index = NAN},
         .electrode = {.thickness = NAN, .density = NAN, .sheet_resistance = NAN},
-        .load = {.mass = NAN, .stiffness = NAN, .damping = NAN, .force = NAN},
         .antagonist = {.frame_radius = NAN, .coverage = NAN, .film_thickness = NAN, .layers = NAN, .prestretch = NAN, .voltage = 0.0},
         .material = dea_material_default(),
         .drive = {.voltage = NAN,
@@ -41,6 +41,7 @@ static dea_status scene_clear(dea_scene *scene)
         .accuracy = 1e-6,
         .files = scene->files,
     };
+    dea_scene_unload(scene);
     return scene->title ? DEA_OK : DEA_ERROR_MEMORY;
 }
 

@@ -61,6 +61,12 @@ static const dea_column columns[] = {
     {"impedance_phase_deg", "phase of the input impedance", "degree", offsetof(dea_response, impedance_phase)},
 };
 
+static const dea_column figures[] = {
+    {"resonance_Hz", "frequency of the highest peak of the displacement per volt", "Hz", offsetof(dea_band, resonance)},
+    {"bandwidth_Hz", "frequency at which the displacement per volt falls to 1/sqrt(2) of its first value", "Hz",
+     offsetof(dea_band, bandwidth)},
+};
+
 static const dea_study_column compared[] = {
     {offsetof(dea_response, displacement), DEA_OVER_ITSELF, "displacement"},
     {offsetof(dea_response, displacement_phase), DEA_OVER_RADIAN, "phase"},
@@ -129,6 +135,8 @@ const dea_study dea_study_ac = {
     .key_count = sizeof keys / sizeof *keys,
     .compared = compared,
     .compared_count = sizeof compared / sizeof *compared,
+    .figures = figures,
+    .figure_count = sizeof figures / sizeof *figures,
     .drawer = &dea_drawer_runs,
     .drawn = drawn,
     .drawn_count = sizeof drawn / sizeof *drawn,

@@ -14,11 +14,12 @@ static const char *too_large(size_t most)
     return most > DEA_FILE_MAX ? "larger than 64 MiB" : "larger than 16 MiB";
 }
 
-static const char *drain(int file, size_t most, char **text, size_t *length)
+int dea_file_drain(int file, size_t most, char **text, size_t *length)
 {
     size_t room = 16384;
     size_t used = 0;
     char *bytes = malloc(room);
+    *text = NULL;
     while (bytes) {
         const ssize_t got = read(file, bytes + used, room - used);
         if (got < 0 && errno == EINTR) {
@@ -27,12 +28,12 @@ static const char *drain(int file, size_t most, char **text, size_t *length)
         if (got <= 0) {
             *text = bytes;
             *length = used;
-            return got < 0 ? strerror(errno) : NULL;
+            return got < 0 ? errno : 0;
         }
         used += (size_t)got;
         *text = bytes;
-        if (used > most * 1024 * 1024) {
-            return too_large(most);
+        if (used > most) {
+            return EFBIG;
         }
         if (used == room) {
             room *= 2;
@@ -41,7 +42,14 @@ static const char *drain(int file, size_t most, char **text, size_t *length)
             bytes = grown;
         }
     }
-    return no_memory;
+    return ENOMEM;
+}
+
+/* The rest of a file, and why it has none. */
+static const char *take_in(int file, size_t most, char **text, size_t *length)
+{
+    const int failed = dea_file_drain(file, most * 1024 * 1024, text, length);
+    return failed == ENOMEM ? no_memory : failed == EFBIG ? too_large(most) : failed ? strerror(failed) : NULL;
 }
 
 static const char *type_refused(mode_t mode, bool pipe)
@@ -83,7 +91,7 @@ dea_status dea_file_read(const char *path, bool pipe, size_t most, char **text, 
     if (!refused && seen && dea_files_note(seen, standard ? "standard input" : path, &about, NULL) != DEA_OK) {
         refused = no_memory;
     }
-    refused = refused ? refused : drain(file, most, text, length);
+    refused = refused ? refused : take_in(file, most, text, length);
     if (file >= 0 && !standard) {
         close(file);
     }

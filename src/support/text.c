@@ -33,6 +33,15 @@ size_t dea_text_character(const char *text, size_t length, unsigned *code)
     return value >= smallest[size] && value <= 0x10FFFF && !(value >= 0xD800 && value <= 0xDFFF) ? size : 0;
 }
 
+size_t dea_text_letters(const char *text)
+{
+    size_t letters = 0;
+    for (; *text; text++) {
+        letters += ((unsigned char)*text & 0xC0) != 0x80;
+    }
+    return letters;
+}
+
 bool dea_text_hidden(unsigned code)
 {
     return code < 0x20 || (code >= 0x7F && code < 0xA0) || code == 0x061C || (code >= 0x200B && code <= 0x200F) ||

@@ -11,6 +11,8 @@ enum { DEA_TEXT_SHOWN = 60, DEA_TEXT_ROOM = 10 * DEA_TEXT_SHOWN + 8 };
 /* Bytes of the valid UTF-8 character at @p text (1 ... 4) and its code point, 0 where there is none; @p text has @p length bytes.
  */
 size_t dea_text_character(const char *text, size_t length, unsigned *code);
+/* Characters of a text in UTF-8. */
+size_t dea_text_letters(const char *text);
 /* True for a character that a terminal or a reader could take for something else: controls, line separators, direction marks. */
 bool dea_text_hidden(unsigned code);
 /* Copies at most @p shown characters of @p text to @p out, hidden ones and foreign bytes escaped, "..." where it was cut; returns

@@ -180,6 +180,7 @@ int __wrap_open(const char *path, int flags, ...)
 }
 
 /* processes */
+FAULT_CALL(pipe2, int, (int ends[2], int flags), (ends, flags), -1, EMFILE)
 FAULT_CALL(socketpair, int, (int domain, int type, int protocol, int ends[2]), (domain, type, protocol, ends), -1, EMFILE)
 FAULT_CALL(send, ssize_t, (int fd, const void *bytes, size_t size, int flags), (fd, bytes, size, flags), -1, ECONNRESET)
 FAULT_CALL(recv, ssize_t, (int fd, void *bytes, size_t size, int flags), (fd, bytes, size, flags), -1, ECONNRESET)

@@ -482,7 +482,7 @@ static void a_heavy_load_makes_the_membrane_a_spring(void **state)
     read_scene(film, "field", &scene);
     const dea_row rest = solve_direct(&scene, "field");
     scene.material.density = 1e-3;
-    scene.load.mass = 1.0;
+    *dea_scene_load(&scene, "mass") = 1.0;
     scene.study = DEA_STUDY_AC;
     scene.ac = (dea_ac){.from = 1.0, .to = 1.0, .points_per_decade = 1, .bias = 1.0};
     assert_int_equal(dea_engine_find("direct")->ac(NULL, &scene, scene.models[0], &row, NULL, &error), DEA_OK);

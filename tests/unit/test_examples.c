@@ -472,6 +472,34 @@ static void a_blocked_dot_pushes_with_its_electrostatic_force(void **state)
     assert_int_equal(run_rows("force", take_force), 3 * 36);
 }
 
+/* bias_V, frequency_Hz, displacement_m_per_V, displacement_phase_deg, impedance_Ohm, ...: at 1 Hz, far below the first mode and far
+ * above the leak, what charge and stroke of the static film gain by a volt; at 10 kHz the series resistance alone. */
+static void take_datasheet(char *const *cells, size_t count)
+{
+    const double bias = strtod(cells[0], NULL), frequency = strtod(cells[1], NULL), impedance = strtod(cells[4], NULL);
+    const dea_row *above = row_at("field", bias + 100.0, 0.0), *below = row_at("field", bias - 100.0, 0.0);
+    assert_int_equal(count, 7);
+    if (is_close(frequency, 1.0, 0.0, 1e-9)) {
+        const double slope = (above->charge - below->charge) / 200.0;
+        assert_relative(strtod(cells[2], NULL), (above->displacement - below->displacement) / 200.0, 2e-3);
+        assert_relative(1.0 / (2.0 * DEA_PI * impedance), slope, 2e-3);
+    } else if (is_close(frequency, 1e4, 0.0, 1e-6)) {
+        assert_relative(impedance, 1e6, 2e-2);
+    }
+}
+
+static void the_datasheet_tells_one_device_at_rest_and_in_frequency(void **state)
+{
+    (void)state;
+    run_example("datasheet");
+    const double area = DEA_PI * 0.015 * 0.015, rest = 2.8 * 8.8541878128e-12 * area / (1e-4 / 1.44);
+    assert_relative(row_at("field", 0.0, 0.0)->capacitance, rest, 1e-12);
+    for (size_t i = 0; i < here.count; i++) {
+        assert_int_equal(here.rows[i].state, here.rows[i].field > 1e8 ? DEA_STATE_BREAKDOWN : DEA_STATE_OK);
+    }
+    assert_int_equal(run_rows("datasheet-response", take_datasheet), 3 * 176);
+}
+
 /* bias_V, coverage, mode, frequency_Hz, damping_ratio, undamped_frequency_Hz, ...: frequencies of physics, section 7. */
 static void take_mode(char *const *cells, size_t count)
 {
@@ -679,6 +707,7 @@ int main(void)
         cmocka_unit_test(a_blocked_dot_pushes_with_its_electrostatic_force),
         cmocka_unit_test(vhb_follows_the_closed_form_of_a_neo_hookean),
         cmocka_unit_test(sample_data_gives_back_the_constants_it_was_made_from),
+        cmocka_unit_test(the_datasheet_tells_one_device_at_rest_and_in_frequency),
         cmocka_unit_test(modes_are_those_of_the_table),
         cmocka_unit_test(the_disc_of_a_lens_shrinks_evenly_and_the_annulus_fills_the_rest),
         cmocka_unit_test(every_example_opens_with_a_command_that_works),

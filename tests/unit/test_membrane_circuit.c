@@ -122,8 +122,8 @@ static dea_scene way_scene(unsigned way)
                                           .thickness = 25e-6, .density = 1010.0, .sheet_resistance = (double)NAN};
     }
     if (way & LOAD) {
-        scene.load.mass = 1e-4;
-        scene.load.stiffness = 300.0;
+        *dea_scene_load(&scene, "mass") = 1e-4;
+        *dea_scene_load(&scene, "stiffness") = 300.0;
     }
     return scene;
 }

@@ -100,7 +100,7 @@ static void tape_gives_value_and_exact_slope_of_any_expression(void **state)
         assert_near(dea_tape_value(&tape, 0), (double)t.dual.value, 1e-13 * (double)t.dual.most);
         double *values = calloc((size_t)pool.count, sizeof *values);
         assert_non_null(values);
-        dea_pool_values(&pool, symbol, node, values);
+        dea_pool_values_at(&pool, &(dea_point_values){&symbol, &node, 1, 1}, values);
         assert_near(values[t.expr], (double)t.dual.value, 1e-13 * (double)t.dual.most);
         free(values);
         dea_tape_free(&tape);
@@ -171,22 +171,34 @@ static void index_of_a_node_or_symbol_out_of_range_is_refused(void **state)
     assert_null(tape.terms);
     assert_int_equal(dea_tape_compile_many(&pool, both, 2, 3, 2, &tape, &error), DEA_OK);
     const double at[] = {5.0, 7.0}, parameters[] = {11.0, 13.0, 17.0};
-    dea_tape_gradients(&tape, parameters, at);
-    assert_relative(dea_tape_value(&tape, 0), 16.0, 0.0);
-    assert_relative(dea_tape_gradient(&tape, 0, 0), -1.0, 0.0);
-    assert_relative(dea_tape_gradient(&tape, 0, 1), 3.0, 0.0);
-    assert_relative(dea_tape_gradient(&tape, 1, 0), 17.0, 0.0);
-    assert_relative(dea_tape_gradient(&tape, 1, 1), 0.0, 0.0);
+    for (int node = 0; node < 2; node++) {
+        const double along[] = {node == 0, node == 1};
+        dea_tape_along(&tape, parameters, at, NULL, along);
+        assert_relative(dea_tape_value(&tape, 0), 16.0, 0.0);
+        assert_relative(dea_tape_slope(&tape, 0), node == 0 ? -1.0 : 3.0, 0.0);
+        assert_relative(dea_tape_slope(&tape, 1), node == 0 ? 17.0 : 0.0, 0.0);
+    }
     dea_tape_free(&tape);
     double values[16];
     assert_true(pool.count <= 16);
-    dea_pool_values(&pool, 1.0, 1.0, values);
+    dea_pool_values_at(&pool, &(dea_point_values){parameters, at, 1, 1}, values);
     assert_true(isnan(values[nodes]) && isnan(values[symbols]));
     dea_pool_free(&pool);
 }
 
 /* A random expression of every operation over several nodes and symbols; `count` is how often it may branch. */
 enum { MANY_NODES = 5, MANY_SYMBOLS = 3 };
+
+/* Slopes of the first output over all nodes. */
+static void gradient_of(dea_tape *tape, const double *symbols, const double *nodes, double gradient[MANY_NODES])
+{
+    for (int k = 0; k < MANY_NODES; k++) {
+        double along[MANY_NODES] = {0.0};
+        along[k] = 1.0;
+        dea_tape_along(tape, symbols, nodes, NULL, along);
+        gradient[k] = dea_tape_slope(tape, 0);
+    }
+}
 
 static dea_expr bounded(dea_pool *pool, dea_expr a)
 {
@@ -213,7 +225,7 @@ static dea_expr random_expression(dea_pool *pool, uint64_t *seed, int depth)
     return dea_expr_apply(pool, operation, left, dea_operation_of(operation)->operands == 2 ? bounded(pool, right) : left);
 }
 
-/* Gradients, directions, derivatives as expressions, and a symmetric difference are one thing. */
+/* Directions, derivatives as expressions, and a symmetric difference are one thing. */
 static void derivatives_over_many_nodes_and_symbols_agree(void **state)
 {
     (void)state;
@@ -248,10 +260,10 @@ static void derivatives_over_many_nodes_and_symbols_agree(void **state)
         const double value = dea_tape_value(&tape, 0), slope = dea_tape_slope(&tape, 0);
         dea_tape_along(&tape, symbols, nodes, NULL, along);
         const double by_nodes = dea_tape_slope(&tape, 0);
-        dea_tape_gradients(&tape, symbols, nodes);
-        double sum = 0.0, most = 0.0;
+        double gradient[MANY_NODES], sum = 0.0, most = 0.0;
+        gradient_of(&tape, symbols, nodes, gradient);
         for (int k = 0; k < MANY_NODES; k++) {
-            const double own = dea_tape_gradient(&tape, 0, k);
+            const double own = gradient[k];
             sum += own * along[k];
             most += fabs(own);
             assert_near(own, dea_tape_value(&tape, 1 + k), 1e-11 * (1.0 + fabs(own)));
@@ -325,11 +337,11 @@ static void change_keeps_its_digits_however_small_it_is(void **state)
         dea_tape_values(&tape, symbols, rest);
         assert_relative(dea_tape_value(&tape, 1), 0.0, 0.0);
         assert_near(dea_tape_value(&tape, 2), dea_tape_value(&tape, 0), 1e-14 * (1.0 + fabs(dea_tape_value(&tape, 0))));
-        dea_tape_gradients(&tape, symbols, rest);
-        double most = 0.0, first = 0.0;
+        double gradient[MANY_NODES], most = 0.0, first = 0.0;
+        gradient_of(&tape, symbols, rest, gradient);
         for (int k = 0; k < MANY_NODES; k++) {
-            most += fabs(dea_tape_gradient(&tape, 0, k));
-            first += dea_tape_gradient(&tape, 0, k) * nodes[k];
+            most += fabs(gradient[k]);
+            first += gradient[k] * nodes[k];
         }
         for (double size = 1.0; size > 1e-14; size *= 1e-4) {
             double small[MANY_NODES];

@@ -62,7 +62,10 @@ static dea_scene scene_of(const film *f, const char *model, dea_kind kind, int w
                                             .material = scene.material};
     }
     if (way & WITH_LOAD) {
-        scene.load = (dea_edge_load){.mass = 1e-4, .stiffness = 40.0, .force = 0.01, .damping = 0.1};
+        *dea_scene_load(&scene, "mass") = 1e-4;
+        *dea_scene_load(&scene, "stiffness") = 40.0;
+        *dea_scene_load(&scene, "force") = 0.01;
+        *dea_scene_load(&scene, "damping") = 0.1;
     }
     return scene;
 }

@@ -181,6 +181,9 @@ static void point_make(const dea_scene *scene, const dea_layout *layout, size_t 
                 (dea_response){at, 1e-9 / fabs(1.0 - x * x + 1e-3), x > 1.0 ? 180.0 : 0.0, 1e9 / at, -90.0, DEA_STATE_OK};
         }
     }
+    if (scene->study == DEA_STUDY_AC) {
+        *dea_layout_band(layout, point) = (dea_band){100.0 + (double)number, 150.0};
+    }
     if (scene->study == DEA_STUDY_TRANSIENT) {
         const double x = (double)number;
         *dea_layout_summary(layout, point) = (dea_summary){.error = 1e-9,
@@ -573,6 +576,45 @@ static void *netcdf_library(void)
     return library;
 }
 
+/* Of a sine each window has its extremes and five harmonics; the film, slow beside it, follows U^2: u = a (1 - cos 2 theta)/2. */
+static void netcdf_of_a_sine_holds_extremes_and_harmonics(void **state)
+{
+    static const char *const names[] = {"least_m", "largest_m", "peak_to_peak_m", "amplitude_1_m", "amplitude_2_m", "phase_2_deg"};
+    static const double sizes[] = {0.0, 1.0, 1.0, 0.0, 0.5, -90.0};
+    const char *path = in_folder("a.nc");
+    const size_t counts[] = {3};
+    dea_error error = {0};
+    (void)state;
+    dea_scene scene = transient_make(1, counts, 1, 401);
+    scene.transient = (dea_transient){.until = 2.0, .every = 0.005, .averages = {{0.25, 1.25}}, .average_count = 1};
+    scene.drive.waveform = (dea_waveform){.kind = DEA_WAVE_SINE, .sine = {.amplitude = 3000.0, .frequency = 1.0}, .period = NAN};
+    const dea_layout layout = dea_layout_of(&scene);
+    dea_writer *writer;
+    dea_sample *samples = calloc(1, layout.point_size);
+    assert_int_equal(dea_writer_open(&scene, "ida", path, NULL, &writer, &error), DEA_OK);
+    for (size_t run = 0; run < counts[0]; run++) {
+        const double a = 1e-4 * (double)(run + 1), w = 2.0 * DEA_PI;
+        for (size_t i = 0; i < layout.rows; i++) {
+            const double t = dea_layout_place(&scene, i);
+            samples[i] = (dea_sample){.time = t, .displacement = 0.5 * a * (1.0 - cos(2.0 * w * t)), .velocity = a * w * sin(2.0 * w * t)};
+        }
+        *dea_layout_summary(&layout, samples) = (dea_summary){.error = 1e-9, .resonance = NAN, .averages = {{0.01, 0.5 * a}}};
+        assert_int_equal(dea_writer_points(writer, run, samples, 1, &error), DEA_OK);
+    }
+    assert_int_equal(dea_writer_finish(writer, true, &error), DEA_OK);
+    free(samples);
+    void *library = netcdf_library();
+    for (size_t run = 0; run < counts[0]; run++) {
+        const double a = 1e-4 * (double)(run + 1);
+        for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+            const double value = netcdf_value(library, path, names[i], (const size_t[]){run, 0});
+            assert_true(fabs(value - (i == 5 ? sizes[i] : sizes[i] * a)) <= (i == 5 ? 1e-3 : 1e-5 * a)); /* not where NAN */
+        }
+    }
+    dlclose(library);
+    assert_int_equal(unlink(path), 0);
+}
+
 /* Samples that fit in what the writer holds, and samples that do not. */
 static void netcdf_of_a_transient_holds_time_samples_and_summaries(void **state)
 {
@@ -657,6 +699,8 @@ static void netcdf_of_a_frequency_response_lies_along_frequency(void **state)
         assert_true(frequency == dea_layout_place(&scene, i));
         assert_true(netcdf_value(library, in_folder("a.nc"), "impedance_Ohm", place) == 1e9 / frequency);
     }
+    assert_true(netcdf_value(library, in_folder("a.nc"), "resonance_Hz", (const size_t[]){2}) == 102.0);
+    assert_true(netcdf_value(library, in_folder("a.nc"), "bandwidth_Hz", (const size_t[]){2}) == 150.0);
     dlclose(library);
 }
 
@@ -716,6 +760,7 @@ static void netcdf_keeps_the_scalars_that_the_study_used(void **state)
 }
 
 /* A skin of the same kind of law as the film, and lighter. */
+/* ... and a second film too. */
 static void netcdf_tells_the_skin_from_the_film(void **state)
 {
     (void)state;
@@ -725,6 +770,8 @@ static void netcdf_tells_the_skin_from_the_film(void **state)
     scene.material.density = 1080.0;
     scene.electrode = (dea_electrode){
         .law = scene.material.law, .constants = {5000.0, 1.0, 2.0}, .entry_count = 1, .thickness = 25e-6, .density = 1010.0, .sheet_resistance = NAN};
+    scene.antagonist = (dea_antagonist){.there = true, .kind = DEA_LENS, .own_material = true};
+    scene.antagonist.material = (dea_material){.name = "other", .law = dea_law_find("neo_hookean"), .constants = {44e3}, .entry_count = 1, .permittivity = 4.7};
     assert_int_equal(points_write(&scene, in_folder("a.nc"), 1, &error), DEA_OK);
     void *library = netcdf_library();
     assert_true(netcdf_attribute(library, in_folder("a.nc"), "density_kg_per_m3") == 1080.0);
@@ -732,24 +779,63 @@ static void netcdf_tells_the_skin_from_the_film(void **state)
     assert_true(netcdf_attribute(library, in_folder("a.nc"), "electrode_thickness_m") == 25e-6);
     assert_true(netcdf_attribute(library, in_folder("a.nc"), "yeoh_C1_Pa") == 178426.0);
     assert_true(netcdf_attribute(library, in_folder("a.nc"), "electrode_yeoh_C1_Pa") == 5000.0);
+    assert_true(netcdf_attribute(library, in_folder("a.nc"), "antagonist_neo_hookean_mu_Pa") == 44e3);
+    assert_true(netcdf_attribute(library, in_folder("a.nc"), "antagonist_permittivity") == 4.7);
     dlclose(library);
 }
 
 /* Draws a study of the scene; strains are those of numbers that a picture can show. */
-static dea_status study_draw(const dea_scene *scene, const char *path, dea_error *error)
+static dea_status columns_draw(const dea_scene *scene, const char *path, const char *columns, dea_error *error)
 {
     dea_plot *plot;
-    dea_status status = dea_plot_begin(scene, path, NULL, &plot, error);
+    const dea_plot_options options = {.columns = columns};
+    dea_status status = dea_plot_begin(scene, path, &options, &plot, error);
     if (status != DEA_OK) {
         return status;
     }
     const size_t total = dea_scene_point_count(scene) * scene->model_count;
     for (size_t i = 0; i < total; i++) {
         const double x = (double)i / (double)total;
-        const dea_row row = {.strain = 0.1 * x, .displacement = 1e-3 * x * (1.0 - x), .state = DEA_STATE_OK};
+        const dea_row row = {.strain = 0.1 * x, .displacement = 1e-3 * x * (1.0 - x), .charge = 3e-6 * x, .state = DEA_STATE_OK};
         dea_plot_points(plot, i, &row, 1);
     }
     return dea_plot_finish(plot, true, error);
+}
+
+static dea_status study_draw(const dea_scene *scene, const char *path, dea_error *error)
+{
+    return columns_draw(scene, path, NULL, error);
+}
+
+/* One column or two of a sweep, one of a map; its largest value, 3 uC times 49/50, is drawn in its own unit. */
+static void columns_of_a_sweep_are_drawn_as_wanted(void **state)
+{
+    static const size_t one[] = {50}, two[] = {50, 20};
+    static const struct {
+        const char *columns, *shown, *absent;
+    } cases[] = {{"charge_C", "\"Charge Q [µC]\"", "[mm]"}, {"charge_C,displacement_m", "\"Displacement u [µm]\"", "Strain"}};
+    const dea_scene curves = scene_make(1, one, 1), map = scene_make(2, two, 1);
+    dea_error error = {0};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        assert_int_equal(columns_draw(&curves, in_folder("a.gp"), cases[i].columns, &error), DEA_OK);
+        const char *script = file_text(in_folder("a.gp"));
+        assert_non_null(strstr(script, cases[i].shown));
+        assert_non_null(strstr(script, " 2.94 "));
+        assert_null(strstr(script, cases[i].absent));
+    }
+    assert_int_equal(columns_draw(&map, in_folder("a.svg"), "charge_C", &error), DEA_OK);
+    assert_non_null(strstr(file_text(in_folder("a.svg")), "Charge Q [µC]"));
+    assert_int_equal(unlink(in_folder("a.svg")), 0);
+    assert_int_equal(columns_draw(&map, in_folder("a.gp"), "charge_C,strain", &error), DEA_ERROR_USAGE);
+    assert_non_null(strstr(error.message, "one, of a map"));
+    assert_int_equal(columns_draw(&curves, in_folder("a.gp"), "charge_C,", &error), DEA_ERROR_USAGE);
+    assert_non_null(strstr(error.message, "no column \"\""));
+    assert_int_equal(columns_draw(&curves, in_folder("a.gp"), "charge_C,strain,force_N", &error), DEA_ERROR_USAGE);
+    const dea_scene runs = response_make(1, one, 1, 4);
+    assert_int_equal(columns_draw(&runs, in_folder("a.gp"), "strain", &error), DEA_ERROR_USAGE);
+    assert_non_null(strstr(error.message, "columns are chosen of a sweep, but the study is ac"));
+    assert_int_equal(unlink(in_folder("a.gp")), 0);
 }
 
 static void picture_shows_hostile_titles_as_text(void **state)
@@ -1279,10 +1365,12 @@ int main(void)
         IN_FOLDER(full_disk_is_an_error),
         IN_FOLDER(netcdf_holds_what_the_rows_held),
         IN_FOLDER(netcdf_of_a_transient_holds_time_samples_and_summaries),
+        IN_FOLDER(netcdf_of_a_sine_holds_extremes_and_harmonics),
         IN_FOLDER(what_rows_tell_over_the_radius_keeps_its_places),
         IN_FOLDER(netcdf_of_a_frequency_response_lies_along_frequency),
         IN_FOLDER(netcdf_keeps_the_scalars_that_the_study_used),
         IN_FOLDER(netcdf_tells_the_skin_from_the_film),
+        IN_FOLDER(columns_of_a_sweep_are_drawn_as_wanted),
         IN_FOLDER(picture_shows_hostile_titles_as_text),
         IN_FOLDER(long_curves_make_small_pictures),
         IN_FOLDER(two_long_axes_make_a_map),

@@ -5,7 +5,7 @@
 #include <complex.h>
 #include <ctype.h>
 
-#include "netlist/library_files.h"
+#include "netlist/part.h"
 #include "netlist/symbol.h"
 #include "network/dynamics.h"
 
@@ -738,7 +738,7 @@ static void a_spring_on_the_edge_is_the_load_of_a_scene(void **state)
         char name[24];
         dea_scene scene = paper_scene(parts[i].kind, 1.2, 0.5, 4000.0);
         scene.actuator.layers = 2.0;
-        scene.load.stiffness = 800.0;
+        *dea_scene_load(&scene, "stiffness") = 800.0;
         snprintf(name, sizeof name, "v(x%d.u)", i);
         assert_relative(1e-6 * child_value(&run, name, 0), solve_direct(&scene, parts[i].model).displacement, 1e-6);
     }
@@ -772,11 +772,11 @@ static void a_force_and_a_film_on_the_edge_are_those_of_a_scene(void **state)
     for (int i = 0; i < PARTS; i++) {
         char name[24];
         dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, 4000.0);
-        scene.load.force = -0.2;
+        *dea_scene_load(&scene, "force") = -0.2;
         snprintf(name, sizeof name, "v(x%d.u)", i);
         assert_relative(1e-6 * child_value(&run, name, 0), solve_direct(&scene, parts[i].model).displacement, 1e-6);
         const double none = (double)NAN;
-        scene.load.force = 0.05;
+        *dea_scene_load(&scene, "force") = 0.05;
         scene.antagonist = (dea_antagonist){true, DEA_LENS, none, none, none, none, none, 2500.0, false, dea_material_default()};
         snprintf(name, sizeof name, "v(xy%d.u)", i);
         assert_relative(1e-6 * child_value(&run, name, 0), solve_direct(&scene, parts[i].model).displacement, 1e-6);

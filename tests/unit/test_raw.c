@@ -508,6 +508,29 @@ static void hostile_titles_stay_in_their_line(void **state)
     }
 }
 
+/* One run: nothing to say; several: that they are; with numbers over the radius: that they are left out. */
+static void what_readers_miss_is_noted(void **state)
+{
+    (void)state;
+    const dea_scene one = scene_make(1, 1);
+    dea_scene runs = transient_make(2, 2);
+    const char *const wanted[] = {NULL, "a.raw holds a plot for each of 12 runs, and many viewers show the first alone",
+                                  "a.raw holds a plot for each of 12 runs, and many viewers show the first alone, and leaves out what the "
+                                  "film does along its radius: csv and nc have it"};
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
+        dea_writer *writer;
+        dea_error error = {0};
+        char note[DEA_NOTE_LENGTH];
+        runs.transient.points = i == 2 ? 5 : 0;
+        assert_int_equal(dea_writer_open(i == 0 ? &one : &runs, "direct", "a.raw", NULL, &writer, &error), DEA_OK);
+        assert_true(dea_writer_note(writer, note) == (i > 0));
+        if (wanted[i]) {
+            assert_string_equal(note, wanted[i]);
+        }
+        dea_writer_finish(writer, false, NULL);
+    }
+}
+
 static void date_that_is_none_is_not_taken(void **state)
 {
     (void)state;
@@ -616,6 +639,7 @@ int main(void)
         IN_FOLDER(blocks_of_any_size_give_the_same_bytes),
         IN_FOLDER(hostile_titles_stay_in_their_line),
         IN_FOLDER(date_that_is_none_is_not_taken),
+        IN_FOLDER(what_readers_miss_is_noted),
         IN_FOLDER(ngspice_loads_every_plot_and_executes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

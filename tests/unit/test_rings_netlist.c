@@ -4,7 +4,7 @@
 #include <time.h>
 
 #include "engine/ngspice/moving.h"
-#include "engine/ngspice/rings_deck.h"
+#include "engine/ngspice/rings_track.h"
 #include "netlist/export.h"
 #include "netlist/part.h"
 #include "netlist/rings_line.h"
@@ -249,8 +249,8 @@ static dea_scene moving_scene(const dea_law *law, int way)
         memcpy(scene.electrode.constants, scene.material.constants, sizeof scene.electrode.constants);
     }
     if (way & WITH_LOAD) {
-        scene.load.mass = 1e-3;
-        scene.load.stiffness = 100.0;
+        *dea_scene_load(&scene, "mass") = 1e-3;
+        *dea_scene_load(&scene, "stiffness") = 100.0;
     }
     return scene;
 }
@@ -321,15 +321,15 @@ static void a_load_is_carried(void **state)
     dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, 4500.0);
     scene.models[0] = dea_model_find("field");
     scene.accuracy = 1e-9;
-    scene.load.stiffness = 200.0;
+    *dea_scene_load(&scene, "stiffness") = 200.0;
     const dea_row wanted = solve_direct(&scene, "field"), free = solve_paper("field", DEA_DOT, 1.2, 0.5, 4500.0);
     const row_list list = run(&scene);
     assert_true(wanted.strain < 0.9 * free.strain);
     assert_true(is_close(list.rows[0].strain, wanted.strain, 1e-9, 0.0));
     dea_scene swings = swinging_scene(200.0);
     swings.accuracy = 1e-7;
-    swings.load.stiffness = 200.0;
-    swings.load.mass = 2e-3;
+    *dea_scene_load(&swings, "stiffness") = 200.0;
+    *dea_scene_load(&swings, "mass") = 2e-3;
     dea_response rows[2][MOST_ROWS];
     static const char *const engines[] = {"ngspice", "direct"};
     for (int i = 0; i < 2; i++) {

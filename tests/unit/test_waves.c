@@ -9,7 +9,6 @@
 
 #include "deaspice/scene.h"
 #include "drive/signal.h"
-#include "drive/soften.h"
 #include "drive/wave.h"
 
 enum { SCENES = 40, PLACES = 200 };

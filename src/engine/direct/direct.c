@@ -101,7 +101,7 @@ static dea_status solve_line(void *user, const dea_scene *scene, const dea_line 
     (void)error;
     dea_scene here = *scene;
     const visit_state *state = user;
-    const bool alone = !(fabs(scene->load.force) > 0.0) && !scene->antagonist.there && line->axis && line->axis->offset != offsetof(dea_scene, load.force);
+    const bool alone = !dea_scene_is_pulled(scene) && !dea_scene_edge(scene).bent && line->axis;
     const bool abreast = state->model->solve_many && alone && !line->axis->changes_film;
     (abreast ? solve_abreast : solve_one_by_one)(state, &here, line);
     return DEA_OK;

@@ -381,7 +381,7 @@ static dea_per_volt answer_on(const dea_radial *m, const mesh *grid, double omeg
     wave free_one, driven;
     integrate(grid, &e, &free_one, &driven);
     /* disc: T = d u + f; annulus: (u, T) = driven + share free */
-    const double complex load = point->load - m->load_mass * square + I * (omega * m->dynamics->damping);
+    const double complex load = dea_point_spring(point, m->rest.displacement).slope - m->load_mass * square + I * (omega * m->dynamics->damping);
     const double complex d = disc_stiffness(&e, &disc) +
                              load / (2.0 * DEA_PI * point->film_thickness * point->film.w11 * (1.0 + v));
     const double complex f = dot ? -slope * disc.c1 : 0.0;
@@ -413,7 +413,7 @@ void dea_radial_open(const dea_dynamics *d, const dea_scene *scene, dea_radial *
     *m = (dea_radial){.dynamics = d};
     m->mass[0] = film + (is_dot(m) ? electrode : 0.0);
     m->mass[1] = film + (is_dot(m) ? 0.0 : electrode);
-    m->load_mass = d->mass > 0.0 && scene->load.mass > 0.0 ? scene->load.mass : 0.0;
+    m->load_mass = d->mass > 0.0 ? dea_scene_edge(scene).mass : 0.0;
     dea_model_solve(d->model, point, fmin(scene->accuracy, 1e-12), &m->rest);
     if (isfinite(m->rest.strain) && !is_disc_firm(m)) {
         dea_row_refuse(&m->rest, DEA_STATE_PULL_IN);

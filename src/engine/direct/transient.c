@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "engine/direct/direct.h"
-#include "engine/direct/peak.h"
 #include "engine/direct/walk.h"
 
 /* Samples that are stepped from one to the next before the state is computed anew from the begin of the segment. */
@@ -60,7 +59,10 @@ const char *dea_direct_refuses_transient(const dea_scene *scene, const dea_model
     if (!model->linear) {
         return "its springs are not linear, so that a transient has no closed form";
     }
-    if (fabs(scene->load.force) > 0.0 || scene->antagonist.there) {
+    if (dea_scene_edge(scene).bent) {
+        return "a spring on the edge that is not linear has no closed form in time";
+    }
+    if (dea_scene_is_pulled(scene)) {
         return "a steady force beside that of the voltage has no closed form here";
     }
     if (dea_series_resistance(scene) > 0.0 && !scene->reduction.series) {
@@ -115,13 +117,8 @@ static void close_run(run *r)
 /* Rows from the next one on: pull-in. */
 static void refuse_rest(run *r)
 {
-    size_t near = 0;
-    for (; r->row < r->rows; r->row++) {
-        const double time = dea_layout_place(r->scene, r->row);
-        near = dea_signal_find(&r->signal, near, time);
-        const double voltage = dea_segment_voltage(&r->signal, &r->signal.segments[near], time);
-        r->samples[r->row] = dea_sample_refused(time, voltage, DEA_STATE_PULL_IN);
-    }
+    dea_samples_refuse(r->scene, &r->signal, r->row, DEA_STATE_PULL_IN, r->samples);
+    r->row = r->rows;
     r->walk.lost = true;
 }
 

@@ -1,8 +1,9 @@
 /* Transients of a membrane: runs at tighter tolerances on finer meshes, until two of them show that the answer is good enough. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "drive/soften.h"
+#include "drive/signal.h"
 #include "engine/rings_gap.h"
 #include "network/rings_mesh.h"
 #include "support/lapack.h"
@@ -123,21 +124,15 @@ static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates
 /* Rows of a trace; where it ended, all that follow are refused. */
 static void fill(const search *s, const dea_rings_trace *trace, bool good, dea_sample *samples)
 {
-    size_t near = 0;
+    const size_t count = good ? trace->count : 0;
     for (size_t i = 0; i < s->rows; i++) {
         double *entries = s->entries > 0 ? dea_layout_entry(&s->layout, samples, i, 0) : NULL;
         for (size_t k = 0; k < s->entries; k++) {
-            entries[k] = good && i < trace->count ? trace->entries[i * s->entries + k] : (double)NAN;
+            entries[k] = i < count ? trace->entries[i * s->entries + k] : (double)NAN;
         }
-        if (good && i < trace->count) {
-            samples[i] = trace->samples[i];
-            continue;
-        }
-        const double time = dea_layout_place(s->scene, i);
-        near = dea_signal_find(s->signal, near, time);
-        const double voltage = dea_segment_voltage(s->signal, &s->signal->segments[near], time);
-        samples[i] = dea_sample_refused(time, voltage, good ? trace->end : DEA_STATE_FAILED);
     }
+    memcpy(samples, trace->samples, count * sizeof *samples);
+    dea_samples_refuse(s->scene, s->signal, count, good ? trace->end : DEA_STATE_FAILED, samples);
 }
 
 static void tell_averages(const search *s, const dea_rings_trace *trace, dea_summary *summary)
@@ -145,17 +140,6 @@ static void tell_averages(const search *s, const dea_rings_trace *trace, dea_sum
     for (size_t i = 0; i < s->scene->transient.average_count; i++) {
         const double u = dea_rings_mean(s->scene, trace, i);
         summary->averages[i] = (dea_average){u / s->flight->membrane.film.radius, u};
-    }
-}
-
-/* The peak of the current, where two runs agree about it within ten times the accuracy. */
-static void tell_peak(const search *s, dea_summary *summary)
-{
-    const dea_peak *a = &s->traces[0].peak, *b = &s->traces[1].peak;
-    if (s->flight->peaks && s->traces[1].end == DEA_STATE_OK &&
-        fabs(a->current - b->current) <= 10.0 * s->scene->accuracy * b->current) {
-        summary->peak_current = b->current;
-        summary->peak_time = b->time;
     }
 }
 
@@ -194,7 +178,9 @@ static dea_status fly(search *s, dea_sample *samples, dea_summary *summary, dea_
     fill(s, &s->traces[1], good, samples);
     tell_averages(s, &s->traces[1], summary);
     dea_scales_tell(&s->scales, s->traces[1].samples, s->traces[1].count, rates, summary);
-    tell_peak(s, summary);
+    if (s->flight->peaks && s->traces[1].end == DEA_STATE_OK) {
+        dea_peak_tell(&s->traces[0].peak, &s->traces[1].peak, s->scene->accuracy, summary);
+    }
     return DEA_OK;
 }
 

@@ -643,7 +643,7 @@ void dea_shooting_solve(dea_shooting *s, const dea_point *point, double accuracy
     s->point = point;
     s->pressure = film->permittivity * nominal * nominal;
     *row = dea_row_failed();
-    if (point->force != 0.0 || point->second.there) {
+    if (dea_point_is_shared(point)) {
         dea_loaded_solve(&holder, point, row);
         return;
     }

@@ -35,6 +35,14 @@ static void write_ramp(FILE *out, const dea_mobility_piece *p, const dea_segment
     }
 }
 
+void dea_deck_corners(FILE *out, const dea_mobility_piece *p)
+{
+    dea_part_print(out, "0 %g", dea_segment_voltage(p->signal, &p->signal->segments[p->segment], p->from));
+    for (size_t i = p->segment; i < p->signal->count && p->signal->segments[i].from < p->to; i++) {
+        write_ramp(out, p, &p->signal->segments[i]);
+    }
+}
+
 void dea_deck_source(FILE *out, const dea_mobility_piece *p, const char *node)
 {
     const dea_segment *segment = &p->signal->segments[p->segment];
@@ -50,10 +58,8 @@ void dea_deck_source(FILE *out, const dea_mobility_piece *p, const char *node)
         dea_curve_cards_write(&cards);
         return;
     }
-    dea_part_print(out, "VSOURCE %s 0 pwl(0 %g", node, dea_segment_voltage(p->signal, segment, p->from));
-    for (size_t i = p->segment; i < p->signal->count && p->signal->segments[i].from < p->to; i++) {
-        write_ramp(out, p, &p->signal->segments[i]);
-    }
+    fprintf(out, "VSOURCE %s 0 pwl(", node);
+    dea_deck_corners(out, p);
     fputs(")\n", out);
 }
 

@@ -17,8 +17,8 @@ typedef struct dea_mobility_piece {
     double force;       /* that goes with it, for tolerances [N] */
     double tolerance;   /* of Newton's method in a step, relative [1] */
     double loose;       /* absolute tolerances over the tightest that rounding is thought to allow, >= 1 */
-    double mass;        /* [kg] */
-    double conductance; /* 0: none; resistor beside the mass that fits the rule's damping to the film's [N s/m] */
+    double mass;        /* [kg]; of a membrane those of its nodes over their own [1] */
+    double conductance; /* 0: none; resistor beside the mass that fits the rule's damping to the film's [N s/m], of a membrane over it [1/s] */
     dea_mobility_state start;
 } dea_mobility_piece;
 
@@ -40,6 +40,8 @@ typedef struct dea_mobility_vectors {
     size_t count;
 } dea_mobility_vectors;
 
+/* Times since the begin of the piece and voltages there, between which the source follows lines. */
+void dea_deck_corners(FILE *out, const dea_mobility_piece *piece);
 /* The voltage of the source from the begin of the piece on: its segments as breakpoints, or a sine. */
 void dea_deck_source(FILE *out, const dea_mobility_piece *piece, const char *node);
 /* Netlist of one piece of a transient; on DEA_OK the caller frees *text. */

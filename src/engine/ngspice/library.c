@@ -15,9 +15,9 @@
 
 #include <ngspice/sharedspice.h>
 
-#include "support/scratch.h"
+#include "support/file.h"
 
-enum { LOG_SIZE = 3000, LINE_SIZE = 160 };
+enum { LOG_SIZE = 3000, LINE_SIZE = 160, COMMAND_SIZE = DEA_NGSPICE_COMMAND + 1 };
 
 struct dea_ngspice {
     char log[LOG_SIZE];        /* first lines of what the library said since the last run, repeats left out */
@@ -26,6 +26,7 @@ struct dea_ngspice {
     bool complained;           /* a line of the log names an error */
     bool lost;                 /* the library asked to be detached */
     bool loaded;               /* a circuit is loaded */
+    char *circuit;             /* owned: its netlist, up to the end; NULL: it is not to run again */
     size_t limit;              /* most points of the next run, 0: no limit */
 };
 
@@ -165,6 +166,9 @@ const char *dea_ngspice_complaint(const dea_ngspice *library)
 
 void dea_ngspice_close(dea_ngspice *library)
 {
+    if (library) {
+        free(library->circuit);
+    }
     free(library);
 }
 
@@ -179,31 +183,54 @@ void dea_ngspice_limit(dea_ngspice *library, size_t points)
     library->limit = points;
 }
 
+/* The commands, one a line, that follow a netlist behind its end, else `run`. */
+static void run_commands(const char *commands)
+{
+    char line[COMMAND_SIZE];
+    if (!*commands) {
+        command("run");
+    }
+    for (; *commands; commands += strspn(commands, "\n")) {
+        const size_t length = strcspn(commands, "\n");
+        snprintf(line, sizeof line, "%.*s", (int)length, commands);
+        ngSpice_Command(line);
+        commands += length;
+    }
+}
+
 /* Runs the loaded circuit; a breakpoint of the library ends it at the limit. */
-static void run_loaded(size_t limit)
+static void run_loaded(const char *commands, size_t limit)
 {
     char stop[64];
     snprintf(stop, sizeof stop, "stop after %zu", limit);
     if (limit > 0) {
         command(stop);
     }
-    command("run");
+    run_commands(commands);
     if (limit > 0) {
         command("delete all");
     }
 }
 
+/* Length of a netlist without the commands behind its end. */
+static size_t length_of(const char *netlist)
+{
+    static const char end[] = "\n.end\n";
+    const char *at = strstr(netlist, end);
+    return at ? (size_t)(at - netlist) + sizeof end - 1 : strlen(netlist);
+}
+
 /* Cuts a copy of the netlist into cards and loads it. */
-static dea_status load(dea_ngspice *library, const char *netlist, dea_error *error)
+static dea_status load(dea_ngspice *library, const char *netlist, size_t length, dea_error *error)
 {
     size_t lines = 0;
-    for (const char *at = netlist; *at; at++) {
-        lines += *at == '\n';
+    for (size_t i = 0; i < length; i++) {
+        lines += netlist[i] == '\n';
     }
     if (lines == 0) {
         return dea_fail(error, DEA_ERROR_ENGINE, "ngspice takes no netlist without a line");
     }
-    char *text = strdup(netlist);
+    char *text = strndup(netlist, length);
     char **cards = calloc(lines + 1, sizeof *cards);
     if (!text || !cards) {
         free(cards);
@@ -222,6 +249,7 @@ static dea_status load(dea_ngspice *library, const char *netlist, dea_error *err
     if (code != 0 || library->lost || library->complained) {
         return dea_fail(error, DEA_ERROR_ENGINE, "ngspice refused the netlist: %s", library->log);
     }
+    library->circuit = netlist[length] ? strndup(netlist, length) : NULL; /* without memory for it, it is read again */
     return DEA_OK;
 }
 
@@ -311,6 +339,28 @@ void dea_ngspice_table_free(dea_ngspice_table *table)
     *table = (dea_ngspice_table){0};
 }
 
+/* Takes the circuit out; without that a refused one would leave the old one to run again. */
+static void unload(dea_ngspice *library)
+{
+    if (library->loaded) {
+        command("remcirc");
+    }
+    free(library->circuit);
+    library->circuit = NULL;
+    library->loaded = false;
+}
+
+/* Loads a circuit, unless it is the one that commands have run before; a circuit that failed is read anew. */
+static dea_status take(dea_ngspice *library, const char *netlist, size_t length, dea_error *error)
+{
+    const char *circuit = library->circuit;
+    if (circuit && netlist[length] && strncmp(circuit, netlist, length) == 0 && !circuit[length]) {
+        return DEA_OK;
+    }
+    unload(library);
+    return load(library, netlist, length, error);
+}
+
 dea_status dea_ngspice_run_all(dea_ngspice *library, const char *netlist, const char *const *names, size_t name_count,
                                dea_ngspice_table *table, dea_error *error)
 {
@@ -319,23 +369,23 @@ dea_status dea_ngspice_run_all(dea_ngspice *library, const char *netlist, const 
     if (name_count > DEA_NGSPICE_COLUMNS) {
         return dea_fail(error, DEA_ERROR_ENGINE, "%zu vectors, at most %d are read of a run", name_count, (int)DEA_NGSPICE_COLUMNS);
     }
-    const size_t limit = library->limit;
+    const size_t limit = library->limit, length = length_of(netlist);
     library->limit = 0;
     clear_log(library);
-    if (library->loaded) {
-        command("remcirc"); /* else a refused circuit would leave the old one to run again */
-        library->loaded = false;
-    }
-    const dea_status status = load(library, netlist, error);
+    const dea_status status = take(library, netlist, length, error);
     if (status != DEA_OK) {
         return status;
     }
     command("optran 1 1 1 0 0 0"); /* no rescue by a transient: it gives wrong numbers without an error */
     const char *plot = ngSpice_CurPlot();
     snprintf(before, sizeof before, "%s", plot ? plot : "");
-    run_loaded(limit);
+    run_loaded(netlist + length, limit);
     const dea_status copied = library->lost ? dea_fail(error, DEA_ERROR_ENGINE, "ngspice gave up: %s", library->log)
                                             : copy(before, names, name_count, table, error);
+    if (library->complained) {
+        free(library->circuit);
+        library->circuit = NULL;
+    }
     command("destroy all");
     ngSpice_Command(NULL); /* frees its command history */
     if (copied != DEA_OK) {

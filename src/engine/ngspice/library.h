@@ -26,7 +26,11 @@ void dea_ngspice_close(dea_ngspice *library);
 /* Ends the next run, and no other, once it has so many points. */
 void dea_ngspice_limit(dea_ngspice *library, size_t points);
 
-/* Loads a netlist (one card a line), runs its analysis and copies the vectors @p names of the new plot, DEA_NGSPICE_COLUMNS at
+/* Most characters of a command: the library copies it into 1024. */
+enum { DEA_NGSPICE_COMMAND = 1000 };
+
+/* Loads a netlist (one card a line) and runs its analysis, or where lines follow its `.end` card, these commands of the library in its
+ * place: then the same netlist is not read again for the next ones, which change its numbers (`alter`). Copies the vectors @p names of the new plot, DEA_NGSPICE_COLUMNS at
  * most. A run that ends early is no failure of this call: it gives the points before its end. DEA_ERROR_ENGINE with the library's
  * log: the netlist was refused, or the library is lost. */
 dea_status dea_ngspice_run_all(dea_ngspice *library, const char *netlist, const char *const *names, size_t name_count,

@@ -8,7 +8,6 @@
 #include "scene/line.h"
 #include "engine/ngspice/library.h"
 #include "engine/ngspice/moving.h"
-#include "engine/ngspice/still.h"
 #include "engine/ngspice/stretch.h"
 #include "netlist/netlist.h"
 #include "network/balance.h"
@@ -43,8 +42,8 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
         return "it has no network form that ngspice could solve";
     }
     const bool still = !dea_study_of(scene)->along || dea_study_of(scene)->still;
-    if (model->membrane && still && (fabs(scene->load.force) > 0.0 || scene->antagonist.there)) {
-        return "its membrane at rest carries a spring alone, no force and no second film";
+    if (model->membrane && still && dea_scene_is_pulled(scene)) {
+        return "its membrane at rest carries springs alone, no force and no second film";
     }
     if (model->membrane && scene->study == DEA_STUDY_FORCE) {
         return "it does not hold the edge of the membrane";

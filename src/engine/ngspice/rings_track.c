@@ -4,12 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/ngspice/rings_deck.h"
 #include "model/models.h"
 #include "support/gauss.h"
 
 /* Steps in a radian of the first mode at fineness 1: the trapezoidal rule turns the modes above it too. */
 static const double radian_steps = 3.0;
+
+/* Time behind a corner in which the shortest waves of a film go, over a step of the swing. */
+static const double behind_corner = 0.3;
 
 /* Most time steps of one netlist, for what its plot takes of memory [numbers]. */
 static const double most_numbers = 2e7;
@@ -17,19 +19,23 @@ static const double most_numbers = 2e7;
 /* Time of a state over a step, below which steps do not resolve it: its slope is then that of the parabola through its neighbours. */
 static const double unresolved = 0.5;
 
+/* Loosest tolerance of Newton's method in a step, relative: what it leaves goes with its square. A film without mass wants it tight: it
+ * would pass its fold where nothing but the tolerance finds an equilibrium. */
+static const double loosest = 1e-3, tight = 1e-7;
+
 /* Share of the stiffness at rest below which a film that ngspice cannot follow has lost it. */
 static const double soft = 1e-3;
 
 /* ---- opening */
 
-/* Steps behind a corner are those of the swing: its waves are the faster for being short. */
+/* Behind a corner steps are finer than those of the swing: its waves are the faster for being short. */
 static dea_pace pace_of(const dea_rings_track *t)
 {
     dea_pace pace = dea_pace_of_rings(&t->flight.membrane, &t->flight.motion.rest, dea_rings_decay(&t->flight.motion));
     if (pace.omega > 0.0) {
         const bool others = pace.fastest < 0.3 / pace.omega;
         pace.omega *= radian_steps;
-        pace.fastest = others ? pace.fastest : 1.5 / pace.omega;
+        pace.fastest = others ? pace.fastest : behind_corner / pace.omega;
     }
     return pace;
 }
@@ -99,6 +105,8 @@ typedef struct runner {
     bool slow;     /* it steps over the swing, which is dead */
     bool drags;    /* and over what a damper without mass does */
     bool charging; /* and over the charging of the film */
+    dea_matching match; /* of its masses to the steps */
+    double speed;       /* velocity of a node of the film over that of the netlist [1] */
     double loose, parts;
     double *state; /* at the end of the last netlist */
     point a, b, between;
@@ -266,14 +274,21 @@ static double time_of(const stretch *s, size_t i)
     return i == 0 ? s->start_time : since >= length * (1.0 - 1e-12) ? s->to : s->from + since;
 }
 
+/* A state over the number that stands for it in a netlist: velocities of masses that fit the steps, the charge as the voltage that it
+ * makes at rest. */
+static double unit_of(const runner *r, size_t k)
+{
+    const dea_rings_motion *m = &r->track->flight.motion;
+    const bool fast = m->heavy && k >= m->nodes && k < 2 * m->nodes;
+    return fast ? r->speed : m->charged && k == m->q ? dea_point_capacitance(&m->membrane->film.point) : 1.0;
+}
+
 static double state_of(const runner *r, const stretch *s, size_t i, size_t k)
 {
     if (i == 0) {
         return s->start[k];
     }
-    const dea_rings_track *t = r->track;
-    const bool charge = t->flight.motion.charged && k == charge_of(r);
-    return s->table->columns[k + 1][s->first + i - 1] * (charge ? dea_point_capacitance(&t->flight.membrane.film.point) : 1.0);
+    return s->table->columns[k + 1][s->first + i - 1] * unit_of(r, k);
 }
 
 /* Slope at point i of the parabola through the three next to it, or of the line through two. */
@@ -394,17 +409,21 @@ static dea_state absorb(runner *r, const dea_ngspice_table *table, double from, 
 
 /* ---- pieces */
 
-/* The states of the runner, the charge as the voltage that it makes at rest. */
 static dea_status write_piece(const void *user, const dea_mobility_piece *piece, char **text, dea_error *error)
 {
     const runner *r = user;
     const dea_rings_track *t = r->track;
     double *states = t->room + 6 * t->states;
-    memcpy(states, r->state, t->states * sizeof *states);
-    if (t->flight.motion.charged) {
-        states[charge_of(r)] /= dea_point_capacitance(&t->flight.membrane.film.point);
+    for (size_t k = 0; k < t->states; k++) {
+        states[k] = r->state[k] / unit_of(r, k);
     }
     return dea_rings_deck_write(t->network, &t->flight.membrane, piece, states, text, error);
+}
+
+static double newton_tolerance(const dea_rings_track *t)
+{
+    const double accuracy = t->scene->accuracy;
+    return t->flight.membrane.heavy ? fmin(loosest, accuracy) : fmin(tight, 1e-3 * accuracy);
 }
 
 static dea_status run_netlist(runner *r, double from, double to, size_t segment, dea_state *end, double *reached, dea_error *error)
@@ -419,8 +438,10 @@ static dea_status run_netlist(runner *r, double from, double to, size_t segment,
                                 .to = to,
                                 .step = r->step,
                                 .parts = r->parts,
-                                .tolerance = fmin(1e-7, 1e-3 * t->scene->accuracy),
-                                .loose = r->loose};
+                                .tolerance = newton_tolerance(t),
+                                .loose = r->loose,
+                                .mass = r->match.mass,
+                                .conductance = r->match.resistance};
     for (size_t i = 0; i < t->states; i++) {
         labels[i] = dea_rings_state_node(&t->flight.membrane, i);
         names[i + 1] = labels[i].text;
@@ -441,6 +462,10 @@ static void set_step(runner *r, const dea_piece *piece, double step)
     const double charging = m->charged ? m->rest.capacitance / (1.0 / m->membrane->film.series + m->membrane->film.conductance) : 0.0;
     r->step = step;
     r->slow = m->heavy && !piece->rings && m->rest.slowest * step > unresolved;
+    const dea_segment *segment = &t->signal->segments[piece->segment];
+    const double voltage = fmax(fabs(segment->start), fabs(segment->end));
+    r->match = m->heavy && piece->rings ? dea_matching_of_rings(m->membrane, voltage, step) : (dea_matching){.mass = 1.0};
+    r->speed = sqrt(r->match.mass);
     r->drags = !m->heavy && m->damped && m->membrane->film.retardation < unresolved * step * (1.0 + m->membrane->film.total_share);
     r->charging = m->charged && charging < unresolved * step;
     r->track->quasi.charged = m->charged && !r->charging; /* else it has the voltage of the source */

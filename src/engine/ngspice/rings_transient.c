@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "engine/ngspice/moving.h"
 #include "engine/ngspice/rings_track.h"
@@ -12,14 +13,19 @@
 #include "support/lapack.h"
 
 /* Most that the error of two runs, and of what they extrapolate to, is taken for, over differences (transient.c); the latter where
- * those of a film with mass, whose steps are even, fall by about 4, as the order of the rule has it. */
+ * those of a film with mass, whose steps are even, fall by about 4, as the order of the rule has it, up to 8: masses that fit the steps
+ * leave little of the second order, and what extrapolates has an error of 1/7 of the difference then. */
 static const double of_second = 2.0, of_fourth = 2.5, of_order = 0.25;
-static const double steepest = 5.0, flattest = 3.0;
+static const double steepest = 8.0, flattest = 3.0;
 
-/* Share of the accuracy that is the mesh's, and a difference that falls by less than that stays too large. */
-static const double mesh_share = 0.3;
-static const double ample = 0.03; /* of the accuracy: a gap that is the error of the coarser mesh with room */
+/* Shares of the accuracy that are the mesh's, of the finer of two that are compared and of the coarser one, whose error is their gap;
+ * and a difference that falls by less than that stays too large. */
+static const double mesh_share = 0.3, coarse_share = 0.5;
 static const double gains_nothing = 0.5;
+
+/* Steps of the first runs over those of the pieces, at an accuracy of 1e-4 or more: as long as the swing allows, whose slowest mode the
+ * masses fit. */
+static const double first_fineness = 2.0;
 
 /* Most time that a run may take, roughly, and what one time step of a node does of it [s]. */
 static const double most_time = 30.0;
@@ -102,11 +108,32 @@ static bool comparable(const dea_rings_trace *a, const dea_rings_trace *b)
     return a->count == b->count && a->end == b->end;
 }
 
+/* The error of a mesh from the gap between two. */
+static void set_mesh_error(search *s, const dea_rings_gap *gap, double trust)
+{
+    s->mesh_error = trust * gap->answer;
+    s->mesh_displacement = trust * gap->displacement;
+    s->mesh_rates = (dea_rate_errors){trust * gap->rates.velocity, trust * gap->rates.current};
+}
+
+/* The first mesh, as coarse as it may be; a film without mass takes a finer one, which costs little there and tells where it folds. */
+static dea_status open_first(search *s, double *nodes, dea_error *error)
+{
+    const double accuracy = sqrt(s->scene->accuracy);
+    *nodes = dea_rings_first_nodes(sqrt(accuracy));
+    const dea_status status = open_mesh(s, *nodes, error);
+    if (status != DEA_OK || s->track->flight.membrane.heavy) {
+        return status;
+    }
+    *nodes = dea_rings_first_nodes(accuracy);
+    return open_mesh(s, *nodes, error);
+}
+
 /* Runs with coarse steps on finer meshes; the last is the one to refine, its run s->fine. */
 static dea_status choose_mesh(search *s, double fineness, dea_error *error)
 {
-    double nodes = dea_rings_first_nodes(sqrt(s->scene->accuracy)), last = INFINITY;
-    dea_status status = open_mesh(s, nodes, error);
+    double nodes, last = INFINITY;
+    dea_status status = open_first(s, &nodes, error);
     if (status == DEA_OK) {
         status = run(s, fineness, s->fine, error);
     }
@@ -128,13 +155,16 @@ static dea_status choose_mesh(search *s, double fineness, dea_error *error)
         }
         const dea_rings_gap gap = dea_rings_gap_of(s->scene, &s->scales, &s->coarse->trace, &s->fine->trace);
         const double trust = dea_rings_mesh_trust(&s->track->flight.membrane, &s->track->flight.motion.rest, nodes);
-        s->mesh_error = comparable(&s->coarse->trace, &s->fine->trace) ? trust * gap.answer : INFINITY;
-        s->mesh_displacement = trust * gap.displacement;
-        s->mesh_rates = (dea_rate_errors){trust * gap.rates.velocity, trust * gap.rates.current};
-        if (s->mesh_error <= ample * s->scene->accuracy) { /* the coarser one will do */
+        const bool alike = comparable(&s->coarse->trace, &s->fine->trace);
+        const double coarse = 1.0 + trust;
+        const bool whole = alike && s->fine->trace.end == DEA_STATE_OK; /* where a film ends, its mesh decides */
+        if (whole && coarse * gap.answer <= coarse_share * s->scene->accuracy) {
+            set_mesh_error(s, &gap, coarse);
             swap(&s->coarse, &s->fine);
             return open_mesh(s, before, error);
         }
+        set_mesh_error(s, &gap, trust);
+        s->mesh_error = alike ? s->mesh_error : (double)INFINITY;
         if (s->mesh_error <= mesh_share * s->scene->accuracy || !(s->mesh_error < gains_nothing * last)) {
             return DEA_OK;
         }
@@ -158,6 +188,12 @@ static double best(double before, double answer)
     return answer + (answer - before) / 7.0;
 }
 
+/* Energy that the balance leaves open [J]. */
+static double open_of(const dea_summary *s)
+{
+    return s->work - (s->electric + s->elastic + s->kinetic + s->dissipated);
+}
+
 static void better_summary(const dea_summary *coarse, const dea_summary *fine, dea_summary *answer)
 {
     *answer = *fine;
@@ -166,6 +202,8 @@ static void better_summary(const dea_summary *coarse, const dea_summary *fine, d
     answer->elastic = better(coarse->elastic, fine->elastic);
     answer->kinetic = better(coarse->kinetic, fine->kinetic);
     answer->dissipated = better(coarse->dissipated, fine->dissipated);
+    const double left = open_of(fine);
+    answer->residual = left != 0.0 ? fine->residual * fabs(open_of(answer) / left) : fine->residual;
 }
 
 /* What the last two runs extrapolate to; states are those of the finer one. */
@@ -217,7 +255,7 @@ static void judge(search *s, int runs)
 static dea_status refine(search *s, bool *good, dea_error *error)
 {
     const double accuracy = s->scene->accuracy;
-    double fineness = fmin(1.0, pow(accuracy / 1e-4, 0.4));
+    double fineness = first_fineness * fmin(1.0, pow(accuracy / 1e-4, 0.4));
     *good = false;
     s->error = INFINITY;
     s->apart = 0.0;
@@ -260,17 +298,9 @@ static void polish(search *s)
 static void fill(const search *s, bool good, dea_sample *samples)
 {
     const dea_rings_trace *trace = &s->answer->trace;
-    size_t near = 0;
-    for (size_t i = 0; i < s->rows; i++) {
-        if (good && i < trace->count) {
-            samples[i] = trace->samples[i];
-            continue;
-        }
-        const double time = dea_layout_place(s->scene, i);
-        near = dea_signal_find(s->signal, near, time);
-        const double voltage = dea_segment_voltage(s->signal, &s->signal->segments[near], time);
-        samples[i] = dea_sample_refused(time, voltage, good ? trace->end : DEA_STATE_FAILED);
-    }
+    const size_t count = good ? trace->count : 0;
+    memcpy(samples, trace->samples, count * sizeof *samples);
+    dea_samples_refuse(s->scene, s->signal, count, good ? trace->end : DEA_STATE_FAILED, samples);
 }
 
 static void tell(const search *s, const dea_sample *samples, dea_summary *summary)

@@ -1,7 +1,7 @@
 /* One mesh serves a line: that of its points that wants the most nodes, found by the film's own numbers. ngspice's answer is taken
  * where Newton's step of a mesh two degrees finer at it is small, which bounds the error of the discretisation and that of the
  * solution at once, and where the way from rest leads to it. */
-#include "engine/ngspice/still.h"
+#include "engine/ngspice/moving.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -248,7 +248,7 @@ static dea_status climb(line_job *job, size_t i, size_t steps, bool *accepted, d
 static dea_state end_of(const line_job *job)
 {
     dea_row exact = dea_row_failed();
-    job->scene.models[0]->solve(&job->point, job->accuracy, &exact);
+    dea_model_solve(job->scene.models[0], &job->point, job->accuracy, &exact);
     return exact.state == DEA_STATE_PULL_IN ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
 }
 

@@ -117,6 +117,14 @@ static void enter_wave(const dea_units *u, dea_waveform *wave)
     wave->period *= u->time;
 }
 
+static void enter_loads(const dea_units *u, dea_edge_load *loads)
+{
+    for (size_t i = 0; i < DEA_LOADS; i++) {
+        const dea_load_kind *kind = loads[i].kind;
+        loads[i].number *= kind ? u->stress * u->thickness * pow(u->length, kind->length) * pow(u->time, kind->time) : 1.0;
+    }
+}
+
 dea_status dea_units_enter(const dea_units *units, const dea_scene *scene, dea_scene *inside, dea_error *error)
 {
     *inside = *scene;
@@ -130,10 +138,7 @@ dea_status dea_units_enter(const dea_units *units, const dea_scene *scene, dea_s
     inside->electrode.density *= density(units);
     inside->electrode.sheet_resistance *= resistance(units);
     enter_law(units, inside->electrode.law, inside->electrode.constants);
-    inside->load.mass *= units->stress * units->thickness * units->time * units->time;
-    inside->load.stiffness *= units->stress * units->thickness;
-    inside->load.damping *= units->stress * units->thickness * units->time;
-    inside->load.force *= units->stress * units->thickness * units->length;
+    enter_loads(units, inside->loads);
     inside->antagonist.frame_radius *= units->length;
     inside->antagonist.film_thickness *= units->thickness;
     inside->antagonist.voltage *= units->voltage;

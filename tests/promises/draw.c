@@ -146,17 +146,17 @@ static void draw_load(uint64_t *seed, dea_scene *scene)
     const double thickness = a->layers * a->film_thickness, stiffness = 4.0 * DEA_PI * thickness * stiffness_of(scene);
     const double mass = 1000.0 * DEA_PI * thickness * pow(a->frame_radius / a->prestretch, 2.0);
     if (random_chance(seed, 0.4)) {
-        scene->load.mass = mass * random_decades(seed, 1e-3, 10.0);
+        *dea_scene_load(scene, "mass") = mass * random_decades(seed, 1e-3, 10.0);
     }
     if (random_chance(seed, 0.4)) {
-        scene->load.stiffness = stiffness * random_decades(seed, 1e-3, 10.0);
+        *dea_scene_load(scene, "stiffness") = stiffness * random_decades(seed, 1e-3, 10.0);
     }
     if (random_chance(seed, 0.4)) {
-        scene->load.damping = sqrt(stiffness * mass) * random_decades(seed, 1e-3, 1.0);
+        *dea_scene_load(scene, "damping") = sqrt(stiffness * mass) * random_decades(seed, 1e-3, 1.0);
     }
     if (random_chance(seed, 0.4)) {
         const double room = fmin(a->coverage, 1.0 - a->coverage) * a->frame_radius; /* of the edge */
-        scene->load.force = stiffness * room * random_between(seed, -0.15, 0.15);
+        *dea_scene_load(scene, "force") = stiffness * room * random_between(seed, -0.15, 0.15);
     }
 }
 
@@ -210,7 +210,7 @@ void draw_film(uint64_t *seed, dea_scene *scene)
 {
     dea_actuator *a = &scene->actuator;
     *scene = random_scene(seed);
-    scene->load = (dea_edge_load){(double)NAN, (double)NAN, (double)NAN, (double)NAN};
+    dea_scene_unload(scene);
     a->prestretch = random_chance(seed, 0.6) ? random_between(seed, 1.05, 1.6) : random_between(seed, 1.6, 4.0);
     draw_material(seed, a->prestretch, &scene->material);
     a->coverage = random_chance(seed, 0.3)
@@ -268,9 +268,9 @@ static void draw_sweep(uint64_t *seed, paper *p)
     const dea_model *model = dea_model_at((size_t)((double)dea_model_count() * random_unit(seed)));
     scene.actuator.kind = model->lens ? scene.actuator.kind : DEA_DOT;
     if (!model->edge) {
-        scene.load.stiffness = scene.load.force = (double)NAN;
+        *dea_scene_load(&scene, "stiffness") = *dea_scene_load(&scene, "force") = (double)NAN;
     }
-    scene.load.mass = scene.load.damping = (double)NAN; /* at rest they do nothing */
+    *dea_scene_load(&scene, "mass") = *dea_scene_load(&scene, "damping") = (double)NAN; /* at rest they do nothing */
     const double limit = limit_voltage(&scene, model->name), kind = random_unit(seed);
     const double share = scene.drive.leakage_resistance / (scene.drive.leakage_resistance + scene.drive.series_resistance);
     const double source = limit / (isnan(share) ? 1.0 : share);
@@ -323,7 +323,7 @@ static const char *draw_mover(uint64_t *seed, dea_scene *scene, bool heavy)
 {
     static const char *const models[] = {"lumped", "lame", "coverage", "ring"};
     draw_film(seed, scene);
-    scene->load.mass = heavy ? scene->load.mass : (double)NAN;
+    *dea_scene_load(scene, "mass") = heavy ? *dea_scene_load(scene, "mass") : (double)NAN;
     scene->material.density = heavy ? random_between(seed, 900.0, 1200.0) : (double)NAN;
     const bool weighed = scene->electrode.law && !isnan(scene->electrode.density); /* that of the skin is all then */
     const double areal = heavy && random_chance(seed, 0.3) ? random_decades(seed, 1e-3, 0.1) : (double)NAN;

@@ -167,6 +167,17 @@ static long double given_or_none(double value)
     return isnan(value) ? 0.0L : (long double)value;
 }
 
+static long double load_of(const dea_scene *scene, const char *name)
+{
+    for (size_t i = 0; i < DEA_LOADS; i++) {
+        const dea_edge_load *load = &scene->loads[i];
+        if (load->kind && strcmp(load->kind->name, name) == 0) {
+            return given_or_none(load->number);
+        }
+    }
+    return 0.0L;
+}
+
 /* Electrodes and what is fixed to the edge: physics.md, section 8. */
 static void set_beside(const dea_scene *scene, true_film *f)
 {
@@ -180,10 +191,10 @@ static void set_beside(const dea_scene *scene, true_film *f)
     for (unsigned i = 0; i < DEA_LAW_CONSTANTS; i++) {
         f->skin_constants[i] = e->constants[i];
     }
-    f->load_mass = given_or_none(scene->load.mass);
-    f->load_stiffness = given_or_none(scene->load.stiffness);
-    f->load_damping = given_or_none(scene->load.damping);
-    f->load_force = given_or_none(scene->load.force);
+    f->load_mass = load_of(scene, "mass");
+    f->load_stiffness = load_of(scene, "stiffness");
+    f->load_damping = load_of(scene, "damping");
+    f->load_force = load_of(scene, "force");
 }
 
 true_film film_of(const dea_scene *scene, const dea_model *model)

@@ -13,7 +13,7 @@ static void draw_membrane(uint64_t *seed, dea_scene *scene, bool heavy)
     draw_beside(*seed, 0.35, scene);
     scene->models[0] = dea_model_find("field");
     scene->material.density = heavy ? random_between(seed, 900.0, 1200.0) : (double)NAN;
-    scene->load.mass = heavy ? scene->load.mass : (double)NAN;
+    *dea_scene_load(scene, "mass") = heavy ? *dea_scene_load(scene, "mass") : (double)NAN;
     const bool weighed = scene->electrode.law && !isnan(scene->electrode.density); /* that of the skin is all then */
     const double areal = heavy && random_chance(seed, 0.3) ? random_decades(seed, 1e-3, 0.1) : (double)NAN;
     scene->actuator.electrode_mass = weighed ? (double)NAN : areal;
@@ -31,7 +31,7 @@ static void draw_losses(uint64_t *seed, dea_scene *scene, double until, double p
         m->prony[i].g = random_between(seed, 0.05, 0.6) / (double)m->prony_count;
         m->prony[i].tau = until * random_decades(seed, 1e-4, 1e2);
     }
-    const bool loaded = scene->load.damping > 0.0 && isnan(m->density); /* its damper alone leaves the others without an equation */
+    const bool loaded = *dea_scene_load(scene, "damping") > 0.0 && isnan(m->density); /* its damper alone leaves the others without an equation */
     if (loaded || random_chance(seed, 0.75)) {
         m->retardation = isnan(m->density) ? until * random_decades(seed, 1e-4, 0.1) : period * random_decades(seed, 3e-3, 0.3);
     }

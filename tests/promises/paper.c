@@ -46,14 +46,15 @@ static void put_electrode(paper *p, const dea_electrode *e)
     }
 }
 
-static void put_load(paper *p, const dea_edge_load *load)
+static void put_loads(paper *p, const dea_edge_load *loads)
 {
-    if (!isnan(load->mass) || !isnan(load->stiffness) || !isnan(load->damping) || !isnan(load->force)) {
-        put(p, "load:\n");
-        put_given(p, "mass", load->mass, "kg");
-        put_given(p, "stiffness", load->stiffness, "N/m");
-        put_given(p, "damping", load->damping, "N s/m");
-        put_given(p, "force", load->force, "N");
+    bool any = false;
+    for (size_t i = 0; i < dea_load_count(); i++) {
+        if (loads[i].kind && !isnan(loads[i].number)) {
+            put(p, "%s", any ? "" : "load:\n");
+            put_given(p, loads[i].kind->name, loads[i].number, loads[i].kind->unit);
+            any = true;
+        }
     }
 }
 
@@ -61,7 +62,7 @@ void put_actuator(paper *p, const dea_scene *scene)
 {
     const dea_actuator *a = &scene->actuator;
     put_electrode(p, &scene->electrode);
-    put_load(p, &scene->load);
+    put_loads(p, scene->loads);
     if (!isnan(scene->material.temperature)) {
         put(p, "temperature: %.17g K\n", scene->material.temperature);
     }

@@ -20,8 +20,9 @@ enum { PAIRS = STAGES / 2, ROUNDS = 24, BRANCHES = 8, LEVELS = 5, KNOTS = STAGES
 
 static const double most_work = 6e4; /* unknowns times steps of a run, some seconds */
 static const double cheap_work = 5e3; /* below it a truth is made as good as any engine's best wants it */
-static const long double first_tolerance = 4e-6L, next_tolerance = 0.05L, first_fineness = 3.0L;
+static const long double first_tolerance = 4e-6L, next_tolerance = 0.05L, first_fineness = 2.0L;
 static const double good = 9e-8, best = 3e-11; /* difference of two runs at which no third is made, of dear and of cheap ones; */
+static const long double first_share = 0.03L; /* first tolerance over that accuracy */
 static const double enough = 0.05;             /* and over the accuracy that is wanted */
 static const double gains = 0.3; /* share of the last difference above which a finer mesh is not worth its steps: kinks travel undamped */
 static const long double solved = 1e-4L; /* last change of Newton's method, over the tolerance */
@@ -914,7 +915,7 @@ static void refine(motion *m, true_run *truth)
     dea_sample *before = calloc(m->rows, sizeof *before);
     double fineness = (double)first_fineness, last = (double)INFINITY;
     size_t count = 0;
-    m->tolerance = first_tolerance;
+    m->tolerance = fmaxl(first_tolerance, first_share * (long double)m->scene->accuracy);
     truth->error = (double)INFINITY;
     for (int level = 0; level < LEVELS && !is_enough(m, truth->error); level++) {
         if (!radial_open(&m->mesh, &m->film, fineness)) {

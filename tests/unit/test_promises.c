@@ -100,7 +100,6 @@ static void the_truth_of_a_membrane_is_that_of_the_table(void **state)
     } known[] = {{0.25, {0.0741705, 0.0518654, 0.0610839, 0.0613304}}, {0.75, {0.0290929, 0.0200565, 0.0239188, 0.0234764}}};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         dea_scene scene = paper_scene(DEA_DOT, 1.2, known[i].coverage, (double)NAN);
-        scene.load = (dea_edge_load){(double)NAN, (double)NAN, (double)NAN, (double)NAN};
         scene.study = DEA_STUDY_TRANSIENT;
         scene.material.density = 1080.0;
         scene.material.retardation = 5e-5;

@@ -695,4 +695,6 @@ const dea_model dea_model_field = {
     .hold = hold,
     .dynamic = true,
     .membrane = true,
+    .stand_in = &dea_model_ring,
+    .part = &(const dea_model_part){"_field", "the exact membrane as a network of rings, quasi-linear relaxation", false, 1e6, 1.0},
 };

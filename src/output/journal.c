@@ -11,8 +11,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "output/atomic.h"
 #include "output/stream.h"
+#include "support/atomic.h"
 #include "support/clock.h"
 
 enum { IDENTITY_MOST = 1 << 20, LOCK_TRIES = 50, LOCK_WAIT_MS = 20, ROW_MOST = DEA_LAYOUT_COLUMNS * sizeof(double) + 1 };

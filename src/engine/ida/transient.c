@@ -6,6 +6,7 @@
 
 #include "drive/signal.h"
 #include "engine/ida/flight.h"
+#include "network/thin.h"
 #include "result/scales.h"
 #include "support/lapack.h"
 
@@ -194,8 +195,9 @@ static void fly_on(dea_flight *flight, const dea_scales *scales, dea_trace trace
                    dea_error *error)
 {
     dea_rate_errors rates = {0.0, 0.0};
-    const double accuracy = flight->scene->accuracy;
+    const double accuracy = flight->scene->accuracy - flight->signal->thinned;
     const bool reached = refine(flight, scales, accuracy > fine ? accuracy : margin * accuracy, traces, summary, &rates);
+    summary->error += flight->signal->thinned;
     if (!reached || traces[1].end == DEA_STATE_FAILED) {
         explain(flight, summary, error);
     }
@@ -235,6 +237,10 @@ static dea_status fly_signal(const dea_sundials *sun, const dea_scene *scene, de
     dea_signal signal;
     dea_flight flight;
     dea_status status = dea_signal_open(scene, &signal, error);
+    if (status == DEA_OK && !dea_peak_is_known(scene, dynamics, &signal)) {
+        const dea_scales scales = dea_scales_open(scene, dynamics->model);
+        status = dea_signal_thin(&signal, scene, dynamics, scales.pace, error);
+    }
     if (status == DEA_OK) {
         status = dea_flight_open(sun, scene, dynamics, &signal, &flight, error);
         if (status == DEA_OK && !(flight.peaks && dynamics->series == 0.0)) { /* the current C U' has its peaks at corners */

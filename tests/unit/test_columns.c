@@ -157,6 +157,7 @@ static dea_sample *run_case(judged *j, const char *engine, double accuracy)
     void *user[2] = {j, rows};
     const dea_run_options options = {.jobs = 1, .points = take_points, .user = user};
     assert_non_null(rows);
+    judge_find(j);
     j->scene.accuracy = accuracy;
     assert_int_equal(dea_study_run(&j->scene, dea_engine_find(engine), &options, &error), DEA_OK);
     return rows;

@@ -187,6 +187,12 @@ $(BUILD)/hard: $(wildcard tests/hard/*.[ch]) $(TRUTHS) $(BUILD)/libdeaspice.a
 	@echo "CC $@"
 	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) $(filter %.c %.o,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) $(LIBS)
 
+# No circle of includes, no arrow upwards.
+.PHONY: layers
+test test-stage: layers
+layers:
+	@tests/run test tests/layers
+
 # The ready-made parts for circuit simulators; a unit test finds what is checked in and differs.
 netlists: $(BUILD)/make_netlists
 	@$(BUILD)/make_netlists netlists

@@ -1,7 +1,7 @@
 /* Writes the library of netlists/ into the folder that it is given. */
 #include <stdio.h>
 
-#include "netlist/library_files.h"
+#include "netlist/part.h"
 
 int main(int argc, char **argv)
 {

@@ -217,6 +217,8 @@ void dea_signal_close(dea_signal *signal)
 {
     free(signal->segments);
     free(signal->lines);
+    free(signal->record);
+    free(signal->terms);
     *signal = (dea_signal){0};
 }
 
@@ -285,8 +287,49 @@ static const dea_segment *line_at(const dea_segment *run, double time)
     return &run->lines[dea_segment_line(run, time)];
 }
 
+const dea_segment *dea_segment_seen(const dea_segment *segment, double time)
+{
+    return segment->terms ? line_at(segment, time) : segment;
+}
+
+/* sum c_n P_n(x) and, unless NULL, its slope over x: (n + 1) P_n+1 = (2n + 1) x P_n - n P_n-1,  P_n+1' = P_n-1' + (2n + 1) P_n. */
+static double legendre(const double *c, double x, double *slope)
+{
+    double p0 = 1.0, p1 = x, d0 = 0.0, d1 = 1.0, sum = c[0], rise = 0.0;
+    for (int n = 1; n < DEA_TERMS; n++) {
+        sum += c[n] * p1;
+        rise += c[n] * d1;
+        const double p2 = ((2 * n + 1) * x * p1 - n * p0) / (n + 1), d2 = d0 + (2 * n + 1) * p1;
+        p0 = p1, p1 = p2;
+        d0 = d1, d1 = d2;
+    }
+    if (slope) {
+        *slope = rise;
+    }
+    return sum;
+}
+
+double dea_segment_square(const dea_segment *segment, double time)
+{
+    return legendre(segment->terms, 2.0 * (time - segment->from) / (segment->to - segment->from) - 1.0, NULL);
+}
+
+/* Voltage of a segment that stands for lines, and its slope: 0 where the square has fallen to nothing [V], [V/s]. */
+static double thinned_voltage(const dea_segment *segment, double time, double *slope)
+{
+    const double width = segment->to - segment->from;
+    const double square = legendre(segment->terms, 2.0 * (time - segment->from) / width - 1.0, slope);
+    const double voltage = sqrt(fmax(square, 0.0));
+    *slope = voltage > 0.0 ? *slope / (voltage * width) : 0.0; /* d sqrt(s)/dt = s'/(2 U), dx/dt = 2/width */
+    return voltage;
+}
+
 double dea_segment_voltage(const dea_signal *signal, const dea_segment *segment, double time)
 {
+    if (segment->terms) {
+        double slope;
+        return thinned_voltage(segment, time, &slope);
+    }
     if (segment->lines) {
         return dea_segment_voltage(signal, line_at(segment, time), time);
     }
@@ -314,6 +357,11 @@ double dea_segment_voltage_since(const dea_signal *signal, const dea_segment *se
 
 double dea_segment_slope(const dea_signal *signal, const dea_segment *segment, double time)
 {
+    if (segment->terms) {
+        double slope;
+        (void)thinned_voltage(segment, time, &slope);
+        return slope;
+    }
     segment = segment->lines ? line_at(segment, time) : segment;
     if (segment->sine) {
         double sum = 0.0;
@@ -347,8 +395,22 @@ double dea_segment_largest(const dea_signal *signal, const dea_segment *segment)
     return segment->sine ? dea_curve_largest(&signal->curve) : fmax(fabs(segment->start), fabs(segment->end));
 }
 
+/* P_n makes n/2 turns over its width. An error that goes with the square of the steps counts by the size of the term. */
+static double thinned_turn(const dea_segment *segment)
+{
+    const double *terms = segment->terms;
+    double turn = 1.0;
+    for (int n = 1; n < DEA_TERMS; n++) {
+        turn = fmax(turn, n * sqrt(fabs(terms[n] / terms[0])));
+    }
+    return DEA_PI * turn / (segment->to - segment->from);
+}
+
 double dea_segment_turn(const dea_signal *signal, const dea_segment *segment)
 {
+    if (segment->terms) {
+        return thinned_turn(segment);
+    }
     double turn = 0.0;
     for (size_t i = 0; i < signal->curve.count && segment->sine; i++) {
         const dea_tone *tone = &signal->curve.tones[i];

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "drive/soften.h"
+#include "drive/signal.h"
 
 /* A corner counts as small up to this share of the accuracy: the change of slope times the length of the shorter line, over the
  * largest voltage; what a step that passes it leaves out is an eighth of that at most. */

@@ -100,4 +100,10 @@ bool dea_plan_stopped(const dea_plan *plan);
 /** One line for the caller's log. */
 void dea_plan_log(const dea_plan *plan, dea_damage *damage, const char *format, ...) DEA_PRINTF(3, 4);
 
+/* ---- A study on worker processes. */
+
+/** Runs the plan on up to plan->options->jobs forked workers and reaps them all before it returns.
+ * @param beyond time that a worker may take on top of its engine's patience [s] */
+dea_status dea_pool_run(const dea_plan *plan, double beyond, dea_error *error);
+
 #endif

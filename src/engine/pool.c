@@ -1,5 +1,5 @@
 #define _GNU_SOURCE
-#include "engine/pool.h"
+#include "engine/plan.h"
 
 #include <errno.h>
 #include <poll.h>

@@ -1,4 +1,4 @@
-#include "engine/pool.h"
+#include "engine/plan.h"
 #include "engine/solve.h"
 
 #include <stdlib.h>

@@ -28,7 +28,7 @@ const char *dea_engine_refuses(const dea_engine *engine, const dea_scene *scene,
     if (study->timed && scene->transient.points > 0 && !engine->profiles)
         return "its transients have no profiles";
     if (model->membrane && scene->drive.current_limit > 0.0)
-        return "its rings of film take no current limit";
+        return "its rings of film take no current limit; ring does";
     return engine->refuses ? engine->refuses(scene, model) : NULL;
 }
 

@@ -10,7 +10,6 @@
 
 #include "material/fit_errors.h"
 #include "material/fit_plausible.h"
-#include "material/fit_search.h"
 #include "material/law.h"
 #include "support/lapack.h"
 
@@ -246,7 +245,7 @@ static void fit_judge(const dea_fit_data *data, dea_fit *fit)
     }
     fit->residual_rms = sqrt(residuals / count);
     fit->residual_relative = sqrt(residuals / squares);
-    fit->r_squared = 1.0 - residuals / spread;
+    fit->r_squared = spread > DBL_EPSILON * squares ? 1.0 - residuals / spread : (double)NAN;
 }
 
 /* Walks the range of the data, and from rest, in search of a tangent modulus that is not positive. */

@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "material/fit_nnls.h"
 #include "support/lapack.h"
 
 enum { PER_DECADE = 5, STARTS = 4, STEPS_MOST = 300 };

@@ -2,7 +2,9 @@
 #ifndef DEA_MATERIAL_FIT_BRANCHES_H
 #define DEA_MATERIAL_FIT_BRANCHES_H
 
+#include <stddef.h>
 #include "material/fit_test.h"
+#include "deaspice/status.h"
 
 enum { DEA_BRANCHES_GRID = 128, DEA_BRANCHES_COLUMNS = 2 * DEA_RELAXATION_MOST + 1 };
 
@@ -45,5 +47,12 @@ void dea_branches_jacobian(const dea_held *held, const dea_branches *branches, d
 void dea_branches_residual(const dea_held *held, const dea_branches *branches, const double *matrix, size_t rows, double *residual);
 /* Sum of squares. */
 double dea_squares(const double *values, size_t count);
+
+/* ---- Linear least squares with non-negative unknowns. */
+
+/* Minimises |A x - b| over x >= 0 by the active-set method of Lawson and Hanson, "Solving Least Squares Problems", chapter 23.
+ * @p matrix is A, rows x columns, column by column; @p x gets the solution, *squares the sum of squared residuals.
+ * Returns DEA_OK or DEA_ERROR_MEMORY. */
+dea_status dea_nnls(size_t rows, size_t columns, const double *matrix, const double *right, double *x, double *squares);
 
 #endif

@@ -1,4 +1,4 @@
-#include "material/fit_nnls.h"
+#include "material/fit_branches.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -9,9 +9,8 @@
  * it to many digits at any strain that a film stands. The unknowns are D at the nodes and a; s1 is continuous at the edge. Newton:
  * with y = s11 dD at constant e the linearised equation is dy/de = q y + d(rho)/de, rho its residual, q = (dQ/dD)/s11, solved by
  * the integrating factor exp(int q), so that no matrix is needed. */
-#include "model/collocation.h"
+#include "model/field.h"
 
-#include "model/field_row.h"
 #include "model/models.h"
 #include "support/lanes.h"
 

@@ -14,9 +14,7 @@
  */
 #include <float.h>
 
-#include "model/collocation.h"
 #include "model/field.h"
-#include "model/field_row.h"
 #include "model/film_balance.h"
 
 enum { GBS_COLUMNS = 7, ELLIPTIC_SAMPLES = 8 };
@@ -697,4 +695,6 @@ const dea_model dea_model_field = {
     .hold = hold,
     .dynamic = true,
     .membrane = true,
+    .stand_in = &dea_model_ring,
+    .part = &(const dea_model_part){"_field", "the exact membrane as a network of rings, quasi-linear relaxation", false, 1e6, 1.0},
 };

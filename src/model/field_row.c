@@ -1,4 +1,4 @@
-#include "model/field_row.h"
+#include "model/field.h"
 
 double dea_field_lever(const dea_point *point)
 {

@@ -5,7 +5,7 @@
 
 #include "deaspice/needs.h"
 #include "scene/line.h"
-#include "needs/probes.h"
+#include "needs/nearness.h"
 #include "needs/trial.h"
 #include "study/study.h"
 

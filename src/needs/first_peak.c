@@ -1,16 +1,16 @@
 /* From rest at the begin of the edge, y' = f(t, y) by Dormand and Prince's Runge-Kutta pair of orders 5 and 4 (RK5(4)7M, 1980), whose
  * last stage is the first of the next step. Between two steps the displacement of the edge is the cubic through both with their
  * velocities; a peak is where that velocity turns. */
-#include "needs/first_peak.h"
+#include "needs/nearness.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/ida/motion.h"
-#include "engine/ida/rings_motion.h"
-#include "network/swing.h"
+#include "network/motion.h"
 #include "network/rings_mesh.h"
+#include "network/rings_motion.h"
+#include "network/swing.h"
 
 static const double tolerance = 1e-4;  /* of a step, of the sizes of displacement and velocity: peaks are right to 1e-4 then */
 static const double agreed = 2e-3;     /* meshes that differ by less have the peak */

@@ -2,9 +2,7 @@
 
 #include <math.h>
 
-#include "needs/first_peak.h"
 #include "network/swing.h"
-#include "needs/probes.h"
 #include "study/study.h"
 
 /* Of the solutions that are compared: the membrane costs some 20 us a probe then, and no printed digit is of it. */

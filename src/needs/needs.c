@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/models.h"
+#include "geometry/point.h"
 #include "needs/surrogate.h"
 #include "network/swing.h"
 #include "study/study.h"
@@ -60,14 +60,23 @@ static void omit(planner *p, dea_omission omission)
     p->reduction = dea_needs_reduction(p->needs->omissions, p->needs->count);
 }
 
-/* True of the first sample of a film at its bias that a mass, a damper or a resistance holds there for the moment: it rests, which
- * dea_dynamics_sample() knows without the parts too. Without them the film follows a sloping voltage at once. */
+/* True of the first sample of a film that begins without bias and has a mass: it rests, which dea_dynamics_sample() knows without
+ * the mass too, as of films of one node. */
+static bool is_rest(const planner *p, size_t probe)
+{
+    const dea_surrogate *s = &p->surrogate;
+    const bool first = probe == 0 && s->sampled > 0 && dea_layout_place(s->scene, s->probes[0]) == 0.0;
+    return first && s->dynamics.heavy && !p->many_nodes && !s->scene->transient.from_bias;
+}
+
+/* The same of a film at its bias that a mass, a damper or a resistance holds there for the moment, but for its displacement.
+ * Without them the film follows a sloping voltage at once. */
 static bool is_start(const planner *p, size_t probe)
 {
     const dea_scene *scene = p->surrogate.scene;
     const bool held = !isnan(scene->material.density) || dea_electrode_mass(scene) > 0.0 ||
                       !isnan(scene->material.retardation) || dea_scene_edge(scene).damping > 0.0 || dea_series_resistance(scene) > 0.0;
-    return held && scene->transient.from_bias && probe == 0;
+    return is_rest(p, probe) || (held && scene->transient.from_bias && probe == 0);
 }
 
 /* Change of the displacement at a probe over its peak, or of the velocity against what its column promises; the larger of the
@@ -75,7 +84,7 @@ static bool is_start(const planner *p, size_t probe)
 static double change_at(const planner *p, size_t probe)
 {
     double change = 0.0;
-    for (int i = 0; i < p->surrogate.point_count; i++) {
+    for (int i = 0; i < p->surrogate.point_count && !is_rest(p, probe); i++) {
         const size_t k = (size_t)i * p->surrogate.count + probe;
         const double rate = is_start(p, probe) ? 0.0 : fabs(p->next.v[k] - p->now.v[k]) / (rate_allowance * p->speeds[i]);
         const double here = fmax(fabs(p->next.u[k] - p->now.u[k]) / p->peaks[i], rate);
@@ -237,7 +246,7 @@ static bool try(planner *p, dea_omission omission)
 static double ring_at(const planner *p, double omega, size_t probe)
 {
     double ring = 0.0;
-    for (int i = 0; i < p->surrogate.point_count; i++) {
+    for (int i = 0; i < p->surrogate.point_count && !is_rest(p, probe); i++) {
         const size_t k = (size_t)i * p->surrogate.count + probe;
         const double swing = hypot(p->next.u[k] - p->now.u[k], (p->next.v[k] - p->now.v[k]) / omega);
         const double rate = probe < p->surrogate.sampled ? omega * swing / (rate_allowance * p->speeds[i]) : 0.0;
@@ -494,7 +503,7 @@ dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const 
         return DEA_OK;
     }
     p.many_nodes = model->membrane;
-    dea_status status = dea_surrogate_open(scene, model->membrane ? &dea_model_ring : model, &p.surrogate, &usable, error);
+    dea_status status = dea_surrogate_open(scene, model->stand_in ? model->stand_in : model, &p.surrogate, &usable, error);
     if (status == DEA_OK) {
         const dea_swing swing = p.many_nodes ? dea_swing_free(scene, model) : dea_swing_of(&p.surrogate.dynamics, p.surrogate.dynamics.rest, 0.0);
         needs->resonance = swing.frequency;

@@ -1,4 +1,4 @@
-#include "needs/probes.h"
+#include "needs/nearness.h"
 
 #include <math.h>
 

@@ -143,12 +143,13 @@ void dea_export_drive_steps(dea_export_drive *w, const dea_pace *paces, size_t c
     const double wanted = step_wanted(w, paces, count);
     const double least = w->export->scene->transient.until / most_steps;
     w->step = fmax(wanted, least);
+    w->expected = fmin(1.0, w->export->scene->accuracy * fmax(1.0, (w->step / wanted) * (w->step / wanted)));
     if (wanted < least) {
         snprintf(w->export->note, sizeof w->export->note,
                  "a netlist has one tmax, where the engine ngspice cuts the run into pieces, each of its own step: tmax is %.3g s, %g "
                  "steps; the accuracy %.3g of the scene needs %.3g s while %s: expect an error of some %.2g, or shorten the run",
                  w->step, most_steps, w->export->scene->accuracy, wanted, w->rings ? "the film rings" : "the film relaxes",
-                 fmin(1.0, w->export->scene->accuracy * (w->step / wanted) * (w->step / wanted)));
+                 w->expected);
     }
 }
 
@@ -165,7 +166,8 @@ void dea_export_drive_analysis(const dea_export_drive *w, const char *velocity)
     }
     dea_part_print(w->out,
                    "* .tran print interval, end, begin of the output, tmax [s]. tmax sets the accuracy: a tenth of it makes the error a "
-                   "hundredth\n.tran %g %g 0 %g uic\n"
+                   "hundredth\n* %g steps or more, for an error of some %g\n.tran %g %g 0 %g uic\n"
                    ".end\n",
+                   ceil(transient->until / w->step), w->expected,
                    transient->logarithmic ? transient->until / 1000.0 : transient->every, transient->until, w->step);
 }

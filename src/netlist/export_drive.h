@@ -13,6 +13,7 @@ typedef struct dea_export_drive {
     dea_signal signal; /* owned */
     double step;       /* longest time step [s] */
     bool rings;        /* the step is that of a ring */
+    double expected;   /* error of that step [1] */
     double quick;      /* shortest time of the film: a radian of its ring, or its fastest relaxation [s] */
 } dea_export_drive;
 

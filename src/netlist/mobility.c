@@ -10,7 +10,7 @@
 
 #include "expression/derivative.h"
 #include "expression/formula.h"
-#include "model/models.h"
+#include "geometry/point.h"
 
 static const dea_analogy analogies[] = {
     {"mobility", "mobility analogy: v(edge) = velocity [m/s], current = force [N], compliance = inductor, mass = capacitor", 'C',

@@ -12,6 +12,7 @@
 
 #include "deaspice/model.h"
 #include "netlist/dialect.h"
+#include "deaspice/status.h"
 
 /* Room for a name with its ending; longest name that a user gives; what the names of the library's helpers begin with. */
 enum { DEA_PART_TITLE = 48, DEA_PART_NAME_LENGTH = 32 };
@@ -40,6 +41,8 @@ void dea_part_write_mechanics(const char *prefix, FILE *out);
  * and the prefix of the helpers, so that files of different names go into one circuit; NULL: the names of the library. */
 dea_status dea_part_of_scene(const dea_scene *scene, const dea_model *model, const char *name, const dea_dialect *dialect,
                              FILE *out, dea_error *error);
+/* What of the scene is no business of its part and stands in the circuit around it, in words; empty: nothing. */
+void dea_part_note(const dea_scene *scene, char *note, size_t size);
 
 /* Writes the library of all parts, with the film of the base paper as defaults. */
 dea_status dea_part_library(const dea_dialect *dialect, FILE *out, dea_error *error);
@@ -59,5 +62,11 @@ size_t dea_part_parameters(const dea_scene *scene, const dea_model *model, dea_p
 
 /* The scene behind the library's defaults: the film of the base paper, at rest. It owns nothing. */
 dea_scene dea_part_paper(dea_kind kind);
+
+/* ---- The ready-made library of netlists/: parts in every dialect and symbols. */
+
+/* Writes the library below @p folder, one folder a tool, made where they are missing; files of the same names are replaced whole.
+ * DEA_ERROR_IO, DEA_ERROR_MEMORY. */
+dea_status dea_library_write(const char *folder, dea_error *error);
 
 #endif

@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-#include "model/models.h"
+#include "geometry/point.h"
 #include "support/gauss.h"
 
 enum { TENSION, PUSH, CAPACITANCE, STRESSES, OUTPUTS = STRESSES + 2 * DEA_STRESSES };
@@ -197,8 +197,8 @@ dea_status dea_dynamics_settle(const dea_scene *scene, const dea_model *model, d
     }
     set_port(scene, d);
     d->biased = scene->transient.from_bias;
-    d->clamped = d->series > 0.0 || d->dropped > 0.0 || dea_point_mass(scene, &d->point) > 0.0 || dea_dynamics_is_damped(d) ||
-                 !isnan(scene->material.retardation);
+    d->heavy = dea_point_mass(scene, &d->point) > 0.0;
+    d->clamped = d->series > 0.0 || d->dropped > 0.0 || d->heavy || dea_dynamics_is_damped(d) || !isnan(scene->material.retardation);
     d->radius = d->point.coverage * d->point.frame_radius;
     d->mass = scene->reduction.mass ? 0.0 : dea_point_mass(scene, &d->point);
     if (!isnan(d->focal_length) && !(d->focal_length * (d->refractive_index - 1.0) >= d->radius)) {
@@ -464,6 +464,16 @@ dea_sample dea_sample_refused(double time, double voltage, dea_state state)
     return (dea_sample){time, voltage, none, none, none, none, none, none, none, none, none, state, {none, none, none, none}};
 }
 
+void dea_samples_refuse(const dea_scene *scene, const dea_signal *signal, size_t from, dea_state state, dea_sample *samples)
+{
+    size_t near = 0;
+    for (size_t i = from; i < dea_layout_of(scene).rows; i++) {
+        const double time = dea_layout_place(scene, i);
+        near = dea_signal_find(signal, near, time);
+        samples[i] = dea_sample_refused(time, dea_segment_voltage(signal, dea_segment_seen(&signal->segments[near], time), time), state);
+    }
+}
+
 /* Within the limit; NAN stays. */
 static double held_within(const dea_dynamics *d, double current)
 {
@@ -544,7 +554,12 @@ bool dea_dynamics_inside(dea_dynamics *dynamics, double u)
 
 void dea_dynamics_start(dea_dynamics *dynamics, dea_moment *moment)
 {
-    if (!dynamics->biased || moment->time != 0.0) {
+    if (moment->time != 0.0) {
+        return;
+    }
+    if (!dynamics->biased) {
+        moment->u = dynamics->heavy ? dynamics->rest : moment->u;
+        moment->v = dynamics->heavy ? 0.0 : moment->v;
         return;
     }
     double stiffness;

@@ -10,6 +10,7 @@
 #ifndef DEA_DYNAMICS_H
 #define DEA_DYNAMICS_H
 
+#include "drive/signal.h"
 #include "network/balance.h"
 
 /* Most stresses of a film, and most states of its branches: z_ai stands at a branch_count + i. */
@@ -38,6 +39,7 @@ typedef struct dea_dynamics {
     double dropped;                        /* R_s that is left out and shows in the first sample alone [Ohm], else 0 */
     bool biased;                           /* the run starts at the equilibrium under its first voltage */
     bool clamped;                          /* mass, damper or resistance, left out or not, hold the film there for the moment */
+    bool heavy;                            /* a mass, left out or not, holds the film for the moment */
     double limit;                          /* I [A], +inf: any */
     double conductance;                    /* 1/R_p [S], 0: no leakage */
     double radius;                         /* r_a [m] */
@@ -134,8 +136,8 @@ typedef struct dea_moment {
 } dea_moment;
 
 /* At the first moment of a film at its bias the branches have relaxed and the charge rests: of forces that cancel nothing is
- * left. So is the velocity 0 or, where nothing holds the film, that of its springs under a sloping voltage. Leaves other moments.
- */
+ * left. So is the velocity 0 or, where nothing holds the film, that of its springs under a sloping voltage. A film that begins
+ * without bias and has a mass, left out or not, rests where it is without voltage, however that jumps. Leaves other moments. */
 void dea_dynamics_start(dea_dynamics *dynamics, dea_moment *moment);
 /* Fills a row; its state says slack or breakdown. A displacement past what the film can do is pull_in: false, as for all that
  * follows. */
@@ -150,6 +152,8 @@ double dea_dynamics_rest(const dea_dynamics *dynamics, double source);
 double dea_dynamics_current(dea_dynamics *dynamics, const dea_moment *moment);
 /* A row without numbers but time and voltage. */
 dea_sample dea_sample_refused(double time, double voltage, dea_state state);
+/* Such rows of a run from number @p from on. */
+void dea_samples_refuse(const dea_scene *scene, const dea_signal *signal, size_t from, dea_state state, dea_sample *samples);
 
 /* Energy balance of a run, from the states between its samples. */
 typedef struct dea_audit {

@@ -91,3 +91,11 @@ bool dea_peak_is_known(const dea_scene *scene, const dea_dynamics *dynamics, con
     }
     return dynamics->series > 0.0 || !dea_peak_jumps(scene, signal);
 }
+
+void dea_peak_tell(const dea_peak *before, const dea_peak *last, double accuracy, dea_summary *summary)
+{
+    if (fabs(before->current - last->current) <= 10.0 * accuracy * last->current) {
+        summary->peak_current = last->current;
+        summary->peak_time = last->time;
+    }
+}

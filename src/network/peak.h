@@ -16,6 +16,9 @@ typedef double dea_current_at(void *user, double time);
 /* Sees a stretch over which the current is smooth: its ends, and its largest inside where that may be the largest of all. */
 void dea_peak_search(dea_peak *peak, double from, double to, dea_current_at *at, void *user);
 
+/* Tells the peak of the last of two runs where they agree about it within ten times the accuracy. */
+void dea_peak_tell(const dea_peak *before, const dea_peak *last, double accuracy, dea_summary *summary);
+
 /* True where a run knows the current between its samples: the scene has an electrical port, the run leaves nothing out that moves
  * or charges the film faster than they see (it keeps mass, damper and resistance, and of the branches leaves out no more than that
  * slow ones relax), and a series resistance limits the current where the voltage jumps. */

@@ -1,10 +1,12 @@
 /* CSV: one header row, full double precision, empty fields for numbers that are not there. Of a transient or a frequency response
  * every sample is a row, behind the axes of its run. */
 #include "output/writer.h"
+#include "scene/line.h"
 #include "support/number.h"
 
 #include "deaspice/model.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,8 +16,6 @@ typedef struct csv {
     const dea_scene *scene;
     dea_layout layout;
     dea_atomic *file;
-    size_t model;         /* of the point that comes next */
-    size_t *index;        /* of the point that comes next along each axis */
     char *prefix;         /* model and all axes, as text */
     size_t prefix_length; /* of the model and all axes but the last; stays for a whole run of the last axis */
     char *buffer;         /* CSV_BUFFER and room for one row more */
@@ -35,57 +35,45 @@ static void csv_put(csv *sheet, const char *text, size_t length)
     sheet->used += length;
 }
 
+/* A word and what parts it from the next. */
+static void csv_word(csv *sheet, const char *text)
+{
+    csv_put(sheet, text, strlen(text));
+    csv_put(sheet, ",", 1);
+}
+
 static size_t prefix_room(const dea_scene *scene)
 {
     return 2 * DEA_NAME_LENGTH + scene->axis_count * (DEA_NAME_LENGTH + 1);
 }
 
-static void csv_prefix(csv *sheet)
+/* Model and axes of a point, but for the last axis. */
+static void csv_prefix(csv *sheet, size_t point)
 {
     const dea_scene *scene = sheet->scene;
     char *out = sheet->prefix;
     if (scene->model_count > 1) {
-        const char *name = scene->models[sheet->model]->name;
-        const size_t length = strlen(name);
-        memcpy(out, name, length);
-        out += length;
-        *out++ = ',';
+        out += sprintf(out, "%s,", scene->models[point / dea_scene_point_count(scene)]->name);
     }
     for (size_t i = 0; i + 1 < scene->axis_count; i++) {
-        out += dea_number_write(out, scene->axes[i].values[sheet->index[i]]);
+        out += dea_number_write(out, scene->axes[i].values[dea_axis_index(scene, i, point)]);
         *out++ = ',';
     }
     sheet->prefix_length = (size_t)(out - sheet->prefix);
 }
 
-/* Steps to the next point: last axis fastest, model slowest. */
-static void csv_step(csv *sheet)
-{
-    const dea_scene *scene = sheet->scene;
-    size_t axis = scene->axis_count;
-    while (axis > 0) {
-        axis--;
-        if (++sheet->index[axis] < scene->axes[axis].count) {
-            if (axis + 1 < scene->axis_count) {
-                csv_prefix(sheet);
-            }
-            return;
-        }
-        sheet->index[axis] = 0;
-    }
-    if (++sheet->model < scene->model_count) {
-        csv_prefix(sheet);
-    }
-}
-
 /* Completes the prefix by the last axis; returns its whole length. */
-static size_t csv_lead(csv *sheet)
+static size_t csv_lead(csv *sheet, size_t point)
 {
     const dea_scene *scene = sheet->scene;
+    const dea_axis *last = scene->axis_count > 0 ? &scene->axes[scene->axis_count - 1] : NULL;
+    const size_t index = last ? point % last->count : 0;
+    if (index == 0) {
+        csv_prefix(sheet, point);
+    }
     char *out = sheet->prefix + sheet->prefix_length;
-    if (scene->axis_count > 0) {
-        const dea_axis *last = &scene->axes[scene->axis_count - 1];
-        out += dea_number_write(out, last->values[sheet->index[scene->axis_count - 1]]);
+    if (last) {
+        out += dea_number_write(out, last->values[index]);
         *out++ = ',';
     }
     return (size_t)(out - sheet->prefix);
@@ -118,20 +106,16 @@ static void csv_header(csv *sheet)
 {
     const dea_scene *scene = sheet->scene;
     if (scene->model_count > 1) {
-        csv_put(sheet, "model,", 6);
+        csv_word(sheet, "model");
     }
     for (size_t i = 0; i < scene->axis_count; i++) {
-        csv_put(sheet, scene->axes[i].column, strlen(scene->axes[i].column));
-        csv_put(sheet, ",", 1);
+        csv_word(sheet, scene->axes[i].column);
     }
     for (size_t i = 0; i < sheet->layout.column_count; i++) {
-        csv_put(sheet, sheet->layout.columns[i].name, strlen(sheet->layout.columns[i].name));
-        csv_put(sheet, ",", 1);
+        csv_word(sheet, sheet->layout.columns[i].name);
     }
     for (size_t i = 0; sheet->layout.spread_count > 0 && i <= sheet->layout.spread_count; i++) {
-        const char *name = i == 0 ? "radius_m" : sheet->layout.spread[i - 1].name;
-        csv_put(sheet, name, strlen(name));
-        csv_put(sheet, ",", 1);
+        csv_word(sheet, i == 0 ? "radius_m" : sheet->layout.spread[i - 1].name);
     }
     csv_put(sheet, "state\n", 6);
 }
@@ -143,7 +127,6 @@ static dea_status csv_close(void *state, bool keep, dea_error *error)
         return DEA_OK;
     }
     const dea_status status = keep ? csv_flush(sheet, error) : DEA_OK;
-    free(sheet->index);
     free(sheet->prefix);
     free(sheet->buffer);
     free(sheet);
@@ -158,24 +141,22 @@ static dea_status csv_open(const dea_scene *scene, const char *engine, dea_atomi
         sheet->scene = scene;
         sheet->layout = dea_layout_of(scene);
         sheet->file = file;
-        sheet->index = calloc(scene->axis_count + 1, sizeof *sheet->index);
         sheet->prefix = malloc(prefix_room(scene));
         sheet->buffer = malloc(CSV_BUFFER + prefix_room(scene) + CSV_TAIL);
     }
-    if (!sheet || !sheet->index || !sheet->prefix || !sheet->buffer) {
+    if (!sheet || !sheet->prefix || !sheet->buffer) {
         csv_close(sheet, false, NULL);
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
     csv_header(sheet);
-    csv_prefix(sheet);
     *state = sheet;
     return DEA_OK;
 }
 
-static dea_status csv_point(csv *sheet, const char *point, dea_error *error)
+static dea_status csv_point(csv *sheet, size_t number, const char *point, dea_error *error)
 {
     const dea_layout *layout = &sheet->layout;
-    const size_t lead = csv_lead(sheet), each = layout->spread_count > 0 ? layout->spread_points : 1;
+    const size_t lead = csv_lead(sheet, number), each = layout->spread_count > 0 ? layout->spread_points : 1;
     for (size_t i = 0; i < layout->rows * each; i++) {
         const bool spread = layout->spread_count > 0;
         csv_row(sheet, lead, point + i / each * layout->row_size, spread ? dea_layout_radius(sheet->scene, layout, i % each) : 0.0,
@@ -187,16 +168,14 @@ static dea_status csv_point(csv *sheet, const char *point, dea_error *error)
             }
         }
     }
-    csv_step(sheet);
     return DEA_OK;
 }
 
 static dea_status csv_points(void *state, size_t first, const void *points, size_t count, dea_error *error)
 {
-    (void)first;
     csv *sheet = state;
     for (size_t i = 0; i < count; i++) {
-        const dea_status status = csv_point(sheet, (const char *)points + i * sheet->layout.point_size, error);
+        const dea_status status = csv_point(sheet, first + i, (const char *)points + i * sheet->layout.point_size, error);
         if (status != DEA_OK) {
             return status;
         }

@@ -3,7 +3,6 @@
 
 #include "support/file.h"
 #include "support/number.h"
-#include "support/scratch.h"
 #include "support/text.h"
 
 #include <ctype.h>

@@ -1,4 +1,4 @@
-#include "output/identity.h"
+#include "output/journal.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -11,9 +11,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "output/atomic.h"
-#include "output/identity.h"
 #include "output/stream.h"
+#include "support/atomic.h"
 #include "support/clock.h"
 
 enum { IDENTITY_MOST = 1 << 20, LOCK_TRIES = 50, LOCK_WAIT_MS = 20, ROW_MOST = DEA_LAYOUT_COLUMNS * sizeof(double) + 1 };
@@ -572,6 +571,17 @@ static dea_status journal_start(dea_journal *journal, dea_error *error)
     return status;
 }
 
+/* Hands over a journal whose opening came to @p status, or ends it. */
+static dea_status journal_hand(dea_journal *opened, dea_status status, dea_journal **journal)
+{
+    if (status != DEA_OK) {
+        dea_journal_close(opened, DEA_JOURNAL_STAYS, NULL, NULL);
+        return status;
+    }
+    *journal = opened;
+    return DEA_OK;
+}
+
 dea_status dea_journal_open(const dea_journal_study *study, dea_shard shard, const char *path, dea_journal **journal,
                             dea_error *error)
 {
@@ -592,13 +602,8 @@ dea_status dea_journal_open(const dea_journal_study *study, dea_shard shard, con
     if (status == DEA_OK) {
         status = records_find(opened, false, error);
     }
-    if (status != DEA_OK) {
-        dea_journal_close(opened, DEA_JOURNAL_STAYS, NULL, NULL);
-        return status;
-    }
-    opened->open = true;
-    *journal = opened;
-    return DEA_OK;
+    opened->open = status == DEA_OK;
+    return journal_hand(opened, status, journal);
 }
 
 dea_status dea_journal_create(const dea_journal_study *study, dea_shard shard, const char *target, dea_journal **journal,
@@ -621,12 +626,7 @@ dea_status dea_journal_create(const dea_journal_study *study, dea_shard shard, c
     if (status == DEA_OK) {
         status = head_write(opened, error);
     }
-    if (status != DEA_OK) {
-        dea_journal_close(opened, DEA_JOURNAL_STAYS, NULL, NULL);
-        return status;
-    }
-    *journal = opened;
-    return DEA_OK;
+    return journal_hand(opened, status, journal);
 }
 
 dea_status dea_journal_read(const dea_journal_study *study, const char *path, dea_journal **journal, dea_error *error)
@@ -655,12 +655,7 @@ dea_status dea_journal_read(const dea_journal_study *study, const char *path, de
     if (status == DEA_OK) {
         status = records_find(opened, true, error);
     }
-    if (status != DEA_OK) {
-        dea_journal_close(opened, DEA_JOURNAL_STAYS, NULL, NULL);
-        return status;
-    }
-    *journal = opened;
-    return DEA_OK;
+    return journal_hand(opened, status, journal);
 }
 
 dea_shard dea_journal_shard(const dea_journal *journal)

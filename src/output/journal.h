@@ -89,4 +89,22 @@ dea_status dea_journal_replay(dea_journal *journal, const dea_run_options *optio
 /* Ends the journal and frees it, NULL is fine. @p target: what a part is called; NULL else. */
 dea_status dea_journal_close(dea_journal *journal, dea_journal_end end, const char *target, dea_error *error);
 
+/* ---- The parts of a study become its result again. */
+
+/* Hands the points of all parts to options->points in order; options->stop ends it as interrupted. First all headers and places
+ * of records are checked, then the points are verified as they come: one block of them is in memory, one file open at a time.
+ * DEA_ERROR_USAGE: a part is missing, there twice, incomplete, damaged or of another study; the message names file and points. */
+dea_status dea_merge_parts(const dea_journal_study *study, const char *const *paths, size_t count, const dea_run_options *options,
+                           dea_error *error);
+
+/* ---- All of a scene, its engine and their versions that decides the numbers of a study, as text: lines "name=value". Two studies
+ * with the same text have the same numbers, bit by bit, on machines whose libraries compute alike. */
+
+enum { DEA_IDENTITY_DIFFERENCE = 256 };
+
+/* Writes the text into @p text, which the caller frees. @return DEA_OK, DEA_ERROR_MEMORY */
+dea_status dea_identity_write(const dea_scene *scene, const dea_engine *engine, char **text, dea_error *error);
+/* First difference of two texts, in words: "actuator.prestretch is 1.3 there and 1.2 here". */
+void dea_identity_compare(const char *there, const char *here, char difference[DEA_IDENTITY_DIFFERENCE]);
+
 #endif

@@ -1,4 +1,4 @@
-#include "output/merge.h"
+#include "output/journal.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,3 @@
-#include "program/check_omissions.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "program/check_omissions.h"
+#include "program/omissions.h"
 #include "program/program.h"
 #include "result/compare.h"
 #include "study/study.h"

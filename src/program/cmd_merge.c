@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "output/merge.h"
+#include "output/journal.h"
 #include "program/audience.h"
 #include "support/clock.h"
 

@@ -1,7 +1,7 @@
 #include <string.h>
 
 #include "program/audience.h"
-#include "program/journaled.h"
+#include "program/program.h"
 #include "study/study.h"
 #include "support/clock.h"
 

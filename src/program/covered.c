@@ -1,4 +1,4 @@
-#include "program/covered.h"
+#include "program/findings.h"
 
 #include <math.h>
 #include <stdio.h>

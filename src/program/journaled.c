@@ -1,4 +1,4 @@
-#include "program/journaled.h"
+#include "program/program.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -5,6 +5,7 @@
 #define DEA_PROGRAM_OMISSIONS_H
 
 #include "deaspice/needs.h"
+#include "program/program.h"
 
 enum { DEA_OMISSION_LENGTH = 128, DEA_QUANTITY_LENGTH = 64 };
 
@@ -18,5 +19,19 @@ const char *dea_quantity_text(double value, const char *unit, int digits, char t
 #define DEA_QUANTITY(value, unit, digits) dea_quantity_text(value, unit, digits, (char[DEA_QUANTITY_LENGTH]){""})
 /** The scene of run number @p number of its study, all axes at their place; its lists still belong to @p scene. */
 dea_scene dea_scene_of_run(const dea_scene *scene, size_t number);
+
+/* ---- What was left out, measured: did it change more than its bound says? */
+
+/** What checking bounds came to. */
+typedef struct dea_bounds {
+    size_t broken;   /**< bounds that are too small */
+    size_t unjudged; /**< omissions that no engine could measure */
+} dea_bounds;
+
+/** Measures what the first model's runs leave out for each engine that takes part, and prints it unless @p arguments are quiet.
+ */
+dea_bounds dea_check_omissions(const dea_arguments *arguments, const dea_scene *scene);
+/** Measures the model error of the scene's first model against what it was chosen against, and prints it. */
+dea_bounds dea_check_choice(const dea_arguments *arguments, const dea_scene *scene, const dea_model_choice *choice);
 
 #endif

@@ -185,26 +185,19 @@ static bool take_equibiaxial(const dea_option *entry, const char *value, dea_arg
     return add_operand(arguments, value, DEA_GIVEN_EQUIBIAXIAL);
 }
 
-static const char *engine_word(size_t index, char room[DEA_NAME_LENGTH])
-{
-    (void)room;
-    const dea_engine *engine = dea_engine_at(index);
-    return engine ? engine->name : index == dea_engine_count() ? "auto" : NULL;
-}
-
-static const char *law_word(size_t index, char room[DEA_NAME_LENGTH])
-{
-    (void)room;
-    const dea_law *law = dea_law_at(index);
-    return law ? law->name : index == dea_law_count() ? "auto" : NULL;
-}
-
-static const char *model_word(size_t index, char room[DEA_NAME_LENGTH])
-{
-    (void)room;
-    const dea_model *model = dea_model_at(index);
-    return model ? model->name : index == dea_model_count() ? "auto" : NULL;
-}
+/* Names of a table, and one word more. */
+#define NAMES_OF(kind, more)                                                                                                     \
+    static const char *kind##_word(size_t index, char room[DEA_NAME_LENGTH])                                                     \
+    {                                                                                                                            \
+        (void)room;                                                                                                              \
+        const dea_##kind *row = dea_##kind##_at(index);                                                                          \
+        return row ? row->name : index == 0 || dea_##kind##_at(index - 1) ? more : NULL;                                         \
+    }
+NAMES_OF(engine, "auto")
+NAMES_OF(law, "auto")
+NAMES_OF(model, "auto")
+NAMES_OF(dialect, NULL)
+NAMES_OF(analogy, NULL)
 
 /* Scalars of a scene by their paths. */
 static const char *key_word(size_t index, char room[DEA_NAME_LENGTH])
@@ -218,33 +211,16 @@ static const char *key_word(size_t index, char room[DEA_NAME_LENGTH])
     return NULL;
 }
 
-static const char *format_word(size_t index, char room[DEA_NAME_LENGTH])
-{
-    (void)room;
-    static const char *const words[] = {"csv", "nc", "raw"};
-    return index < sizeof words / sizeof *words ? words[index] : NULL;
-}
-
-static const char *axes_word(size_t index, char room[DEA_NAME_LENGTH])
-{
-    (void)room;
-    static const char *const words[] = {"x", "y", "xy"};
-    return index < sizeof words / sizeof *words ? words[index] : NULL;
-}
-
-static const char *dialect_word(size_t index, char room[DEA_NAME_LENGTH])
-{
-    (void)room;
-    const dea_dialect *dialect = dea_dialect_at(index);
-    return dialect ? dialect->name : NULL;
-}
-
-static const char *analogy_word(size_t index, char room[DEA_NAME_LENGTH])
-{
-    (void)room;
-    const dea_analogy *analogy = dea_analogy_at(index);
-    return analogy ? analogy->name : NULL;
-}
+/* Words of a list. */
+#define WORDS_OF(kind, ...)                                                                                                      \
+    static const char *kind##_word(size_t index, char room[DEA_NAME_LENGTH])                                                     \
+    {                                                                                                                            \
+        (void)room;                                                                                                              \
+        static const char *const words[] = {__VA_ARGS__};                                                                        \
+        return index < sizeof words / sizeof *words ? words[index] : NULL;                                                       \
+    }
+WORDS_OF(format, "csv", "nc", "raw")
+WORDS_OF(axes, "x", "y", "xy")
 
 #define FLAG(long_name, short_name, groups, member, help)                                                                        \
     {                                                                                                                            \

@@ -9,7 +9,7 @@
 #include "deaspice/needs.h"
 #include "deaspice/plot.h"
 #include "deaspice/scene.h"
-#include "support/files.h"
+#include "support/file.h"
 
 /** Exit status of the program. */
 typedef enum dea_exit {
@@ -159,5 +159,12 @@ bool dea_signals_broken_pipe(void);
 bool dea_signals_stop(void *user);
 /** Ends this process by the signal that came, if one did. */
 void dea_signals_raise(void);
+
+/* ---- Runs that keep their finished blocks in a journal: to go on after a crash, or as a shard. */
+
+/** False, with a complaint, where --shard or --resume are given and other arguments do not go with them. */
+bool dea_journaled_fits(const dea_arguments *arguments);
+/** Runs a scene with --shard or --resume. */
+dea_exit dea_run_journaled(const dea_arguments *arguments, const dea_scene *scene);
 
 #endif

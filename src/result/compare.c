@@ -10,7 +10,6 @@
 #include "scene/line.h"
 #include "network/dynamics.h"
 #include "result/scales.h"
-#include "result/state.h"
 #include "study/study.h"
 
 /* Numbers below this share of a column's largest reference value are compared with that instead of with themselves. */

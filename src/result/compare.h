@@ -4,6 +4,7 @@
 
 #include "deaspice/result.h"
 #include "study/study.h"
+#include "deaspice/model.h"
 
 enum { DEA_COMPARED_COLUMNS = 10 };
 
@@ -50,5 +51,14 @@ void dea_comparison_forget(dea_comparison *comparison);
 dea_status dea_comparison_take(dea_comparison *comparison, size_t first, const void *points, size_t count, dea_error *error);
 /* Largest difference over the compared columns and figures, each over its allowance; rows whose states differ do not count here. */
 double dea_comparison_worst(const dea_comparison *comparison);
+
+/* ---- States of samples against their numbers: near a limit, answers that agree may have different states. */
+
+/* True where a sample's state is that of the film at its displacement, or within @p slack of it [m], under its voltage or charge.
+ * All axes of the scene are at their place. False where the sample has no numbers. */
+bool dea_state_follows(const dea_scene *scene, const dea_sample *sample, double slack);
+/* True where the model's own static states at voltages that are @p share less and more than that of the scene are these two: a limit lies
+ * between. All axes of the scene are at their place. */
+bool dea_state_between(const dea_scene *scene, double share, dea_state one, dea_state other);
 
 #endif

@@ -1,4 +1,4 @@
-#include "result/state.h"
+#include "result/compare.h"
 
 #include <math.h>
 

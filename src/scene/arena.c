@@ -1,4 +1,4 @@
-#include "scene/arena.h"
+#include "scene/tree.h"
 
 #include <stdint.h>
 #include <stdlib.h>

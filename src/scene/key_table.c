@@ -300,7 +300,7 @@ bool dea_key_at(size_t index, dea_key *key)
     if (listed_key(keys_beside, COUNT(keys_beside), &index, key)) {
         return true;
     }
-    for (dea_wave_kind kind = DEA_WAVE_STEP; dea_wave_of(kind); kind++) {
+    for (dea_wave_kind kind = DEA_WAVE_NONE + 1; dea_wave_of(kind); kind++) {
         const size_t count = wave_keys(dea_wave_of(kind));
         if (index < count) {
             wave_key(dea_wave_of(kind), index, key);

@@ -116,6 +116,7 @@ const dea_study dea_study_force = {
     .rows = {"displacement", "displacements"},
     .along = true,
     .still = true,
+    .holds = true,
     .sign = "u",
     .model_fails = "has no edge that something could hold",
     .model_lacks = "the model has no edge that something could hold",

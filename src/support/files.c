@@ -1,4 +1,4 @@
-#include "support/files.h"
+#include "support/file.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -136,54 +136,27 @@ dea_status dea_lapack_load(dea_error *error)
 
 #endif
 
-lapack_int dea_lapacke_dgeev(int layout, char left, char right, lapack_int n, double *a, lapack_int lda, double *wr, double *wi,
-                             double *vl, lapack_int ldvl, double *vr, lapack_int ldvr)
-{
-    lapack l;
-    return find(&l) ? l.dgeev(layout, left, right, n, a, lda, wr, wi, vl, ldvl, vr, ldvr) : DEA_LAPACK_MISSING;
-}
-
-lapack_int dea_lapacke_dgels(int layout, char trans, lapack_int m, lapack_int n, lapack_int nrhs, double *a, lapack_int lda,
-                             double *b, lapack_int ldb)
-{
-    lapack l;
-    return find(&l) ? l.dgels(layout, trans, m, n, nrhs, a, lda, b, ldb) : DEA_LAPACK_MISSING;
-}
-
-lapack_int dea_lapacke_dgesvd(int layout, char jobu, char jobvt, lapack_int m, lapack_int n, double *a, lapack_int lda, double *s,
-                              double *u, lapack_int ldu, double *vt, lapack_int ldvt, double *superb)
-{
-    lapack l;
-    return find(&l) ? l.dgesvd(layout, jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, superb) : DEA_LAPACK_MISSING;
-}
-
-lapack_int dea_lapacke_dgetrf(int layout, lapack_int m, lapack_int n, double *a, lapack_int lda, lapack_int *ipiv)
-{
-    lapack l;
-    return find(&l) ? l.dgetrf(layout, m, n, a, lda, ipiv) : DEA_LAPACK_MISSING;
-}
-
-lapack_int dea_lapacke_dgetri(int layout, lapack_int n, double *a, lapack_int lda, const lapack_int *ipiv)
-{
-    lapack l;
-    return find(&l) ? l.dgetri(layout, n, a, lda, ipiv) : DEA_LAPACK_MISSING;
-}
-
-lapack_int dea_lapacke_dposv(int layout, char uplo, lapack_int n, lapack_int nrhs, double *a, lapack_int lda, double *b, lapack_int ldb)
-{
-    lapack l;
-    return find(&l) ? l.dposv(layout, uplo, n, nrhs, a, lda, b, ldb) : DEA_LAPACK_MISSING;
-}
-
-lapack_int dea_lapacke_dsyev(int layout, char jobz, char uplo, lapack_int n, double *a, lapack_int lda, double *w)
-{
-    lapack l;
-    return find(&l) ? l.dsyev(layout, jobz, uplo, n, a, lda, w) : DEA_LAPACK_MISSING;
-}
-
-lapack_int dea_lapacke_zgesv(int layout, lapack_int n, lapack_int nrhs, lapack_complex_double *a, lapack_int lda, lapack_int *ipiv,
-                             lapack_complex_double *b, lapack_int ldb)
-{
-    lapack l;
-    return find(&l) ? l.zgesv(layout, n, nrhs, a, lda, ipiv, b, ldb) : DEA_LAPACK_MISSING;
-}
+/* The same function where it is found. */
+#define LAPACK_CALL(name, parameters, arguments)                                                                                 \
+    lapack_int dea_lapacke_##name parameters                                                                                     \
+    {                                                                                                                            \
+        lapack l;                                                                                                                \
+        return find(&l) ? l.name arguments : DEA_LAPACK_MISSING;                                                                 \
+    }
+LAPACK_CALL(dgeev, (int layout, char left, char right, lapack_int n, double *a, lapack_int lda, double *wr, double *wi,
+              double *vl, lapack_int ldvl, double *vr, lapack_int ldvr),
+            (layout, left, right, n, a, lda, wr, wi, vl, ldvl, vr, ldvr))
+LAPACK_CALL(dgels, (int layout, char trans, lapack_int m, lapack_int n, lapack_int nrhs, double *a, lapack_int lda, double *b,
+              lapack_int ldb), (layout, trans, m, n, nrhs, a, lda, b, ldb))
+LAPACK_CALL(dgesvd, (int layout, char jobu, char jobvt, lapack_int m, lapack_int n, double *a, lapack_int lda, double *s,
+              double *u, lapack_int ldu, double *vt, lapack_int ldvt, double *superb),
+            (layout, jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, superb))
+LAPACK_CALL(dgetrf, (int layout, lapack_int m, lapack_int n, double *a, lapack_int lda, lapack_int *ipiv),
+            (layout, m, n, a, lda, ipiv))
+LAPACK_CALL(dgetri, (int layout, lapack_int n, double *a, lapack_int lda, const lapack_int *ipiv), (layout, n, a, lda, ipiv))
+LAPACK_CALL(dposv, (int layout, char uplo, lapack_int n, lapack_int nrhs, double *a, lapack_int lda, double *b, lapack_int ldb),
+            (layout, uplo, n, nrhs, a, lda, b, ldb))
+LAPACK_CALL(dsyev, (int layout, char jobz, char uplo, lapack_int n, double *a, lapack_int lda, double *w),
+            (layout, jobz, uplo, n, a, lda, w))
+LAPACK_CALL(zgesv, (int layout, lapack_int n, lapack_int nrhs, lapack_complex_double *a, lapack_int lda, lapack_int *ipiv,
+              lapack_complex_double *b, lapack_int ldb), (layout, n, nrhs, a, lda, ipiv, b, ldb))

@@ -14,17 +14,13 @@ enum { DEA_LAPACK_MISSING = -9999 };
 /* Loads the library, so that no later call finds it missing: DEA_OK, DEA_ERROR_MISSING or DEA_ERROR_MEMORY. */
 dea_status dea_lapack_load(dea_error *error);
 
-lapack_int dea_lapacke_dgeev(int layout, char left, char right, lapack_int n, double *a, lapack_int lda, double *wr, double *wi,
-                             double *vl, lapack_int ldvl, double *vr, lapack_int ldvr);
-lapack_int dea_lapacke_dgels(int layout, char trans, lapack_int m, lapack_int n, lapack_int nrhs, double *a, lapack_int lda,
-                             double *b, lapack_int ldb);
-lapack_int dea_lapacke_dgesvd(int layout, char jobu, char jobvt, lapack_int m, lapack_int n, double *a, lapack_int lda, double *s,
-                              double *u, lapack_int ldu, double *vt, lapack_int ldvt, double *superb);
-lapack_int dea_lapacke_dgetrf(int layout, lapack_int m, lapack_int n, double *a, lapack_int lda, lapack_int *ipiv);
-lapack_int dea_lapacke_dgetri(int layout, lapack_int n, double *a, lapack_int lda, const lapack_int *ipiv);
-lapack_int dea_lapacke_dposv(int layout, char uplo, lapack_int n, lapack_int nrhs, double *a, lapack_int lda, double *b, lapack_int ldb);
-lapack_int dea_lapacke_dsyev(int layout, char jobz, char uplo, lapack_int n, double *a, lapack_int lda, double *w);
-lapack_int dea_lapacke_zgesv(int layout, lapack_int n, lapack_int nrhs, lapack_complex_double *a, lapack_int lda, lapack_int *ipiv,
-                             lapack_complex_double *b, lapack_int ldb);
+__typeof__(LAPACKE_dgeev) dea_lapacke_dgeev;
+__typeof__(LAPACKE_dgels) dea_lapacke_dgels;
+__typeof__(LAPACKE_dgesvd) dea_lapacke_dgesvd;
+__typeof__(LAPACKE_dgetrf) dea_lapacke_dgetrf;
+__typeof__(LAPACKE_dgetri) dea_lapacke_dgetri;
+__typeof__(LAPACKE_dposv) dea_lapacke_dposv;
+__typeof__(LAPACKE_dsyev) dea_lapacke_dsyev;
+__typeof__(LAPACKE_zgesv) dea_lapacke_zgesv;
 
 #endif

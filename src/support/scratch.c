@@ -1,4 +1,4 @@
-#include "support/scratch.h"
+#include "support/file.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,5 +1,4 @@
 /* Statics of the exact membrane: by collocation against integration along the radius, which knows nothing of it. */
-#include "model/collocation.h"
 #include "model/field.h"
 #include "random_scenes.h"
 

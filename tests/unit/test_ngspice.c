@@ -17,7 +17,7 @@
 #include <ngspice/sharedspice.h>
 
 #include "engine/ngspice/library.h"
-#include "engine/ngspice/units.h"
+#include "network/units.h"
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)

@@ -5,7 +5,7 @@
 #include <complex.h>
 #include <ctype.h>
 
-#include "netlist/library_files.h"
+#include "netlist/part.h"
 #include "netlist/symbol.h"
 #include "network/dynamics.h"
 

@@ -4,7 +4,7 @@
 #include <time.h>
 
 #include "engine/ngspice/moving.h"
-#include "engine/ngspice/rings_deck.h"
+#include "engine/ngspice/rings_track.h"
 #include "netlist/export.h"
 #include "netlist/part.h"
 #include "netlist/rings_line.h"

@@ -19,7 +19,6 @@
 #include <unistd.h>
 
 #include "engine/plan.h"
-#include "engine/pool.h"
 
 enum { POINTS = 500, BAD = 17 };
 

@@ -1,7 +1,6 @@
 /* Waveforms against their formulas, over seeds that change from run to run. */
 #include "scenes.h"
 
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,8 +8,9 @@
 
 #include "deaspice/scene.h"
 #include "drive/signal.h"
-#include "drive/soften.h"
 #include "drive/wave.h"
+#include "network/thin.h"
+#include "result/scales.h"
 
 enum { SCENES = 40, PLACES = 200 };
 
@@ -286,35 +286,93 @@ static void runs_of_lines_leave_the_voltage_as_it_is(void **state)
     }
 }
 
-/* The closed form takes each line of a record for itself: a film that swings, and one that its damper holds. */
+/* Errors of an engine over what its columns promise, by the closed form, which takes each line of a record for itself. */
+static void judge_record(const dea_scene *scene, const char *name)
+{
+    const dea_engine *engine = dea_engine_find(name);
+    const dea_scales scales = dea_scales_open(scene, scene->models[0]);
+    const size_t rows = dea_layout_of(scene).rows;
+    dea_sample *want = malloc(rows * sizeof *want), *got = malloc(rows * sizeof *got);
+    dea_error error = {0};
+    dea_summary summary;
+    void *session = NULL;
+    double peak = 0.0, off = 0.0, fast = 0.0, off_fast = 0.0;
+    assert_int_equal(dea_engine_find("direct")->transient(NULL, scene, scene->models[0], want, &summary, &error), DEA_OK);
+    assert_int_equal(engine->begin(&session, &error), DEA_OK);
+    if (engine->transient(session, scene, scene->models[0], got, &summary, &error) != DEA_OK) {
+        fail_msg("%s: %s", name, error.message);
+    }
+    engine->end(session);
+    for (size_t k = 0; k < rows; k++) {
+        peak = fmax(peak, fabs(want[k].displacement));
+        off = fmax(off, fabs(want[k].displacement - got[k].displacement));
+        fast = fmax(fast, fabs(want[k].velocity));
+        off_fast = fmax(off_fast, fabs(want[k].velocity - got[k].velocity));
+        assert_true(fabs(got[k].voltage - want[k].voltage) <= 1e-12 * fabs(want[k].voltage));
+    }
+    fast = fmax(fast, peak * scales.pace);
+    if (!(off <= summary.error * peak && summary.error <= scene->accuracy && off_fast <= 10.0 * scene->accuracy * fast)) {
+        fail_msg("%s at %g: off by %.2g, %.2g told, velocity by %.2g", name, scene->accuracy, off / peak, summary.error, off_fast / fast);
+    }
+    assert_true(summary.residual <= 10.0 * scene->accuracy);
+    free(want);
+    free(got);
+}
+
+/* A film that swings, and films that their dampers hold, with mass and without. */
 static void records_move_the_film_as_the_closed_form_says(void **state)
 {
     (void)state;
-    const dea_engine *ida = dea_engine_find("ida");
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 6; i++) {
         dea_scene scene = record(i < 2 ? 1e-4 : 3e-3, i % 2 ? 5.0 : 0.0);
-        dea_error error = {0};
-        const size_t rows = dea_layout_of(&scene).rows;
-        dea_sample *want = malloc(rows * sizeof *want), *got = malloc(rows * sizeof *got);
-        dea_summary summary;
-        void *session = NULL;
-        double peak = 0.0, off = 0.0;
-        assert_int_equal(dea_engine_find("direct")->transient(NULL, &scene, scene.models[0], want, &summary, &error), DEA_OK);
-        assert_int_equal(ida->begin(&session, &error), DEA_OK);
-        if (ida->transient(session, &scene, scene.models[0], got, &summary, &error) != DEA_OK) {
-            fail_msg("%s", error.message);
+        scene.reduction.mass = i >= 4;
+        judge_record(&scene, "ida");
+        scene.accuracy = 1e-4;
+        scene.transient.every = 1e-3;
+        judge_record(&scene, "ida");
+        if (i == 0 || i == 4) { /* the others take ngspice seconds */
+            judge_record(&scene, "ngspice");
         }
-        ida->end(session);
-        for (size_t k = 0; k < rows; k++) {
-            peak = fmax(peak, fabs(want[k].displacement));
-            off = fmax(off, fabs(want[k].displacement - got[k].displacement));
+        dea_scene_free(&scene);
+    }
+}
+
+/* A polynomial has the integral of the square that it stands for, and a sample sees the record. */
+static void thinned_records_push_as_the_record(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        dea_scene scene = record(1e-4, i % 2 ? 0.5 : 0.0);
+        dea_dynamics dynamics;
+        dea_signal one, thin;
+        dea_error error;
+        scene.accuracy = i < 2 ? 1e-2 : 1e-4;
+        assert_int_equal(dea_dynamics_open(&scene, scene.models[0], &dynamics, &error), DEA_OK);
+        assert_int_equal(dea_signal_open(&scene, &one, &error), DEA_OK);
+        assert_int_equal(dea_signal_open(&scene, &thin, &error), DEA_OK);
+        assert_int_equal(dea_signal_thin(&thin, &scene, &dynamics, 5e3, &error), DEA_OK);
+        assert_true(thin.count < one.count / 20);
+        assert_true(thin.thinned > 0.0 && thin.thinned <= 0.1 * scene.accuracy);
+        assert_true(thin.segments[0].from == 0.0 && thin.segments[thin.count - 1].to == scene.transient.until);
+        for (size_t k = 0; k < thin.count; k++) {
+            const dea_segment *s = &thin.segments[k];
+            enum { PANELS = 20000 };
+            double sum = 0.0, want = 0.0;
+            size_t near = 0;
+            assert_true(k == 0 || s->from == s[-1].to);
+            for (int n = 0; n < PANELS && s->terms; n++) {
+                const double t = s->from + (s->to - s->from) * (n + 0.5) / PANELS, u = dea_segment_voltage(&thin, s, t);
+                near = dea_signal_find(&one, near, t);
+                const double true_u = dea_segment_voltage(&one, &one.segments[near], t);
+                assert_true(dea_segment_voltage(&thin, dea_segment_seen(s, t), t) == true_u);
+                sum += u * u;
+                want += true_u * true_u;
+            }
+            assert_true(fabs(sum - want) <= 1e-7 * want);
         }
-        if (!(off <= summary.error * peak && summary.error <= scene.accuracy)) {
-            fail_msg("record %d: off by %.2g, %.2g told", i, off / peak, summary.error);
-        }
-        assert_true(summary.residual <= 10.0 * scene.accuracy);
-        free(want);
-        free(got);
+        dea_signal_close(&one);
+        dea_signal_close(&thin);
+        dea_dynamics_close(&dynamics);
         dea_scene_free(&scene);
     }
 }
@@ -384,6 +442,7 @@ int main(void)
         cmocka_unit_test(axes_are_checked_too),
         cmocka_unit_test(runs_of_lines_leave_the_voltage_as_it_is),
         cmocka_unit_test(records_move_the_film_as_the_closed_form_says),
+        cmocka_unit_test(thinned_records_push_as_the_record),
         cmocka_unit_test(the_record_of_a_sine_moves_the_membrane_as_the_sine),
     };
     return cmocka_run_group_tests(tests, set_up, NULL);

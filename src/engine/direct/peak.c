@@ -1,7 +1,7 @@
 /* The largest current of the source within a segment, from the closed form between its samples. */
 #include <math.h>
 
-#include "engine/direct/peak.h"
+#include "engine/direct/walk.h"
 
 /* Stretches of a segment over which the current is smooth: so much of the age, since all that was faster has settled, of a radian
  * of the ring and of the sine; neper after which a mode is dead; and most stretches of a segment. */

@@ -11,8 +11,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "geometry/point.h"
 #include "model/field.h"
-#include "model/models.h"
 #include "support/gauss.h"
 
 enum { STAGES = DEA_GAUSS_POINTS, UNKNOWNS = 2 * STAGES };

@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "engine/direct/direct.h"
-#include "engine/direct/peak.h"
 #include "engine/direct/walk.h"
 
 /* Samples that are stepped from one to the next before the state is computed anew from the begin of the segment. */
@@ -118,13 +117,8 @@ static void close_run(run *r)
 /* Rows from the next one on: pull-in. */
 static void refuse_rest(run *r)
 {
-    size_t near = 0;
-    for (; r->row < r->rows; r->row++) {
-        const double time = dea_layout_place(r->scene, r->row);
-        near = dea_signal_find(&r->signal, near, time);
-        const double voltage = dea_segment_voltage(&r->signal, &r->signal.segments[near], time);
-        r->samples[r->row] = dea_sample_refused(time, voltage, DEA_STATE_PULL_IN);
-    }
+    dea_samples_refuse(r->scene, &r->signal, r->row, DEA_STATE_PULL_IN, r->samples);
+    r->row = r->rows;
     r->walk.lost = true;
 }
 

@@ -4,6 +4,7 @@
 #define DEA_DIRECT_WALK_H
 
 #include "engine/direct/piece.h"
+#include "network/peak.h"
 
 enum { DEA_WALK_CACHED = 2 };
 
@@ -40,5 +41,9 @@ dea_piece dea_walk_piece(const dea_walk *walk, const dea_segment *segment, dea_c
 dea_motion dea_walk_motion(const dea_walk *walk, const dea_piece *piece, const dea_course *start, double t);
 /* Takes the course to the end of the piece. */
 void dea_walk_pass(dea_walk *walk, const dea_piece *piece, const dea_course *start);
+
+/* Sees the current of the source over a segment that was entered, without series resistance: the walk, its piece and the course at
+ * its begin. False where a ring or a sine turns too often for that. */
+bool dea_direct_peak(const dea_walk *walk, const dea_piece *piece, const dea_course *start, dea_dynamics *dynamics, dea_peak *peak);
 
 #endif

@@ -55,7 +55,10 @@ static void reach(dea_flight *flight, const double *y)
 
 bool dea_flight_record(dea_flight *flight, double time, const double *y)
 {
-    dea_moment moment = dea_motion_moment(&flight->motion, time, y);
+    dea_motion seen = flight->motion;
+    const double at = seen.segment->from + time;
+    seen.segment = dea_segment_seen(seen.segment, at);
+    dea_moment moment = dea_motion_moment(&seen, at - seen.segment->from, y);
     if (!dea_motion_inside(&flight->motion, moment.u)) {
         return false;
     }
@@ -193,6 +196,9 @@ static bool jump(dea_flight *flight)
     return true;
 }
 
+/* A segment that stands for lines is short: up to so many times of the fastest motion Runge-Kutta costs less than a start of BDF. */
+static const double brief = 100.0;
+
 /* Runge-Kutta's states between steps are too coarse to cut at. */
 static bool suits(const dea_flight *flight)
 {
@@ -200,12 +206,20 @@ static bool suits(const dea_flight *flight)
     if (isfinite(flight->motion.dynamics->limit)) {
         return false;
     }
+    const dea_segment *segment = flight->motion.segment;
+    if (segment->terms) {
+        return swing->stiffest * (segment->to - segment->from) <= brief;
+    }
+    if (segment->lines && segment->corner) {
+        return true;
+    }
     const bool linear = flight->motion.dynamics->linear && flight->motion.q < 0;
     return swing->light && !(linear && swing->turns) && swing->fastest <= 5.0 * swing->omega;
 }
 
-/* Radians of a swing up to which a line costs Runge-Kutta no more than a start of its own. */
-static const double short_line = 20.0;
+/* Radians of a swing, and times of the fastest motion of another film, up to which a line costs Runge-Kutta no more than a start of
+ * its own. */
+static const double short_line = 20.0, short_of_fastest = 8.0;
 
 double dea_flight_short_line(dea_flight *flight)
 {
@@ -217,7 +231,10 @@ double dea_flight_short_line(dea_flight *flight)
     flight->motion.segment = &whole;
     dea_rotation_find(&flight->motion, flight->swing);
     flight->motion.segment = first;
-    return suits(flight) ? short_line / flight->swing->omega : 0.0;
+    if (isfinite(flight->motion.dynamics->limit)) {
+        return 0.0;
+    }
+    return suits(flight) ? short_line / flight->swing->omega : flight->swing->light ? 0.0 : short_of_fastest / flight->swing->stiffest;
 }
 
 /* How long a swing is worth an explicit method in the segment [s]: until it is smaller than what the tolerance sees, if its
@@ -230,7 +247,7 @@ static double explicit_time(const dea_flight *flight)
     if (!suits(flight)) {
         return 0.0;
     }
-    if (segment->corner) {
+    if (segment->corner || segment->terms) {
         return width; /* they never let the swing die */
     }
     const double life = fmin(width, log(10.0 / flight->tolerance) / swing->decay);

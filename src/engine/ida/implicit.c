@@ -100,14 +100,15 @@ static void take_current(const dea_flight *flight, double time, dea_turn turn, c
     moment->charge_slope = (y[motion->q] - (swing->turns ? swing->center[motion->q] : 0.0)) * motion->size[motion->q];
 }
 
-/* Where a damper alone sets the velocity of the last sample, the force that drives it is a small difference: IDA's own slope of u
- * is the better number. */
-static void take_velocity(dea_flight *flight, double time)
+/* Where a damper alone sets the velocity, the force that drives it is a small difference: IDA's own slope of u is the better
+ * number. */
+static void take_velocity(const dea_flight *flight, double time, dea_moment *moment)
 {
     const dea_motion *motion = &flight->motion;
-    const double *slope = motion->v < 0 && !motion->algebraic ? unknowns_at(flight, time, 1) : NULL;
+    const bool thinned = motion->segment->terms && moment == &flight->trace->moments[flight->trace->count - 1];
+    const double *slope = motion->v < 0 && !motion->algebraic && !thinned ? unknowns_at(flight, time, 1) : NULL;
     if (slope) {
-        flight->trace->moments[flight->trace->count - 1].v = slope[0] * motion->size[0];
+        moment->v = slope[0] * motion->size[0];
     }
 }
 
@@ -128,7 +129,7 @@ static dea_state take_samples(dea_flight *flight, double time, bool last)
             return DEA_STATE_PULL_IN;
         }
         take_current(flight, fmin(at, time), turn, w, &flight->trace->moments[flight->trace->count - 1]);
-        take_velocity(flight, fmin(at, time));
+        take_velocity(flight, fmin(at, time), &flight->trace->moments[flight->trace->count - 1]);
     }
     return DEA_STATE_OK;
 }
@@ -159,6 +160,7 @@ static void audit_at(const dea_flight *flight, double time, double angle, const 
     dea_rotation_state(flight->swing, turn, w, y);
     dea_moment moment = dea_motion_moment(&flight->motion, time, y);
     take_current(flight, time, turn, w, &moment);
+    take_velocity(flight, time, &moment);
     dea_motion_branches(&flight->motion, y, z);
     dea_audit_add(flight->audit, flight->motion.dynamics, &moment, z, weight);
 }

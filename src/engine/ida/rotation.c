@@ -82,8 +82,9 @@ static int find_pair(const double *real, const double *imaginary, dea_rotation *
     }
     swing->omega = imaginary[pair];
     swing->decay = fmax(0.0, -real[pair]);
-    swing->fastest = 0.0;
+    swing->fastest = swing->stiffest = 0.0;
     for (int i = 0; i < swing->n; i++) {
+        swing->stiffest = fmax(swing->stiffest, hypot(real[i], imaginary[i]));
         if (i != pair && i != pair + 1) {
             swing->fastest = fmax(swing->fastest, hypot(real[i], imaginary[i]));
         }
@@ -116,7 +117,8 @@ void dea_rotation_find(const dea_motion *motion, dea_rotation *swing)
     const int n = swing->n = motion->count;
     double jacobian[N * N], work[N * N], left[N * N], right[N * N], real[N], imaginary[N];
     swing->turns = swing->light = false;
-    if (motion->v < 0 || !find_center(motion, swing->center)) {
+    swing->stiffest = INFINITY;
+    if ((motion->v < 0 && !segment->terms) || motion->algebraic || !find_center(motion, swing->center)) {
         return;
     }
     dea_motion_jacobian(motion, 0.0, swing->center, jacobian);

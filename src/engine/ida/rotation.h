@@ -8,7 +8,7 @@
 #ifndef DEA_IDA_ROTATION_H
 #define DEA_IDA_ROTATION_H
 
-#include "engine/ida/motion.h"
+#include "network/motion.h"
 
 typedef struct dea_rotation {
     int n;
@@ -17,6 +17,7 @@ typedef struct dea_rotation {
     double omega;   /* of the swing [rad/s] */
     double decay;   /* -Re lambda of the swing [1/s], 0: it does not decay */
     double fastest; /* of the other eigenvalues [1/s] */
+    double stiffest; /* of all eigenvalues [1/s], +inf: not known */
     double center[DEA_MOTION_MOST];
     double basis[DEA_MOTION_MOST * DEA_MOTION_MOST];    /* X, column by column, as all matrices here */
     double inverse[DEA_MOTION_MOST * DEA_MOTION_MOST];  /* X^-1 */

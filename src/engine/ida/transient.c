@@ -4,8 +4,9 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-#include "drive/soften.h"
+#include "drive/signal.h"
 #include "engine/ida/flight.h"
+#include "network/thin.h"
 #include "result/scales.h"
 #include "support/lapack.h"
 
@@ -163,21 +164,11 @@ static bool refine(dea_flight *flight, const dea_scales *scales, double accuracy
 /* Rows of a trace; where it ended, or a row is past the film, all that follow are refused. */
 static void fill(const dea_flight *flight, const dea_trace *trace, dea_sample *samples)
 {
-    dea_state state = trace->end;
     size_t done = 0;
-    size_t near = 0;
     while (done < trace->count && dea_dynamics_sample(flight->motion.dynamics, &trace->moments[done], &samples[done])) {
         done++;
     }
-    if (done < trace->count) {
-        state = DEA_STATE_PULL_IN;
-    }
-    for (; done < flight->rows; done++) {
-        const double time = dea_layout_place(flight->scene, done);
-        near = dea_signal_find(flight->signal, near, time);
-        const double voltage = dea_segment_voltage(flight->signal, &flight->signal->segments[near], time);
-        samples[done] = dea_sample_refused(time, voltage, state);
-    }
+    dea_samples_refuse(flight->scene, flight->signal, done, done < trace->count ? DEA_STATE_PULL_IN : trace->end, samples);
 }
 
 static void tell_averages(const dea_flight *flight, const dea_trace *trace, dea_summary *summary)
@@ -185,17 +176,6 @@ static void tell_averages(const dea_flight *flight, const dea_trace *trace, dea_
     for (size_t i = 0; i < flight->scene->transient.average_count; i++) {
         const double u = mean(flight, trace, i);
         summary->averages[i] = (dea_average){u / flight->motion.dynamics->radius, u};
-    }
-}
-
-/* The peak of the current, where two runs agree about it within ten times the accuracy. */
-static void tell_peak(const dea_flight *flight, const dea_trace traces[2], dea_summary *summary)
-{
-    const dea_peak *a = &traces[0].peak, *b = &traces[1].peak;
-    if (flight->peaks && traces[1].end == DEA_STATE_OK &&
-        fabs(a->current - b->current) <= 10.0 * flight->scene->accuracy * b->current) {
-        summary->peak_current = b->current;
-        summary->peak_time = b->time;
     }
 }
 
@@ -215,8 +195,9 @@ static void fly_on(dea_flight *flight, const dea_scales *scales, dea_trace trace
                    dea_error *error)
 {
     dea_rate_errors rates = {0.0, 0.0};
-    const double accuracy = flight->scene->accuracy;
+    const double accuracy = flight->scene->accuracy - flight->signal->thinned;
     const bool reached = refine(flight, scales, accuracy > fine ? accuracy : margin * accuracy, traces, summary, &rates);
+    summary->error += flight->signal->thinned;
     if (!reached || traces[1].end == DEA_STATE_FAILED) {
         explain(flight, summary, error);
     }
@@ -230,7 +211,9 @@ static void fly_on(dea_flight *flight, const dea_scales *scales, dea_trace trace
         rates.current = scales->motional * rates.velocity;
     }
     dea_scales_tell(scales, samples, flight->rows, rates, summary);
-    tell_peak(flight, traces, summary);
+    if (flight->peaks && traces[1].end == DEA_STATE_OK) {
+        dea_peak_tell(&traces[0].peak, &traces[1].peak, flight->scene->accuracy, summary);
+    }
 }
 
 static dea_status fly(dea_flight *flight, dea_sample *samples, dea_summary *summary, dea_error *error)
@@ -254,6 +237,10 @@ static dea_status fly_signal(const dea_sundials *sun, const dea_scene *scene, de
     dea_signal signal;
     dea_flight flight;
     dea_status status = dea_signal_open(scene, &signal, error);
+    if (status == DEA_OK && !dea_peak_is_known(scene, dynamics, &signal)) {
+        const dea_scales scales = dea_scales_open(scene, dynamics->model);
+        status = dea_signal_thin(&signal, scene, dynamics, scales.pace, error);
+    }
     if (status == DEA_OK) {
         status = dea_flight_open(sun, scene, dynamics, &signal, &flight, error);
         if (status == DEA_OK && !(flight.peaks && dynamics->series == 0.0)) { /* the current C U' has its peaks at corners */

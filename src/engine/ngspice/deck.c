@@ -35,6 +35,45 @@ static void write_ramp(FILE *out, const dea_mobility_piece *p, const dea_segment
     }
 }
 
+/* The root of the square's polynomial, whose powers of x stand in @p power: from P_0 and P_1 on
+ * (n + 1) P_n+1 = (2n + 1) x P_n - n P_n-1. */
+static void powers_of(const double *terms, double power[DEA_TERMS])
+{
+    double p0[DEA_TERMS] = {1.0}, p1[DEA_TERMS] = {0.0, 1.0}, p2[DEA_TERMS];
+    memset(power, 0, DEA_TERMS * sizeof *power);
+    power[0] = terms[0];
+    for (int n = 1; n < DEA_TERMS; n++) {
+        for (int k = 0; k < DEA_TERMS; k++) {
+            power[k] += terms[n] * p1[k];
+            p2[k] = ((2 * n + 1) * (k > 0 ? p1[k - 1] : 0.0) - n * p0[k]) / (n + 1);
+        }
+        memcpy(p0, p1, sizeof p0);
+        memcpy(p1, p2, sizeof p1);
+    }
+}
+
+/* A segment that stands for lines, by Horner's scheme. */
+static void write_thinned(FILE *out, const dea_mobility_piece *p, const char *node)
+{
+    const dea_segment *segment = &p->signal->segments[p->segment];
+    const dea_dialect *dialect = engine_form().dialect;
+    const double rate = 2.0 / (segment->to - segment->from), first = rate * (p->from - segment->from) - 1.0;
+    double power[DEA_TERMS];
+    powers_of(segment->terms, power);
+    fprintf(out, "VSOURCE %s thinned 0\n", node);
+    dea_dialect_source_begin(dialect, out, DEA_VOLTAGE, "thinned", "thinned", "0");
+    fputs("sqrt(max(0,", out);
+    for (int n = 1; n < DEA_TERMS; n++) {
+        dea_part_print(out, "(%g)+((%g)+%g*time)*(", power[n - 1], first, rate);
+    }
+    dea_part_print(out, "(%g)", power[DEA_TERMS - 1]);
+    for (int n = 1; n < DEA_TERMS; n++) {
+        fputc(')', out);
+    }
+    fputs("))", out);
+    dea_dialect_source_end(dialect, out);
+}
+
 void dea_deck_corners(FILE *out, const dea_mobility_piece *p)
 {
     dea_part_print(out, "0 %g", dea_segment_voltage(p->signal, &p->signal->segments[p->segment], p->from));
@@ -47,6 +86,10 @@ void dea_deck_source(FILE *out, const dea_mobility_piece *p, const char *node)
 {
     const dea_segment *segment = &p->signal->segments[p->segment];
     fputs("* voltage of the source [V]\n", out);
+    if (segment->terms) {
+        write_thinned(out, p, node);
+        return;
+    }
     if (segment->sine) {
         const dea_curve_cards cards = {.out = out,
                                        .dialect = engine_form().dialect,

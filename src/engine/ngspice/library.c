@@ -15,7 +15,7 @@
 
 #include <ngspice/sharedspice.h>
 
-#include "support/scratch.h"
+#include "support/file.h"
 
 enum { LOG_SIZE = 3000, LINE_SIZE = 160, COMMAND_SIZE = DEA_NGSPICE_COMMAND + 1 };
 

@@ -4,7 +4,9 @@
 
 #include "deaspice/engine.h"
 #include "engine/ngspice/library.h"
-#include "engine/ngspice/units.h"
+#include "deaspice/model.h"
+#include "network/units.h"
+#include "scene/line.h"
 
 /* Units in which a transient runs. */
 dea_status dea_ngspice_units(const dea_scene *scene, const dea_model *model, dea_units *units, dea_error *error);
@@ -25,5 +27,11 @@ dea_status dea_ngspice_ac_rings(dea_ngspice *library, const dea_scene *scene, co
 /* Forces on an edge that is held, of a model that is a network. */
 dea_status dea_ngspice_force(void *session, const dea_scene *scene, const dea_model *model, const dea_layout *layout, void *point,
                              dea_error *error);
+
+/* ---- The membrane at rest: a line of points as a network of rings. */
+
+/* Solves the points of a line; its rows are those of @p rows that the line says. */
+dea_status dea_ngspice_still(dea_ngspice *library, const dea_scene *scene, const dea_model *model, const dea_line *line,
+                             dea_row *rows, dea_error *error);
 
 #endif

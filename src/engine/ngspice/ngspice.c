@@ -8,7 +8,6 @@
 #include "scene/line.h"
 #include "engine/ngspice/library.h"
 #include "engine/ngspice/moving.h"
-#include "engine/ngspice/still.h"
 #include "engine/ngspice/stretch.h"
 #include "netlist/netlist.h"
 #include "network/balance.h"
@@ -46,7 +45,7 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
     if (model->membrane && still && dea_scene_is_pulled(scene)) {
         return "its membrane at rest carries springs alone, no force and no second film";
     }
-    if (model->membrane && scene->study == DEA_STUDY_FORCE) {
+    if (model->membrane && dea_study_of(scene)->holds) {
         return "it does not hold the edge of the membrane";
     }
     if (model->membrane && dea_study_of(scene)->timed && dea_load_stalls(scene)) {

@@ -91,6 +91,17 @@ static double step_at(const cutter *c, double age, double *until)
     return step;
 }
 
+/* A change of the square of the voltage that is a corner where a segment that stands for lines begins, over the largest. */
+static const double cornered = 1e-2;
+
+/* True where a segment that stands for lines goes on from the one before: what it excites its length resolves. */
+static bool continues(const cutter *c, size_t index)
+{
+    const dea_segment *segment = &c->signal->segments[index];
+    const double before = index > 0 ? segment[-1].end : 0.0, change = segment->start * segment->start - before * before;
+    return segment->terms && fabs(change) <= cornered * c->signal->largest * c->signal->largest;
+}
+
 static void cut_segment(cutter *c, size_t index, bool quiet)
 {
     const dea_segment *segment = &c->signal->segments[index];
@@ -100,10 +111,12 @@ static void cut_segment(cutter *c, size_t index, bool quiet)
     const double limit = still ? length : segment->sine ? fmin(0.5 / turn, 0.25 * length) : 0.25 * length;
     const bool brief = c->many && !segment->sine && length <= short_edge * c->pace->fastest;
     const bool jump = index > 0 && c->signal->segments[index - 1].end != segment->start;
+    const bool smooth = continues(c, index);
+    const double ring = c->pace->omega > 0.0 ? 1.0 / c->pace->omega : length;
     double age = 0.0;
     while (age < length && !c->exhausted) {
         double until = length;
-        const double wanted = quiet ? length : step_at(c, age, &until);
+        const double wanted = quiet ? length : smooth ? ring : step_at(c, age, &until);
         if (!(until < length - rest_share[c->many] * (until - age))) {
             until = length;
         }

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "engine/ngspice/moving.h"
 #include "engine/ngspice/rings_track.h"
@@ -297,17 +298,9 @@ static void polish(search *s)
 static void fill(const search *s, bool good, dea_sample *samples)
 {
     const dea_rings_trace *trace = &s->answer->trace;
-    size_t near = 0;
-    for (size_t i = 0; i < s->rows; i++) {
-        if (good && i < trace->count) {
-            samples[i] = trace->samples[i];
-            continue;
-        }
-        const double time = dea_layout_place(s->scene, i);
-        near = dea_signal_find(s->signal, near, time);
-        const double voltage = dea_segment_voltage(s->signal, &s->signal->segments[near], time);
-        samples[i] = dea_sample_refused(time, voltage, good ? trace->end : DEA_STATE_FAILED);
-    }
+    const size_t count = good ? trace->count : 0;
+    memcpy(samples, trace->samples, count * sizeof *samples);
+    dea_samples_refuse(s->scene, s->signal, count, good ? trace->end : DEA_STATE_FAILED, samples);
 }
 
 static void tell(const search *s, const dea_sample *samples, dea_summary *summary)

@@ -1,7 +1,7 @@
 /* One mesh serves a line: that of its points that wants the most nodes, found by the film's own numbers. ngspice's answer is taken
  * where Newton's step of a mesh two degrees finer at it is small, which bounds the error of the discretisation and that of the
  * solution at once, and where the way from rest leads to it. */
-#include "engine/ngspice/still.h"
+#include "engine/ngspice/moving.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -299,6 +299,20 @@ static bool is_inside(dea_dynamics *d, const node *n)
     return d->linear ? d->series == 0.0 || dea_dynamics_edge(d, u).capacitance > 0.0 : dea_dynamics_inside(d, u);
 }
 
+/* What a sample sees where its segment stands for lines: the voltage of the line, and the velocity that a damper lets it have. */
+static void see_line(const runner *r, node *n)
+{
+    dea_dynamics *d = r->route->dynamics;
+    const dea_segment *line = dea_segment_seen(&r->route->signal->segments[r->segment], n->moment.time);
+    if (d->mass > 0.0 || line == &r->route->signal->segments[r->segment]) {
+        return;
+    }
+    const dea_edge e = dea_dynamics_edge(d, n->moment.u);
+    n->moment.source = n->moment.voltage = dea_segment_voltage(r->route->signal, line, n->moment.time);
+    n->moment.slope = dea_segment_slope(r->route->signal, line, n->moment.time);
+    set_velocity(r, &e, n);
+}
+
 /* Takes the samples up to the point @p b, or up to where the film leaves its frame before that. */
 static void take_samples(runner *r, const node *b)
 {
@@ -312,6 +326,7 @@ static void take_samples(runner *r, const node *b)
         if (time < b->moment.time) {
             n = between(r, &r->last, b, time);
         }
+        see_line(r, &n);
         if (!is_inside(r->route->dynamics, &n)) {
             return;
         }
@@ -365,9 +380,14 @@ static void correct(runner *r, double step, node *n)
     if (r->carried != 0.0) {
         r->carried *= cexp(s * step);
     }
-    if (fabs(step - r->step) > 1e-9 * r->step && !segment->sine && segment->start == segment->end) {
+    if (fabs(step - r->step) > 1e-9 * r->step && (segment->terms || (!segment->sine && segment->start == segment->end))) {
         const double complex half = 0.5 * step * r->match.root;
-        r->lag *= cexp(s * step) * (r->euler ? 1.0 - 2.0 * half : (1.0 - half) / (1.0 + half));
+        const double complex lag = cexp(s * step) * (r->euler ? 1.0 - 2.0 * half : (1.0 - half) / (1.0 + half));
+        if (segment->terms) { /* the film follows its drive, and what a step does to its swing about that is free from there on */
+            r->carried += (lag - 1.0) * (ring_at(s, n) + r->carried);
+        } else {
+            r->lag *= lag;
+        }
     }
     r->euler = false;
     const double complex change = r->carried + (r->lag - 1.0) * ring_at(s, n);

@@ -9,6 +9,7 @@
 
 #include "engine/ngspice/moving.h"
 #include "engine/ngspice/track.h"
+#include "network/thin.h"
 #include "result/scales.h"
 
 /* Most work that all runs of a transient may take, in time steps of a linear network, and how much of that other steps and a
@@ -18,7 +19,7 @@ static const double most_work = 5e6;
 static const double late_work = 1e6;
 static const double late_share = 3.0;
 static const double nonlinear_step = 5.0;
-static const double netlist = 1000.0;
+static const double netlist = 300.0;
 static const double work_time = 6e-6; /* of one processor, roughly [s] */
 
 /* Most runs, those after which a failure is one, and those after which a film that runs away does so at a sample. */
@@ -54,6 +55,12 @@ static dea_track_point better_point(const dea_track_point *coarse, const dea_tra
 {
     return (dea_track_point){better(coarse->u, fine->u), better(coarse->v, fine->v), better(coarse->charge, fine->charge),
                              better(coarse->current, fine->current)};
+}
+
+/* The error that is wanted of the runs: all but what thinning the drive may take. */
+static double wanted_of(const dea_route *route)
+{
+    return route->scene->accuracy - route->signal->thinned;
 }
 
 static size_t common(const levels *l)
@@ -225,7 +232,7 @@ static void fill_summary(const dea_route *route, const levels *l, dea_summary *s
     const dea_audit *coarse = &l->coarse.audit;
     const dea_audit *fine = &l->fine.audit;
     *summary = dea_summary_failed();
-    summary->error = l->displacement;
+    summary->error = l->displacement + route->signal->thinned;
     tell_averages(route, l, summary);
     if (l->fine.end != DEA_STATE_OK || l->coarse.end != DEA_STATE_OK) {
         return;
@@ -308,7 +315,7 @@ static void explain_length(const dea_route *route, char *why, size_t size)
 static dea_status afford(const dea_route *route, const levels *l, double fineness, double spent, dea_error *error)
 {
     char why[200];
-    const double wanted = route->scene->accuracy;
+    const double wanted = wanted_of(route);
     const double runs = least_runs(l, wanted);
     const bill b = {.steps = route->pieces->points / fineness * exp2(runs - 1.0),
                     .work = spent + work_of(route, fineness) * (exp2(runs) - 1.0)};
@@ -319,10 +326,11 @@ static dea_status afford(const dea_route *route, const levels *l, double finenes
         snprintf(why, sizeof why, "%.2g time steps go through the point where the film turns back",
                  route->pieces->points / fineness / 2.0);
     } else if (l->runs > 2 && l->error <= wanted) {
-        snprintf(why, sizeof why, "the balance of energies is open by %.1g, at most %g is wanted", l->residual, 10.0 * wanted);
+        snprintf(why, sizeof why, "the balance of energies is open by %.1g, at most %g is wanted", l->residual,
+                 10.0 * route->scene->accuracy);
     } else if (l->runs > 2) {
         snprintf(why, sizeof why, "%.2g time steps leave an error of %.1g, the scene wants %g",
-                 route->pieces->points / fineness / 2.0, l->error, wanted);
+                 route->pieces->points / fineness / 2.0, l->error, route->scene->accuracy);
     } else {
         explain_length(route, why, sizeof why);
     }
@@ -333,7 +341,7 @@ static dea_status afford(const dea_route *route, const levels *l, double finenes
 static dea_status refine_once(const dea_route *route, levels *l, double fineness, dea_summary *summary, bool *done,
                               dea_error *error)
 {
-    const double wanted = route->scene->accuracy;
+    const double wanted = wanted_of(route);
     free(l->coarse.points);
     l->coarse = l->fine;
     l->fine = (dea_track){0};
@@ -342,7 +350,7 @@ static dea_status refine_once(const dea_route *route, levels *l, double fineness
         judge(route, l);
         fill_summary(route, l, summary);
         l->residual = summary->residual;
-        const bool ended = l->fine.end == DEA_STATE_OK || (l->fine.end == DEA_STATE_PULL_IN && !l->fine.vague);
+            const bool ended = l->fine.end == DEA_STATE_OK || (l->fine.end == DEA_STATE_PULL_IN && !l->fine.vague);
         const bool settled = ended || (l->runs >= (l->fine.vague ? PATIENT : STUBBORN) && !l->fine.bounces);
         const bool closed = l->fine.end != DEA_STATE_OK || summary->residual <= 10.0 * wanted || l->error <= enough * wanted;
         *done = l->error <= wanted && settled && closed;
@@ -355,6 +363,7 @@ static dea_status refine_once(const dea_route *route, levels *l, double fineness
 static const double trial_steps = 1.5e4;
 static const double trial_work = 5e5;
 static const double trial_doubt = 3.0;
+static const double trial_share = 0.2; /* most of the run that a trial is worth */
 
 /* The begin of the pieces with so many points, in @p pieces, which has room for all; the time that it rings [s]. */
 static double cut_trial(const dea_pieces *all, double points, dea_pieces *begin)
@@ -391,7 +400,7 @@ static dea_status try_begin(const dea_route *route, double fineness, levels *l, 
  * that it rings, at most that in which its energy falls to 1/e, and every finer run takes 16 times off. */
 static dea_status afford_ring(const dea_route *route, levels *l, const dea_pace *pace, double fineness, double *spent, dea_error *error)
 {
-    const double wanted = route->scene->accuracy, two = work_of(route, fineness) + work_of(route, 0.5 * fineness);
+    const double wanted = wanted_of(route), two = work_of(route, fineness) + work_of(route, 0.5 * fineness);
     if (route->dynamics->linear || pace->omega == 0.0 || two < trial_work) {
         return DEA_OK;
     }
@@ -401,6 +410,10 @@ static dea_status afford_ring(const dea_route *route, levels *l, const dea_pace 
     }
     const double life = pace->decay > 0.0 ? 0.5 / pace->decay : (double)INFINITY;
     const double rung = fmin(life, cut_trial(route->pieces, trial_steps * fineness, &begin));
+    if (begin.points > trial_share * route->pieces->points) { /* the run itself tells as soon */
+        free(begin.pieces);
+        return DEA_OK;
+    }
     const double grows = rung > 0.0 ? fmin(life, dea_pieces_ringing(route->pieces)) / rung : 1.0;
     dea_route trial = *route;
     trial.pieces = &begin;
@@ -413,7 +426,7 @@ static dea_status afford_ring(const dea_route *route, levels *l, const dea_pace 
     if (status == DEA_OK && !is_affordable(&b, *spent)) {
         char why[200];
         snprintf(why, sizeof why, "the ring of this film would lose a phase of some %.1g at %.2g time steps, the scene wants %g", expected,
-                 2.0 * route->pieces->points / fineness, wanted);
+                 2.0 * route->pieces->points / fineness, route->scene->accuracy);
         status = refuse(&b, why, error);
     }
     free(begin.pieces);
@@ -454,7 +467,7 @@ static dea_moment moment_at(const dea_route *route, size_t index, size_t *segmen
 {
     const double time = dea_layout_place(route->scene, index);
     *segment = dea_signal_find(route->signal, *segment, time);
-    const dea_segment *s = &route->signal->segments[*segment];
+    const dea_segment *s = dea_segment_seen(&route->signal->segments[*segment], time);
     const double source = dea_segment_voltage(route->signal, s, time);
     return (dea_moment){.time = time,
                         .source = source,
@@ -629,7 +642,13 @@ static dea_status run_on(dea_route *route, dea_signal *signal, dea_sample *sampl
     levels l = {.error = INFINITY, .scales = dea_scales_open(route->scene, route->dynamics->model)};
     pieces.pieces = NULL;
     dea_status status = l.scales.status == DEA_ERROR_MEMORY ? dea_fail(error, DEA_ERROR_MEMORY, "out of memory for a run")
-                                                            : can_tell_edges(route, &pace, error);
+                                                            : DEA_OK;
+    if (status == DEA_OK && !dea_peak_is_known(route->scene, route->dynamics, signal)) {
+        status = dea_signal_thin(signal, route->scene, route->dynamics, l.scales.pace, error);
+    }
+    if (status == DEA_OK) {
+        status = can_tell_edges(route, &pace, error);
+    }
     if (status == DEA_OK) {
         status =
             dea_pieces_cut(route->signal, &pace, route->scene->accuracy, route->scene->reduction.ring, quiet, &pieces, error);

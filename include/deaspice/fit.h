@@ -66,7 +66,7 @@ typedef struct dea_fit {
     double criterion;                        /**< of this fit, as in dea_fit_choice */
     double residual_rms;                  /**< root mean square of (measured - fitted) [Pa] */
     double residual_relative;             /**< residual_rms over the rms of the measured stress [1] */
-    double r_squared;                     /**< 1 - sum of squared residuals / sum of squared deviations from the mean [1] */
+    double r_squared;                     /**< 1 - sum of squared residuals / sum of squared deviations from the mean [1]; NAN: all stresses are alike */
     double condition;                     /**< condition number of the column-scaled problem [1] */
     size_t count[DEA_LOAD_COUNT];         /**< points of each load */
     double stretch_min, stretch_max;      /**< range of the data [1] */
@@ -74,10 +74,6 @@ typedef struct dea_fit {
     double unloads_from;     /**< largest stretch before the data go back by a fifth of their range [1], NAN: they do not */
 } dea_fit;
 
-/** Name of a load: "uniaxial", "equibiaxial", "unknown". */
-DEA_API const char *dea_load_name(dea_load load);
-/** Load by name, DEA_LOAD_UNKNOWN if there is none. */
-DEA_API dea_load dea_load_find(const char *name);
 
 /** Reads a table of measured points and appends it to @p data.
  *

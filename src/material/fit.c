@@ -31,21 +31,6 @@ static const double rounding = 1e-9;
 /* Standard errors by which C1 must lie above 0: less would leave its sign to noise. */
 static const double sign_certain = 2.0;
 
-const char *dea_load_name(dea_load load)
-{
-    static const char *const names[DEA_LOAD_COUNT] = {"uniaxial", "equibiaxial"};
-    return (unsigned)load < DEA_LOAD_COUNT ? names[load] : "unknown";
-}
-
-dea_load dea_load_find(const char *name)
-{
-    int load = 0;
-    while (load < DEA_LOAD_COUNT && strcmp(name, dea_load_name((dea_load)load)) != 0) {
-        load++;
-    }
-    return (dea_load)load;
-}
-
 dea_status dea_fit_add(dea_fit_data *data, dea_fit_point point, dea_error *error)
 {
     if (!(point.stretch > 0.0) || !isfinite(point.stretch) || !isfinite(point.stress) || (unsigned)point.load >= DEA_LOAD_COUNT) {
@@ -245,7 +230,7 @@ static void fit_judge(const dea_fit_data *data, dea_fit *fit)
     }
     fit->residual_rms = sqrt(residuals / count);
     fit->residual_relative = sqrt(residuals / squares);
-    fit->r_squared = 1.0 - residuals / spread;
+    fit->r_squared = spread > DBL_EPSILON * squares ? 1.0 - residuals / spread : (double)NAN;
 }
 
 /* Walks the range of the data, and from rest, in search of a tangent modulus that is not positive. */

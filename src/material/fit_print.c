@@ -64,7 +64,9 @@ static void print_law_quality(const dea_fit *fit, FILE *stream)
     print_number(stream, " to ", fit->stretch_max, 6, ".\n");
     print_number(stream, "# Residual ", fit->residual_rms, 4, " Pa rms");
     print_number(stream, " (", 100.0 * fit->residual_relative, 3, " %)");
-    print_number(stream, ", R^2 ", fit->r_squared, 6, "");
+    if (isfinite(fit->r_squared)) {
+        print_number(stream, ", R^2 ", fit->r_squared, 6, "");
+    }
     print_number(stream, ", condition number ", fit->condition, 3, ".\n# Standard errors:");
     for (int i = 0; i < fit->terms; i++) {
         fputs(i > 0 ? ", " : " ", stream);

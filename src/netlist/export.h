@@ -18,7 +18,7 @@ typedef struct dea_export {
     bool analogy_given; /* the user has chosen it */
     const char *name;   /* of a part, NULL: its own */
     FILE *out;
-    char note[DEA_EXPORT_NOTE]; /* computed by dea_export_netlist(): what a user must know of the file, empty: nothing */
+    char note[DEA_EXPORT_NOTE]; /* computed by who writes the file: what a user must know of it, empty: nothing */
 } dea_export;
 
 /* Writes the netlist of the scene's study. DEA_ERROR_UNSUPPORTED, with nothing of use written, for a scene that one netlist

@@ -41,6 +41,8 @@ void dea_part_write_mechanics(const char *prefix, FILE *out);
  * and the prefix of the helpers, so that files of different names go into one circuit; NULL: the names of the library. */
 dea_status dea_part_of_scene(const dea_scene *scene, const dea_model *model, const char *name, const dea_dialect *dialect,
                              FILE *out, dea_error *error);
+/* What of the scene is no business of its part and stands in the circuit around it, in words; empty: nothing. */
+void dea_part_note(const dea_scene *scene, char *note, size_t size);
 
 /* Writes the library of all parts, with the film of the base paper as defaults. */
 dea_status dea_part_library(const dea_dialect *dialect, FILE *out, dea_error *error);

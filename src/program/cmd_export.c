@@ -4,8 +4,8 @@
 #include "netlist/export.h"
 #include "netlist/part.h"
 #include "netlist/symbol.h"
-#include "output/atomic.h"
 #include "program/program.h"
+#include "support/atomic.h"
 #include "support/memory_text.h"
 
 enum { MOST_NAMES = 8, PATH_ROOM = 4096 };
@@ -27,6 +27,7 @@ static dea_status write_netlist(dea_export *export, const char *library, dea_err
 static dea_status write_part(dea_export *export, const char *library, dea_error *error)
 {
     (void)library;
+    dea_part_note(export->scene, export->note, sizeof export->note);
     return dea_part_of_scene(export->scene, export->scene->models[0], export->name, export->dialect, export->out, error);
 }
 

@@ -1,4 +1,3 @@
-#include <errno.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -7,8 +6,8 @@
 
 #include "deaspice/fit.h"
 #include "deaspice/plot.h"
-#include "output/atomic.h"
 #include "program/program.h"
+#include "support/atomic.h"
 #include "support/memory_text.h"
 
 /* Data and fits of one call. */
@@ -174,10 +173,14 @@ static void warn(const work *w)
 
 static void tell_stretch(const dea_fit *fit)
 {
+    char explained[32] = "";
+    if (isfinite(fit->r_squared)) {
+        snprintf(explained, sizeof explained, "R^2 = %.6f, ", fit->r_squared);
+    }
     fprintf(stderr,
-            "%s, %d constant%s from %zu uniaxial and %zu equi-biaxial points, stretch %.4g to %.4g: R^2 = %.6f, rms residual %.4g Pa\n",
+            "%s, %d constant%s from %zu uniaxial and %zu equi-biaxial points, stretch %.4g to %.4g: %srms residual %.4g Pa\n",
             fit->law->name, fit->terms, fit->terms == 1 ? "" : "s", fit->count[DEA_LOAD_UNIAXIAL], fit->count[DEA_LOAD_EQUIBIAXIAL],
-            fit->stretch_min, fit->stretch_max, fit->r_squared, fit->residual_rms);
+            fit->stretch_min, fit->stretch_max, explained, fit->residual_rms);
 }
 
 static void tell_relaxation(const dea_relaxation *fit)

@@ -51,18 +51,18 @@ static dea_status frame_check(dea_reader *reader)
     const double coverage = isnan(actuator->divide_radius) ? actuator->coverage : actuator->divide_radius / actuator->frame_radius;
     const struct {
         size_t second;
-        const char *path;
+        const char *path, *unit;
         double value, first;
     } numbers[] = {
-        {offsetof(dea_scene, antagonist.frame_radius), "antagonist.actuator.frame_radius", scene->antagonist.frame_radius, actuator->frame_radius},
-        {offsetof(dea_scene, antagonist.coverage), "antagonist.actuator.coverage", scene->antagonist.coverage, coverage},
+        {offsetof(dea_scene, antagonist.frame_radius), "antagonist.actuator.frame_radius", " m", scene->antagonist.frame_radius, actuator->frame_radius},
+        {offsetof(dea_scene, antagonist.coverage), "antagonist.actuator.coverage", "", scene->antagonist.coverage, coverage},
     };
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         if (!isnan(numbers[i].value) && !(fabs(numbers[i].value - numbers[i].first) <= 1e-12 * numbers[i].first)) {
             return dea_place_fail(dea_reader_place(reader, numbers[i].second, "antagonist"), reader->error, numbers[i].path,
-                                  "unlike that of the first film (%g, %g there): two films of unlike frames share no edge; accepted: the "
+                                  "unlike that of the first film (%g%s, %g%s there): two films of unlike frames share no edge; accepted: the "
                                   "same, or none",
-                                  numbers[i].value, numbers[i].first);
+                                  numbers[i].value, numbers[i].unit, numbers[i].first, numbers[i].unit);
         }
     }
     return DEA_OK;

@@ -1,6 +1,5 @@
 #include "scene/keys.h"
 
-#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -191,22 +190,42 @@ static size_t depth_of(const char *path)
     return depth;
 }
 
-/* The key whose last component is @p name, the least deep of several, one of an electrode or a second film only where no other is; false where there
- * is none, or that is not one alone. */
-static bool namesake(const char *name, dea_key *found)
+/* How far off a namesake is: one below the same key at the top is near, then by its depth, one of an electrode or a second film last. */
+static size_t distance_of(const char *path, const char *place)
+{
+    const size_t top = strcspn(path, ".");
+    const bool near = top == strcspn(place, ".") && strncmp(path, place, top) == 0;
+    const bool aside = strncmp(path, "electrode.", 10) == 0 || is_of_second(path);
+    return depth_of(path) + (near ? 0 : aside ? 2 * DEA_TREE_DEPTH : DEA_TREE_DEPTH);
+}
+
+/* True where a key is no help in the mapping @p place: that takes its place, or has the name of its own mapping, as
+ * antagonist.actuator has that of actuator. */
+static bool is_no_help(const dea_key *key, const char *place)
+{
+    char home[DEA_NAME_LENGTH];
+    const size_t length = (size_t)(last_component(key->path) - key->path);
+    snprintf(home, sizeof home, "%.*s", length > 0 ? (int)length - 1 : 0, key->path);
+    return (key->instead && strncmp(place, key->instead, strlen(key->instead)) == 0) ||
+           (length > 0 && strcmp(last_component(home), last_component(place)) == 0);
+}
+
+/* The key whose last component is @p name, the nearest to the mapping @p place of several; false where there is none, or that is
+ * not one alone or no help. */
+static bool namesake(const char *name, const char *place, dea_key *found)
 {
     dea_key key;
     size_t least = SIZE_MAX;
     size_t count = 0;
     for (size_t i = 0; dea_key_at(i, &key); i++) {
-        const size_t depth = depth_of(key.path) + (strncmp(key.path, "electrode.", 10) == 0 || is_of_second(key.path) ? DEA_TREE_DEPTH : 0);
-        if (is_anywhere(&key, NULL) && depth <= least && strcmp(last_component(key.path), name) == 0) {
-            count = depth < least ? 1 : count + 1;
-            least = depth;
+        const size_t distance = distance_of(key.path, place);
+        if (is_anywhere(&key, NULL) && distance <= least && strcmp(last_component(key.path), name) == 0) {
+            count = distance < least ? 1 : count + 1;
+            least = distance;
             *found = key;
         }
     }
-    return count == 1;
+    return count == 1 && !is_no_help(found, place);
 }
 
 static size_t append(char out[DEA_KEY_ROOM], size_t used, const char *between, const char *word)
@@ -263,7 +282,7 @@ void dea_key_suggest(const char *parent, const char *name, char out[DEA_KEY_ROOM
     }
     dea_key key;
     const bool sibling = nearest(is_child, place, name, &key);
-    const bool elsewhere = !sibling && namesake(name, &key);
+    const bool elsewhere = !sibling && namesake(name, place, &key);
     if (sibling) {
         used = append(out, used, "; did you mean ", last_component(key.path));
         used = append(out, used, "?", "");

@@ -216,7 +216,8 @@ static dea_status place_check(const axis_reader *self)
     }
     if (key->within && !dea_tree_find(reader->root, key->within)) {
         return dea_place_fail(&self->node->key_at, reader->error, self->ref.path,
-                              "cannot be swept: the scene has no %s; accepted: any scalar of the scene", key->within);
+                              "cannot be swept: the scene has no %s; accepted: a scalar of the scene, this one too once %s is there", key->within,
+                              key->within);
     }
     return dea_place_fail(&self->node->key_at, reader->error, self->ref.path,
                           "contradicts %s, which is given; accepted: a scalar of that, e.g. drive.waveform.step.voltage",

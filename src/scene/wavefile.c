@@ -18,9 +18,9 @@ static const dea_wanted wanted[COLUMNS] = {
     [VOLTAGE] = {.name = "voltage", .aliases = voltage_names, .unit = "V", .assumed = "V", .by_unit = true, .suffixes = true},
 };
 
-/* Neighbouring rows of equal time are a jump; that of a clock too coarse for its rows, where more than this share of the times
- * stand twice and the voltage rarely rests between them. */
-static const double twice_most = 0.25, resting_least = 0.5;
+/* Neighbouring rows of equal time are a jump; those of a clock too coarse for its rows, where more than this share of the times
+ * stand twice, the voltage rarely rests between them, and where it goes on within a time as it does to the next: a sawtooth turns. */
+static const double twice_most = 0.25, resting_least = 0.5, going_least = 0.5;
 
 /* Adds a row to the points; times fall nowhere. */
 static dea_status row_add(const dea_table *table, dea_waveform *wave, double time, double voltage)
@@ -68,23 +68,31 @@ static size_t rows_at(const dea_waveform *wave, size_t first)
 /* True where equal times come from a clock that is too coarse. */
 static bool clock_is_coarse(const dea_waveform *wave)
 {
-    size_t times = 0, twice = 0, resting = 0;
+    size_t times = 0, twice = 0, resting = 0, going = 0;
+    bool thrice = false; /* no jump has a row in its middle */
     for (size_t i = 0; i < wave->point_count;) {
         const size_t rows = rows_at(wave, i);
         const size_t next = i + rows;
+        const double within = wave->voltages[next - 1] - wave->voltages[i];
+        const double across = next < wave->point_count ? wave->voltages[next] - wave->voltages[next - 1] : 0.0;
         times++;
         twice += rows > 1;
-        resting += next < wave->point_count && wave->voltages[next] == wave->voltages[next - 1];
+        thrice = thrice || rows > 2;
+        resting += next < wave->point_count && across == 0.0;
+        going += within * across > 0.0;
         i = next;
     }
-    return (double)twice > twice_most * (double)times && (double)resting < resting_least * (double)times;
+    const bool coarse = (double)twice > twice_most * (double)times && (double)resting < resting_least * (double)times;
+    return coarse && (thrice || (double)going >= going_least * (double)twice);
 }
 
-/* Of the rows of one time stay the mean, where the clock is coarse, else the first and the last, which are a jump. */
-static void settle_times(dea_waveform *wave)
+/* Of the rows of one time stay the mean, where the clock is coarse, else the first and the last, which are a jump; says so where
+ * there are any. */
+static const char *settle_times(dea_waveform *wave)
 {
     const bool coarse = clock_is_coarse(wave);
-    size_t kept = 0;
+    const size_t read = wave->point_count;
+    size_t kept = 0, times = 0;
     for (size_t i = 0; i < wave->point_count;) {
         const size_t rows = rows_at(wave, i);
         double sum = 0.0;
@@ -98,9 +106,11 @@ static void settle_times(dea_waveform *wave)
             wave->times[kept] = time;
             wave->voltages[kept++] = last;
         }
+        times++;
         i += rows;
     }
     wave->point_count = kept;
+    return times == read ? "" : coarse ? "; of rows at one time counts their mean" : "; two rows at one time are a jump";
 }
 
 /* A run begins at time 0: what a recorder wrote before its trigger is cut off there. */
@@ -129,8 +139,8 @@ static void cut_before_zero(dea_waveform *wave)
 static size_t lines_of(const char *text, size_t length)
 {
     size_t lines = 1;
-    for (const char *at = text; (at = memchr(at, '\n', (size_t)(text + length - at))); at++) {
-        lines++;
+    for (const char *at = text; at < text + length; at++) {
+        lines += *at == '\n' || *at == '\r';
     }
     return lines;
 }
@@ -147,14 +157,18 @@ static dea_status table_read(dea_reader *reader, dea_table *table, const char *t
     }
     status = status ? status : dea_points_new(reader, lines < ROWS_MAX ? lines : ROWS_MAX);
     status = status ? status : rows_read(table, wave);
-    if (status == DEA_OK && wave->point_count == 0) {
-        status = dea_table_fail(table, 1, "no row of numbers below the header");
+    if (status == DEA_OK && wave->point_count < 2) {
+        status = dea_table_fail(table, 1, wave->point_count == 0 ? "no row of numbers below the header"
+                                                                 : "a single row of numbers; accepted: two or more, each a time and its voltage");
     }
     if (status == DEA_OK) {
-        settle_times(wave);
-        const bool cut = wave->times[0] < 0.0;
+        const char *jumps = settle_times(wave);
+        const bool cut = wave->times[0] < 0.0, late = wave->times[0] > 0.0;
         cut_before_zero(wave);
-        snprintf(wave->columns, sizeof wave->columns, "%.200s%s", table->told, cut ? "; what lies before time 0 is cut off" : "");
+        snprintf(wave->columns, sizeof wave->columns, "%.140s%s%s", table->told, jumps,
+                 cut    ? "; what lies before time 0 is cut off"
+                 : late ? "; up to its first time the voltage is the first one"
+                        : "");
     }
     return status;
 }

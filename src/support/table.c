@@ -54,11 +54,13 @@ static bool line_next(const char **next, const char *end, line *out)
 {
     while (*next < end) {
         const char *start = *next;
-        const char *stop = memchr(start, '\n', (size_t)(end - start));
-        stop = stop ? stop : end;
+        const char *stop = start;
+        while (stop < end && *stop != '\n' && *stop != '\r') {
+            stop++;
+        }
         *next = stop < end ? stop + 1 : stop;
+        *next += stop + 1 < end && stop[0] == '\r' && stop[1] == '\n';
         out->number++;
-        stop -= stop > start && stop[-1] == '\r';
         const char *first = start;
         while (first < stop && is_blank(*first)) {
             first++;
@@ -476,7 +478,7 @@ static dea_status note_column(dea_table *t, size_t column, const heading *h, con
     char problem[200];
     double factor = 1.0;
     if (t->seen[h->wanted]) {
-        return fail_field(t, field, "a second column of the same kind:");
+        return fail_field(t, field, "a second column of the same kind; give the one that is not meant another name:");
     }
     if (wanted->unit && !unit) {
         snprintf(problem, sizeof problem, "a column without unit (write e.g. %s_k%s):", wanted->name, wanted->unit);
@@ -727,6 +729,9 @@ dea_status dea_table_begin(dea_table *t, const char *text, size_t length)
     }
     for (size_t i = 0; i < DEA_TABLE_FIELDS; i++) {
         t->columns[i].wanted = t->wanted_count;
+    }
+    if (length >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0)) {
+        return dea_table_fail(t, 1, "text in UTF-16, as \"Unicode text\" of spreadsheets; save it as CSV, in UTF-8");
     }
     t->guarded = t->guarded && !has_numbers(t);
     return names_find(t, &names) ? named_begin(t, &names) : nameless_begin(t);

@@ -4,6 +4,9 @@
 
 #include <stdlib.h>
 
+#include "netlist/export.h"
+#include "netlist/part.h"
+
 #define FILM(kind, more)                                                                                                        \
     "actuator: {kind: " kind ", frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2" more "}\n"
 #define PAPER "material: {base: elastosil-2030, yeoh: {C1: 178426 Pa, C2: -6023 Pa, C3: 4234 Pa}, permittivity: 2.8}\n"
@@ -698,6 +701,75 @@ static void a_film_drawn_past_its_permittivity_has_no_numbers(void **state)
     }
 }
 
+/* Who cannot do what with a membrane says so, and somebody else does it, or another model. */
+static void what_a_membrane_cannot_is_refused_by_name(void **state)
+{
+    static const struct {
+        const char *more, *engine, *says, *able, *model;
+    } cases[] = {
+        {"load: {force: 0.1 N}\n" STILL, "ngspice", "no force and no second film", "direct", "field"},
+        {"antagonist: {actuator: {kind: lens}}\n" STILL, "ngspice", "no force and no second film", "ida", "field"},
+        {"drive: {voltage: 3 kV}\nstudy: {force: {displacement: {from: 0 mm, to: 0.1 mm, points: 3}}}\n", "ngspice",
+         "does not hold the edge", "ida", "field"},
+        {SWITCHED("1 MOhm, current_limit: 1 mA") MOVED, "ida", "no current limit; ring does", "ida", "ring"},
+        {SWITCHED("1 MOhm, current_limit: 1 mA") MOVED, "ngspice", "no current limit; ring does", "ngspice", "ring"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[1024];
+        dea_scene scene;
+        snprintf(text, sizeof text, "%s" LOSSY "%s", FILM("dot", ""), cases[i].more);
+        read_scene(text, "field", &scene);
+        const char *says = dea_engine_refuses(dea_engine_find(cases[i].engine), &scene, scene.models[0]);
+        assert_true(says && strstr(says, cases[i].says));
+        assert_null(dea_engine_refuses(dea_engine_find(cases[i].able), &scene, dea_model_find(cases[i].model)));
+        dea_scene_free(&scene);
+    }
+}
+
+/* What a file for circuits leaves out is refused with what can be done, or told: nothing is written that is not the scene's film. */
+static void what_no_circuit_file_holds_is_refused_or_told(void **state)
+{
+    static const struct {
+        const char *more, *model;
+        bool part; /* a part, not a netlist */
+        const char *says; /* NULL: it is written */
+        const char *note;
+    } cases[] = {
+        {"load: {force: 0.1 N}\n", "field", false, "--model ring has them", ""},
+        {"antagonist: {actuator: {kind: lens}}\n", "field", false, "--model ring has them", ""},
+        {"load: {stiffness: 100 N/m}\n", "field", false, NULL, ""},
+        {"load: {force: 0.1 N}\n", "ring", false, NULL, ""},
+        {SKIN, "ring", true, "actuator.electrode_mass without electrode", ""},
+        {"antagonist: {actuator: {kind: lens}}\n", "ring", true, "--as netlist has both", ""},
+        {"electrode: {sheet_resistance: 40 kOhm}\n", "field", true, "--model ring is one", ""},
+        {"electrode: {sheet_resistance: 40 kOhm}\nload: {mass: 1 g}\n", "ring", true, NULL,
+         "a resistor of 3183.1 Ohm before its pin p, and the load at its pin edge"}, /* rho/(8 pi) of each of two electrodes */
+        {"load: {mass: 1 g}\n", "field", true, NULL, "the rest of the scene: the load at its pin edge"},
+        {"", "field", true, NULL, ""},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[1024];
+        dea_scene scene;
+        dea_error error = {0};
+        snprintf(text, sizeof text, "%s" PAPER "%s" STILL, FILM("dot", ""), cases[i].more);
+        read_scene(text, cases[i].model, &scene);
+        dea_export export = {.scene = &scene, .dialect = dea_dialect_at(0), .analogy = dea_analogy_at(0), .out = tmpfile()};
+        assert_non_null(export.out);
+        const dea_status status = cases[i].part ? dea_part_of_scene(&scene, scene.models[0], NULL, export.dialect, export.out, &error)
+                                                : dea_export_netlist(&export, &error);
+        assert_int_equal(status, cases[i].says ? DEA_ERROR_UNSUPPORTED : DEA_OK);
+        assert_true(!cases[i].says || strstr(error.message, cases[i].says));
+        if (cases[i].part && !cases[i].says) {
+            dea_part_note(&scene, export.note, sizeof export.note);
+            assert_true(*cases[i].note ? strstr(export.note, cases[i].note) != NULL : *export.note == '\0');
+        }
+        fclose(export.out);
+        dea_scene_free(&scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -729,6 +801,8 @@ int main(void)
         cmocka_unit_test(engines_agree_on_shaken_permittivities),
         cmocka_unit_test(a_film_that_voltage_shrinks_is_refused),
         cmocka_unit_test(a_film_drawn_past_its_permittivity_has_no_numbers),
+        cmocka_unit_test(what_a_membrane_cannot_is_refused_by_name),
+        cmocka_unit_test(what_no_circuit_file_holds_is_refused_or_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

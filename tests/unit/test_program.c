@@ -768,6 +768,23 @@ static void relaxation_gives_the_branches_of_a_material(void **state)
     assert_true(exists("hold.png"));
 }
 
+/* Stresses that are all alike leave nothing to be explained: no R^2 is told, wherever a fit tells it. */
+static void fit_of_stresses_alike_tells_no_share(void **state)
+{
+    static const char *const texts[] = {"stretch,stress_kPa\n1.1,10.1\n", "stretch,stress_kPa\n1.1,10.1\n1.1,10.1\n1.1,10.1\n"};
+    (void)state;
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        write_file("alike.csv", texts[i]);
+        RUN("fit", "--uniaxial", "alike.csv", "-o", "alike.yaml", "--force");
+        assert_int_equal(last.status, 0);
+        assert_non_null(strstr(last.err, "rms residual"));
+        assert_null(strstr(last.err, "R^2"));
+        read_file("alike.yaml", last.out);
+        assert_non_null(strstr(last.out, "# Residual"));
+        assert_null(strstr(last.out, "R^2"));
+    }
+}
+
 static void bad_relaxation_is_named_and_ends_with_2(void **state)
 {
     static const struct {
@@ -945,6 +962,7 @@ int main(void)
         cmocka_unit_test(fit_without_a_result_leaves_no_file),
         cmocka_unit_test(stretch_beyond_the_data_is_told),
         cmocka_unit_test(relaxation_gives_the_branches_of_a_material),
+        cmocka_unit_test(fit_of_stresses_alike_tells_no_share),
         cmocka_unit_test(bad_relaxation_is_named_and_ends_with_2),
         cmocka_unit_test(signal_ends_the_run_and_leaves_nothing),
         cmocka_unit_test(reader_that_leaves_ends_the_run_quietly),

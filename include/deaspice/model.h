@@ -79,6 +79,15 @@ typedef struct dea_stretches {
     double radial, hoop;
 } dea_stretches;
 
+/** A model as a subcircuit of circuits. */
+typedef struct dea_model_part {
+    const char *ending; /**< of the name of the part */
+    const char *meaning;
+    bool modulus;   /**< it takes an operating modulus */
+    double stress;  /**< unit in which it counts stresses and moduli [Pa] */
+    double tension; /**< what makes its tensions numbers of size 1: they are stretches, or stresses [Pa] */
+} dea_model_part;
+
 /** A static model. */
 typedef struct dea_model {
     const char *name;       /**< e.g. "lumped" */
@@ -104,6 +113,10 @@ typedef struct dea_model {
     bool dynamic;
     /** It is the boundary value problem of the axisymmetric membrane along the radius. */
     bool membrane;
+    /** Of one node, for what is asked of one alone; NULL: the model itself. */
+    const struct dea_model *stand_in;
+    /** NULL: it is no part. */
+    const dea_model_part *part;
 } dea_model;
 
 /** What solving a model takes, from the cheapest up. */

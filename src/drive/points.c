@@ -1,5 +1,4 @@
 /* Straight lines between points, from a list or a file. */
-#include <math.h>
 
 #include "drive/waves.h"
 
@@ -23,6 +22,7 @@ static void lay(struct dea_wave_builder *b, const dea_waveform *wave, double beg
 
 const dea_wave dea_wave_points = {
     .path = "drive.waveform.points",
+    .alias = "file",
     .accepted = "a list of [time, voltage], e.g. [[0 s, 0 V], [5 s, 4500 V]]",
     .until = "at least the last time of the points",
     .extent = extent,

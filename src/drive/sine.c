@@ -27,6 +27,7 @@ static void lay(struct dea_wave_builder *b, const dea_waveform *wave, double beg
 const dea_wave dea_wave_sine = {
     .path = "drive.waveform.sine",
     .accepted = "a mapping with amplitude, frequency, offset, phase and delay, e.g. {amplitude: 100 V, frequency: 50 Hz}",
+    .pure = true,
     .numbers = numbers,
     .number_count = sizeof numbers / sizeof *numbers,
     .once = "which has its frequency",

@@ -56,6 +56,7 @@ static void lay(struct dea_wave_builder *b, const dea_waveform *wave, double beg
 const dea_wave dea_wave_step = {
     .path = "drive.waveform.step",
     .accepted = "a mapping with on, off, voltage and rise, e.g. {on: 5 s, off: 15 s, voltage: 4500 V}",
+    .settles = true,
     .numbers = numbers,
     .number_count = sizeof numbers / sizeof *numbers,
     .until = "a time >= off + rise, where rise is 1 us unless given",

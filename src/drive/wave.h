@@ -36,7 +36,10 @@ struct dea_wave_builder;
 
 typedef struct dea_wave {
     const char *path;     /* e.g. "drive.waveform.step" */
+    const char *alias;    /* another key for it, NULL: none */
     const char *accepted; /* of the mapping, for messages */
+    bool settles;         /* it is one step, whose edges have rise and settling times */
+    bool pure;            /* it is one sine, which has harmonics */
     const dea_wave_number *numbers;
     size_t number_count;       /* 0: the table of points */
     size_t stride;             /* of a list, from one entry to the next in dea_waveform; 0: a mapping */
@@ -55,6 +58,20 @@ typedef struct dea_wave {
 
 /* Row of a kind; NULL for none, and past the last kind. */
 const dea_wave *dea_wave_of(dea_wave_kind kind);
+/* Properties of a waveform's kind; false for none. */
+static inline bool dea_wave_settles(const dea_waveform *wave)
+{
+    return dea_wave_of(wave->kind) && dea_wave_of(wave->kind)->settles;
+}
+static inline bool dea_wave_is_pure(const dea_waveform *wave)
+{
+    return dea_wave_of(wave->kind) && dea_wave_of(wave->kind)->pure;
+}
+/* True of a table of points. */
+static inline bool dea_wave_is_listed(const dea_waveform *wave)
+{
+    return dea_wave_of(wave->kind) && dea_wave_of(wave->kind)->number_count == 0;
+}
 /* Its name: the end of its path. */
 const char *dea_wave_name(const dea_wave *wave);
 /* Place of number @p index of entry @p entry. */

@@ -2,7 +2,7 @@
 #ifndef DEA_RINGS_GAP_H
 #define DEA_RINGS_GAP_H
 
-#include "engine/ida/rings_flight.h"
+#include "engine/rings_flight.h"
 #include "result/scales.h"
 
 typedef struct dea_rings_gap {

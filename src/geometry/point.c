@@ -2,8 +2,8 @@
 #include <stddef.h>
 
 #include "geometry/edge.h"
+#include "geometry/point.h"
 #include "geometry/second.h"
-#include "model/models.h"
 
 void dea_film_prepare(const dea_scene *scene, dea_film *film)
 {

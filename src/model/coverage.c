@@ -294,4 +294,5 @@ const dea_model dea_model_coverage = {
     .hold = hold,
     .network = build,
     .dynamic = true,
+    .part = &(const dea_model_part){"_hyper", "hyperelastic disc and annulus, Eq. 18, quasi-linear relaxation", false, 1e6, 1.0},
 };

@@ -12,10 +12,8 @@
  *
  * A permittivity that follows the strain puts its factors (dea_film_electric()) before k and the integrand of c.
  */
-#include <float.h>
 
 #include "model/field.h"
-#include "model/film_balance.h"
 
 enum { GBS_COLUMNS = 7, ELLIPTIC_SAMPLES = 8 };
 
@@ -695,4 +693,6 @@ const dea_model dea_model_field = {
     .hold = hold,
     .dynamic = true,
     .membrane = true,
+    .stand_in = &dea_model_ring,
+    .part = &(const dea_model_part){"_field", "the exact membrane as a network of rings, quasi-linear relaxation", false, 1e6, 1.0},
 };

@@ -252,4 +252,5 @@ const dea_model dea_model_lame = {
     .linear = linear,
     .hold = hold,
     .dynamic = true,
+    .part = &(const dea_model_part){"_lame", "Lame's disc and annulus with electrostatic softening", false, 1.0, 1e-6},
 };

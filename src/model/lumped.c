@@ -139,4 +139,5 @@ const dea_model dea_model_lumped = {
     .linear = linear,
     .hold = hold,
     .dynamic = true,
+    .part = &(const dea_model_part){"", "two linear springs and a force, Eqs. 19-23", true, 1.0, 1.0},
 };

@@ -354,4 +354,5 @@ const dea_model dea_model_ring = {
     .hold = hold,
     .network = build,
     .dynamic = true,
+    .part = &(const dea_model_part){"_ring", "hyperelastic disc and annulus, one ring of membrane each, quasi-linear relaxation", false, 1e6, 1.0},
 };

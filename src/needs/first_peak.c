@@ -7,10 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/ida/motion.h"
-#include "engine/ida/rings_motion.h"
-#include "network/swing.h"
+#include "network/motion.h"
 #include "network/rings_mesh.h"
+#include "network/rings_motion.h"
+#include "network/swing.h"
 
 static const double tolerance = 1e-4;  /* of a step, of the sizes of displacement and velocity: peaks are right to 1e-4 then */
 static const double agreed = 2e-3;     /* meshes that differ by less have the peak */

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/models.h"
+#include "geometry/point.h"
 #include "needs/surrogate.h"
 #include "network/swing.h"
 #include "study/study.h"
@@ -503,7 +503,7 @@ dea_status dea_needs_find(const dea_scene *scene, const dea_model *model, const 
         return DEA_OK;
     }
     p.many_nodes = model->membrane;
-    dea_status status = dea_surrogate_open(scene, model->membrane ? &dea_model_ring : model, &p.surrogate, &usable, error);
+    dea_status status = dea_surrogate_open(scene, model->stand_in ? model->stand_in : model, &p.surrogate, &usable, error);
     if (status == DEA_OK) {
         const dea_swing swing = p.many_nodes ? dea_swing_free(scene, model) : dea_swing_of(&p.surrogate.dynamics, p.surrogate.dynamics.rest, 0.0);
         needs->resonance = swing.frequency;

@@ -3,16 +3,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "engine/ida/rings_motion.h"
-#include "engine/ngspice/units.h"
 #include "netlist/export_drive.h"
 #include "netlist/rings_motion.h"
 #include "netlist/rings_small.h"
 #include "network/rings_band.h"
 #include "network/rings_mesh.h"
-#include "support/lapack.h"
-#include "network/rings_band.h"
-#include "network/rings_mesh.h"
+#include "network/rings_motion.h"
+#include "network/units.h"
 #include "support/lapack.h"
 
 /* What tells how good a mesh is: the edge under the bias, and the first mode about it. */

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 
 #include "netlist/symbol.h"
-#include "output/atomic.h"
+#include "support/atomic.h"
 #include "support/memory_text.h"
 
 enum { PATH_ROOM = 4096 };

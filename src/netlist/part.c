@@ -7,7 +7,7 @@
 
 #include "expression/derivative.h"
 #include "expression/formula.h"
-#include "model/models.h"
+#include "geometry/point.h"
 #include "netlist/mobility.h"
 #include "netlist/rings_part.h"
 #include "support/memory_text.h"
@@ -60,36 +60,9 @@ typedef struct part {
     dea_expr *loosen;             /* owned; what 1 V adds to it; grows with U^2 */
 } part;
 
-/* Models that are parts. */
-typedef struct form {
-    const char *model;
-    const char *ending; /* of the name of the part */
-    const char *meaning;
-    bool modulus;   /* takes an operating modulus */
-    double stress;  /* unit in which the part counts stresses and moduli [Pa] */
-    double tension; /* what makes its tensions numbers of size 1: they are stretches, or stresses [Pa] */
-} form;
-
-static const form *form_of(const dea_model *model)
-{
-    static const form forms[] = {
-        {"lumped", "", "two linear springs and a force, Eqs. 19-23", true, 1.0, 1.0},
-        {"lame", "_lame", "Lame's disc and annulus with electrostatic softening", false, 1.0, 1e-6},
-        {"coverage", "_hyper", "hyperelastic disc and annulus, Eq. 18, quasi-linear relaxation", false, 1e6, 1.0},
-        {"ring", "_ring", "hyperelastic disc and annulus, one ring of membrane each, quasi-linear relaxation", false, 1e6, 1.0},
-        {"field", "_field", "the exact membrane as a network of rings, quasi-linear relaxation", false, 1e6, 1.0},
-    };
-    for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
-        if (strcmp(model->name, forms[i].model) == 0) {
-            return &forms[i];
-        }
-    }
-    return NULL;
-}
-
 const char *dea_part_name_of(dea_kind kind, const dea_model *model, char name[DEA_PART_TITLE])
 {
-    const form *of = form_of(model);
+    const dea_model_part *of = model->part;
     if (!of) {
         return NULL;
     }
@@ -163,7 +136,7 @@ static dea_status derive_rings(part *p, const dea_symbols *symbols, dea_error *e
 }
 
 /* What tells whether the film is taut. */
-static dea_status derive_tensions(part *p, const form *of, dea_error *error)
+static dea_status derive_tensions(part *p, const dea_model_part *of, dea_error *error)
 {
     const dea_network *network = &p->film.network;
     dea_pool *pool = &p->film.network.pool;
@@ -184,7 +157,7 @@ static dea_status derive_tensions(part *p, const form *of, dea_error *error)
 /* All expressions of the part, from the model's network under a symbolic voltage. */
 static dea_status derive(part *p, const dea_model *model, dea_error *error)
 {
-    const form *of = form_of(model);
+    const dea_model_part *of = model->part;
     dea_network *network = &p->film.network;
     dea_pool *pool = &network->pool;
     (void)NUM(0.0);
@@ -192,7 +165,7 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
         return tell_memory(error);
     }
     const dea_symbols symbols = symbols_of(pool, p);
-    dea_status status = dea_network_build_symbols(&symbols, model->membrane ? &dea_model_ring : model, network, error);
+    dea_status status = dea_network_build_symbols(&symbols, model->stand_in ? model->stand_in : model, network, error);
     if (status == DEA_OK) {
         dea_network_stress counted[DEA_STRESSES];
         p->elements.stress_count = (size_t)dea_network_stresses(network, counted);
@@ -278,7 +251,7 @@ static void check_optics(const part *p, int *count)
 }
 
 /* Constants of the law, moduli in the part's unit of stress: those with a bound of their own are put behind it. */
-static void check_law(const part *p, const form *of, int *count)
+static void check_law(const part *p, const dea_model_part *of, int *count)
 {
     char name[DEA_PART_NAME], raw[2 * DEA_PART_NAME];
     line(p, "* constants of the law, moduli in units of %.0f Pa", of->stress);
@@ -316,7 +289,7 @@ static void check_ranges(const part *p, int count)
 }
 
 /* Every number that the network uses is in its range; how many checks that makes. */
-static int write_checks(const part *p, const form *of)
+static int write_checks(const part *p, const dea_model_part *of)
 {
     static const range ranges[] = {
         {"frame_radius", "radius", "1e-6", "1e3"},
@@ -523,7 +496,7 @@ static void write_rings(part *p)
     dea_part_text_source(text, DEA_VOLTAGE, "force", "force", "0", "[ok]*v(pull)*v(p,n)*v(p,n)");
 }
 
-static void write_body(part *p, const form *of)
+static void write_body(part *p, const dea_model_part *of)
 {
     declare(p);
     give_names(p);
@@ -613,7 +586,7 @@ size_t dea_part_parameters(const dea_scene *scene, const dea_model *model, dea_p
     add(list, &count, "layers", "1", "films of that thickness, electrically parallel", actuator->layers);
     add(list, &count, "prestretch", "1", "equi-biaxial pre-stretch", actuator->prestretch);
     add_film(scene, list, &count);
-    if (form_of(model)->modulus) {
+    if (model->part->modulus) {
         const double share = dea_material_long_term_share(&scene->material);
         add(list, &count, "modulus", "Pa", "operating modulus Y, 0: from the constants of the law",
             share * or_zero(scene->material.modulus));
@@ -654,9 +627,9 @@ static dea_status write_part(part *p, const dea_scene *defaults, const dea_model
     p->cards.text.symbols = symbol_names;
     dea_part_name_of(p->kind, model, own);
     name = name ? name : own;
-    line(p, "* %s: %s", name, form_of(model)->meaning);
+    line(p, "* %s: %s", name, model->part->meaning);
     write_header(p, name, list, dea_part_parameters(defaults, model, list));
-    write_body(p, form_of(model));
+    write_body(p, model->part);
     line(p, ".ends %s", name);
     return p->cards.text.exhausted ? tell_memory(error) : DEA_OK;
 }
@@ -682,7 +655,7 @@ static dea_status refuse_what_is_no_part(const dea_scene *scene, const dea_model
 dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, const char *name, const dea_dialect *dialect,
                           FILE *out, dea_error *error)
 {
-    if (!form_of(model)) {
+    if (!model->part) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is no circuit part: lumped, lame, coverage, ring and field are",
                         model->name);
     }
@@ -842,7 +815,7 @@ dea_status dea_part_library(const dea_dialect *dialect, FILE *out, dea_error *er
     write_preamble(dialect, "library of deaspice parts; the defaults are the film of 100 um in a frame of 30 mm, Elastosil 2030",
                    DEA_PART_PREFIX, out);
     for (size_t i = 0; i < dea_model_count(); i++) {
-        for (int kind = DEA_DOT; form_of(dea_model_at(i)) && kind <= DEA_LENS; kind++) {
+        for (int kind = DEA_DOT; dea_model_at(i)->part && kind <= DEA_LENS; kind++) {
             const dea_scene scene = dea_part_paper((dea_kind)kind);
             const dea_status status = dea_part_write(&scene, dea_model_at(i), NULL, dialect, out, error);
             if (status != DEA_OK) {

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "model/models.h"
+#include "geometry/point.h"
 
 enum { ELASTIC, LOAD, STEADY, FORCES };
 enum {

@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-#include "model/models.h"
+#include "geometry/point.h"
 #include "support/gauss.h"
 
 enum { TENSION, PUSH, CAPACITANCE, STRESSES, OUTPUTS = STRESSES + 2 * DEA_STRESSES };

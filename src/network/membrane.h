@@ -15,7 +15,19 @@
 
 #include "network/dynamics.h"
 #include "network/rings.h"
-#include "network/sheet.h"
+
+/* An electrode with a sheet resistance; network/sheet.h has its equations. */
+enum { DEA_SHEET_PLACES = DEA_RINGS_DEGREE + 1 };
+
+typedef struct dea_sheet {
+    size_t charges; /* that are unknown: of the places, but not of a rim at the source's own voltage; behind R_s alone 1, else 0 */
+    size_t places;  /* rings first ... first + places - 1 of the electrode, the last one fed; 0: it has one potential */
+    size_t first;
+    double conductance[DEA_SHEET_PLACES];                /* 2 pi R dR/rho of each [S m^2] */
+    double gradient[DEA_SHEET_PLACES][DEA_SHEET_PLACES]; /* D: dV/dR at a place by the potential at another [1/m] */
+    double leak[DEA_SHEET_PLACES];                       /* g [S] */
+    double front; /* width of charge that comes in from the rim, by the first sample, over the radius: sqrt(4 D t), D = 1/(c rho) [1] */
+} dea_sheet;
 
 typedef struct dea_membrane {
     dea_dynamics film; /* all of the scene's network but its functions of u: damper, branches, port */
@@ -117,35 +129,10 @@ typedef struct dea_membrane_rest {
 /* False where the film is not stable at rest, or LAPACK fails. */
 bool dea_membrane_at_rest(const dea_membrane *membrane, dea_membrane_rest *rest);
 
-/* Strain, displacement, force at the edge, largest true field, C, charge and state of a film at u, as its static row has them. */
+/* Strain, displacement, force at the edge, largest true field, C, charge and state of a film at u, as its static row has them. And
+ * those under the peak of a voltage that is not the same everywhere; the field is exact where lambda_1 lambda_2, times the share of
+ * that voltage, passes a limit. */
 void dea_membrane_row(const dea_membrane *membrane, const dea_membrane_look *look, double voltage, const double *u, dea_row *row);
-/* Current of the source at a moment [A]; its u and v are not looked at. */
-double dea_membrane_current(const dea_membrane *membrane, const dea_membrane_look *look, const dea_moment *moment,
-                            const double *v);
-/* Fills a row of a transient from a look at u; u and v of the moment are not looked at. False, and pull_in, where it has no numbers.
- */
-bool dea_membrane_sample(const dea_membrane *membrane, const dea_membrane_look *look, const dea_moment *moment, const double *u,
-                         const double *v, dea_sample *sample);
-
-/* Adds @p weight [s] times the powers at a moment to the audit. */
-void dea_membrane_audit_add(dea_audit *audit, const dea_membrane *membrane, const dea_membrane_look *look, const dea_moment *moment,
-                            const double *v, const double *z, double weight);
-/* Adds a jump of the displacements from u to @p to at constant z (no mass, no damper). */
-void dea_membrane_audit_jump(dea_audit *audit, const dea_membrane *membrane, const double *u, const double *to, const double *z);
-
-/* What is stored at a state [J]. */
-typedef struct dea_membrane_energy {
-    double electric;
-    double fed; /* that of it which follows the source at once: of the whole film without R_s, or of its rim */
-    double elastic; /* over that at rest, without springs of branches */
-    double springs; /* of the branches */
-    double kinetic;
-} dea_membrane_energy;
-
-dea_membrane_energy dea_membrane_energy_of(const dea_membrane *membrane, double voltage, const double *u, const double *v,
-                                           const double *z);
-/* Energies between a first and a last state, into the summary. */
-void dea_membrane_audit_close(const dea_audit *audit, const dea_membrane *membrane, const dea_membrane_energy *first,
-                              const dea_membrane_energy *last, dea_summary *summary);
-
+void dea_membrane_fill(const dea_membrane *membrane, const dea_membrane_look *look, double peak, const double *u, double limit,
+                       dea_row *row);
 #endif

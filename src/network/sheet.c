@@ -1,4 +1,4 @@
-#include "network/membrane.h"
+#include "network/sheet.h"
 
 #include <math.h>
 #include <string.h>
@@ -12,41 +12,6 @@ static size_t ring_of(const dea_sheet *s, size_t n)
 static size_t rim_of(const dea_sheet *s)
 {
     return s->places - 1;
-}
-
-static void set_places(const dea_scene *scene, dea_membrane *m)
-{
-    dea_sheet *s = &m->sheet;
-    const double layers = m->film.point.layers;
-    const double both = scene->electrode.sheet_resistance * (4.0 * layers - 2.0) / (layers * layers);
-    const bool dot = m->film.point.kind == DEA_DOT;
-    double volume = 0.0;
-    s->places = dot ? m->rings.mesh.disc : m->rings.mesh.annulus + 1; /* the disc has no ring at its centre */
-    s->first = dot ? 0 : m->rings.mesh.disc;
-    dea_rings_derivative(&m->rings, dot, s->gradient);
-    for (size_t n = 0; n < s->places; n++) {
-        volume += m->rings.rings[ring_of(s, n)].volume;
-    }
-    const double nominal = m->film.point.film.square / m->film.point.film_thickness; /* C = eps volume (lambda_pre^2/H)^2 at rest */
-    const double first = scene->transient.logarithmic ? scene->transient.first : scene->transient.every;
-    s->front = sqrt(4.0 * first * DEA_PI / (both * m->film.point.film.permittivity * volume * nominal * nominal));
-    for (size_t n = 0; n < s->places; n++) {
-        const double own = m->rings.rings[ring_of(s, n)].volume;
-        s->conductance[n] = own / m->film.point.film_thickness / both;
-        s->leak[n] = m->film.conductance * own / volume;
-    }
-}
-
-void dea_sheet_open(const dea_scene *scene, dea_membrane *m)
-{
-    m->sheet = (dea_sheet){.front = (double)INFINITY};
-    const bool currents = scene->study == DEA_STUDY_TRANSIENT || scene->study == DEA_STUDY_AC;
-    if (currents && scene->electrode.sheet_resistance > 0.0 && !scene->reduction.series) {
-        m->film.series = scene->drive.series_resistance > 0.0 ? scene->drive.series_resistance : 0.0;
-        set_places(scene, m);
-    }
-    const size_t behind = m->film.series > 0.0 ? 1 : 0;
-    m->sheet.charges = m->sheet.places > 0 ? m->sheet.places - 1 + behind : behind;
 }
 
 void dea_sheet_look(const dea_membrane *m, dea_membrane_look *look, const double *q, double source, dea_charges *c)

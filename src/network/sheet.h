@@ -11,24 +11,7 @@
 #ifndef DEA_SHEET_H
 #define DEA_SHEET_H
 
-#include "deaspice/scene.h"
-#include "network/rings.h"
-
-struct dea_membrane;
-struct dea_membrane_look;
-struct dea_moment;
-
-enum { DEA_SHEET_PLACES = DEA_RINGS_DEGREE + 1 };
-
-typedef struct dea_sheet {
-    size_t charges; /* that are unknown: of the places, but not of a rim at the source's own voltage; behind R_s alone 1, else 0 */
-    size_t places;  /* rings first ... first + places - 1 of the electrode, the last one fed; 0: it has one potential */
-    size_t first;
-    double conductance[DEA_SHEET_PLACES];                /* 2 pi R dR/rho of each [S m^2] */
-    double gradient[DEA_SHEET_PLACES][DEA_SHEET_PLACES]; /* D: dV/dR at a place by the potential at another [1/m] */
-    double leak[DEA_SHEET_PLACES];                       /* g [S] */
-    double front; /* width of charge that comes in from the rim, by the first sample, over the radius: sqrt(4 D t), D = 1/(c rho) [1] */
-} dea_sheet;
+#include "network/membrane.h"
 
 /* A film at a state. Each of `charges`; with places the rim behind them where the source is. */
 typedef struct dea_charges {
@@ -43,35 +26,32 @@ typedef struct dea_sheet_powers {
     double fed;  /* that a source without R_s puts in beyond what it stores in the rim */
 } dea_sheet_powers;
 
-/* Sets the sheet of a membrane whose film and rings are set; its series resistance becomes that of the drive alone. */
-void dea_sheet_open(const dea_scene *scene, struct dea_membrane *membrane);
-
 /* Potentials of a film at charges q [C] under a source voltage; those of the rings go into the look. */
-void dea_sheet_look(const struct dea_membrane *membrane, struct dea_membrane_look *look, const double *q, double source,
+void dea_sheet_look(const dea_membrane *membrane, dea_membrane_look *look, const double *q, double source,
                     dea_charges *charges);
 /* dq/dt of the charges [A]. */
-void dea_sheet_flows(const struct dea_membrane *membrane, const struct dea_membrane_look *look, const dea_charges *charges,
+void dea_sheet_flows(const dea_membrane *membrane, const dea_membrane_look *look, const dea_charges *charges,
                      double source, double *flows);
 /* -d(dq_n/dt)/dV_m [S], charges x charges, symmetric. */
-void dea_sheet_admittance(const struct dea_membrane *membrane, const struct dea_membrane_look *look, double *admittance);
+void dea_sheet_admittance(const dea_membrane *membrane, const dea_membrane_look *look, double *admittance);
 /* (1/2) dC_k/du of number k [N/V^2]. */
-void dea_sheet_push(const struct dea_membrane *membrane, const struct dea_membrane_look *look, size_t k, double *push);
+void dea_sheet_push(const dea_membrane *membrane, const dea_membrane_look *look, size_t k, double *push);
 /* Current of the source into a rim without R_s [A]: what stays there at velocities v, while the voltage changes by @p slope [V/s]; what
  * goes on from there into the sheets. Both 0 of an electrode that has no such rim. */
-double dea_sheet_rim_current(const struct dea_membrane *membrane, const struct dea_membrane_look *look, double source, double slope,
+double dea_sheet_rim_current(const dea_membrane *membrane, const dea_membrane_look *look, double source, double slope,
                              const double *v);
-double dea_sheet_through(const struct dea_membrane *membrane, const struct dea_membrane_look *look);
+double dea_sheet_through(const dea_membrane *membrane, const dea_membrane_look *look);
 /* Voltage where R_s ends: of the rim, or of a film without a potential along its electrode [V]. */
-double dea_sheet_rim_voltage(const struct dea_membrane *membrane, const struct dea_membrane_look *look, double voltage);
+double dea_sheet_rim_voltage(const dea_membrane *membrane, const dea_membrane_look *look, double voltage);
 /* Current of the leakage [A], of a look with potentials under a mean voltage. */
-double dea_sheet_leakage(const struct dea_membrane *membrane, const struct dea_membrane_look *look, double voltage);
+double dea_sheet_leakage(const dea_membrane *membrane, const dea_membrane_look *look, double voltage);
 /* Of an electrode with places, at a moment: where it knows the slopes of the charges better than the small drops along the sheets, from
  * those, as sum_n (V_rim - V_n) dq_n/dt and leakage. */
-dea_sheet_powers dea_sheet_powers_of(const struct dea_membrane *membrane, const struct dea_membrane_look *look,
-                                     const struct dea_moment *moment, const double *v);
+dea_sheet_powers dea_sheet_powers_of(const dea_membrane *membrane, const dea_membrane_look *look,
+                                     const dea_moment *moment, const double *v);
 /* Energy of the charges [J], without a rim at the source. */
-double dea_sheet_energy(const struct dea_membrane *membrane, const dea_charges *charges);
+double dea_sheet_energy(const dea_membrane *membrane, const dea_charges *charges);
 /* Fastest rate at which charges spread, no less than it is [1/s]. */
-double dea_sheet_fastest(const struct dea_membrane *membrane, const struct dea_membrane_look *look);
+double dea_sheet_fastest(const dea_membrane *membrane, const dea_membrane_look *look);
 
 #endif

@@ -5,7 +5,7 @@
 #define DEASPICE_OUTPUT_GNUPLOT_H
 
 #include "deaspice/plot.h"
-#include "output/atomic.h"
+#include "support/atomic.h"
 
 #include <stdio.h>
 

@@ -11,8 +11,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "output/atomic.h"
 #include "output/stream.h"
+#include "support/atomic.h"
 #include "support/clock.h"
 
 enum { IDENTITY_MOST = 1 << 20, LOCK_TRIES = 50, LOCK_WAIT_MS = 20, ROW_MOST = DEA_LAYOUT_COLUMNS * sizeof(double) + 1 };
@@ -658,29 +658,9 @@ dea_status dea_journal_read(const dea_journal_study *study, const char *path, de
     return journal_hand(opened, status, journal);
 }
 
-dea_shard dea_journal_shard(const dea_journal *journal)
+dea_journal_content dea_journal_tell(const dea_journal *journal)
 {
-    return journal->shard;
-}
-
-size_t dea_journal_points(const dea_journal *journal)
-{
-    return journal->points;
-}
-
-size_t dea_journal_lost(const dea_journal *journal)
-{
-    return journal->lost;
-}
-
-uint64_t dea_journal_cut(const dea_journal *journal)
-{
-    return journal->cut;
-}
-
-uint64_t dea_journal_damaged(const dea_journal *journal)
-{
-    return journal->damaged;
+    return (dea_journal_content){journal->shard, journal->points, journal->lost, journal->cut, journal->damaged};
 }
 
 bool dea_journal_wants(const dea_journal *journal, size_t block)

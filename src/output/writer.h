@@ -3,7 +3,7 @@
 #define DEASPICE_OUTPUT_WRITER_H
 
 #include "deaspice/output.h"
-#include "output/atomic.h"
+#include "support/atomic.h"
 
 typedef struct dea_format {
     const char *name; /* of --format, and the ending of files */

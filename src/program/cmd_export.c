@@ -4,8 +4,8 @@
 #include "netlist/export.h"
 #include "netlist/part.h"
 #include "netlist/symbol.h"
-#include "output/atomic.h"
 #include "program/program.h"
+#include "support/atomic.h"
 #include "support/memory_text.h"
 
 enum { MOST_NAMES = 8, PATH_ROOM = 4096 };

@@ -1,4 +1,3 @@
-#include <errno.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -7,8 +6,8 @@
 
 #include "deaspice/fit.h"
 #include "deaspice/plot.h"
-#include "output/atomic.h"
 #include "program/program.h"
+#include "support/atomic.h"
 #include "support/memory_text.h"
 
 /* Data and fits of one call. */

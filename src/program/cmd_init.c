@@ -2,8 +2,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "output/atomic.h"
 #include "program/program.h"
+#include "support/atomic.h"
 
 /* A scene to start from. */
 typedef struct start {

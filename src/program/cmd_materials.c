@@ -4,8 +4,8 @@
 
 #include "deaspice/material.h"
 #include "deaspice/plot.h"
-#include "output/atomic.h"
 #include "program/program.h"
+#include "support/atomic.h"
 #include "support/number.h"
 
 enum { CURVE_POINTS = 101, MOST_MATERIALS = 64, CURVE_COLUMNS = 4 };

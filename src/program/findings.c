@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "deaspice/model.h"
+#include "drive/wave.h"
 #include "program/omissions.h"
 #include "scene/line.h"
 #include "study/study.h"
@@ -283,7 +284,7 @@ static void print_aliases(const dea_findings *findings)
     if (findings->edge_count == 0 && dea_measure_lives(scene, &findings->summary) && every * resonance > aliased) {
         fprintf(stderr, "samples every %s alias the first resonance\n", DEA_QUANTITY(every, "s", 4));
     }
-    if (wave->kind == DEA_WAVE_SINE && wave->sine.amplitude != 0.0 && 2.0 * every * wave->sine.frequency > aliased) {
+    if (dea_wave_is_pure(wave) && wave->sine.amplitude != 0.0 && 2.0 * every * wave->sine.frequency > aliased) {
         fprintf(stderr, "samples every %s alias the displacement, which follows the square of a sine of %s; means do not rest on samples\n",
                 DEA_QUANTITY(every, "s", 4), DEA_QUANTITY(wave->sine.frequency, "Hz", 4));
     }

@@ -1,11 +1,9 @@
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "program/program.h"
 #include "support/text.h"
-#include "support/clock.h"
 
 void dea_complain(const char *format, ...)
 {

@@ -9,7 +9,6 @@
 
 #include "deaspice/fit.h"
 #include "deaspice/model.h"
-#include "netlist/dialect.h"
 #include "netlist/export.h"
 #include "program/options.h"
 #include "scene/keys.h"
@@ -191,7 +190,7 @@ static bool take_equibiaxial(const dea_option *entry, const char *value, dea_arg
     {                                                                                                                            \
         (void)room;                                                                                                              \
         const dea_##kind *row = dea_##kind##_at(index);                                                                          \
-        return row ? row->name : index == 0 || dea_##kind##_at(index - 1) ? more : NULL;                                         \
+        return row ? row->name : index == dea_##kind##_count() ? more : NULL;                                                   \
     }
 NAMES_OF(engine, "auto")
 NAMES_OF(law, "auto")

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "drive/wave.h"
 #include "network/dynamics.h"
 
 static const double band = 0.02;      /* of the change of an edge: within it the film has settled */
@@ -219,7 +220,7 @@ size_t dea_measure_edges(const dea_scene *scene, const dea_sample *samples, size
 {
     const dea_waveform *wave = &scene->drive.waveform;
     const double until = scene->transient.until;
-    if (wave->kind != DEA_WAVE_STEP) {
+    if (!dea_wave_settles(wave)) {
         return 0;
     }
     const double next = isnan(wave->period) ? until : fmin(wave->period + wave->step.on, until);
@@ -244,7 +245,7 @@ double dea_measure_interval(const dea_scene *scene, const dea_summary *summary)
 {
     const dea_transient *transient = &scene->transient;
     const dea_waveform *wave = &scene->drive.waveform;
-    if (!transient->logarithmic || wave->kind != DEA_WAVE_STEP || !isnan(wave->period)) {
+    if (!transient->logarithmic || !dea_wave_settles(wave) || !isnan(wave->period)) {
         return transient->every;
     }
     const double life = -log(band) / summary->decay; /* of an undamped swing without end */

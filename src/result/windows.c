@@ -6,6 +6,7 @@
 
 #include "deaspice/measures.h"
 #include "drive/signal.h"
+#include "drive/wave.h"
 #include "support/gauss.h"
 
 /* Samples in the shortest time in which the drive or the film turns, without which they may show something else. */
@@ -223,7 +224,7 @@ static void tell_harmonics(const dea_scene *scene, const trace *window, double a
 {
     const dea_sine *sine = &scene->drive.waveform.sine;
     const double periods = floor((window->to - window->from) * sine->frequency * (1.0 + 1e-12));
-    if (scene->drive.waveform.kind != DEA_WAVE_SINE || !(periods >= 1.0) || window->from < sine->delay) {
+    if (!dea_wave_is_pure(&scene->drive.waveform) || !(periods >= 1.0) || window->from < sine->delay) {
         return;
     }
     double complex fine[DEA_HARMONICS], coarse[DEA_HARMONICS];
@@ -261,7 +262,7 @@ static const dea_column window_columns[] = {
 const dea_column *dea_window_columns(const dea_scene *scene, size_t *count)
 {
     const size_t all = sizeof window_columns / sizeof *window_columns;
-    *count = scene->drive.waveform.kind == DEA_WAVE_SINE ? all : all - 2 * DEA_HARMONICS;
+    *count = dea_wave_is_pure(&scene->drive.waveform) ? all : all - 2 * DEA_HARMONICS;
     return window_columns;
 }
 

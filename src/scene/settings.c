@@ -144,7 +144,7 @@ static void alternatives_remove(setting_reader *self, const char *path)
 {
     const char *waves[DEA_WAVE_SINES + 1] = {"drive.waveform.file"};
     size_t count = 1;
-    for (dea_wave_kind kind = DEA_WAVE_STEP; dea_wave_of(kind); kind++) {
+    for (dea_wave_kind kind = DEA_WAVE_NONE + 1; dea_wave_of(kind); kind++) {
         waves[count++] = dea_wave_of(kind)->path;
     }
     const char *kinds[DEA_STUDIES], *overs[DEA_STUDIES + 1];

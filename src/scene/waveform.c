@@ -12,11 +12,13 @@
 /* The kind that a key of the waveform says; DEA_WAVE_NONE: it is no form of one. */
 static dea_wave_kind kind_of(const char *key)
 {
-    dea_wave_kind kind = strcmp(key, "file") == 0 ? DEA_WAVE_POINTS : DEA_WAVE_NONE;
-    for (dea_wave_kind i = DEA_WAVE_STEP; dea_wave_of(i) && kind == DEA_WAVE_NONE; i++) {
-        kind = strcmp(key, dea_wave_name(dea_wave_of(i))) == 0 ? i : kind;
+    for (dea_wave_kind i = DEA_WAVE_NONE + 1; dea_wave_of(i); i++) {
+        const char *alias = dea_wave_of(i)->alias;
+        if (strcmp(key, dea_wave_name(dea_wave_of(i))) == 0 || (alias && strcmp(key, alias) == 0)) {
+            return i;
+        }
     }
-    return kind;
+    return DEA_WAVE_NONE;
 }
 
 dea_status dea_read_waveform(dea_reader *reader, const dea_ref *ref, const dea_node *node)

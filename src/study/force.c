@@ -7,7 +7,6 @@
 #include "output/picture.h"
 #include "scene/key_forms.h"
 #include "study/study.h"
-#include "support/number.h"
 
 #define FORCE "study.force"
 #define DISPLACEMENT FORCE ".displacement"
@@ -116,6 +115,7 @@ const dea_study dea_study_force = {
     .rows = {"displacement", "displacements"},
     .along = true,
     .still = true,
+    .holds = true,
     .sign = "u",
     .model_fails = "has no edge that something could hold",
     .model_lacks = "the model has no edge that something could hold",

@@ -39,6 +39,7 @@ typedef struct dea_study {
     bool timed;    /* rows are dea_sample, and a dea_summary stands behind them */
     bool phasors;  /* rows are dea_response, and a dea_band stands behind them */
     bool still;    /* the film rests: no current flows */
+    bool holds;    /* the edge is held */
     bool stations; /* rows are dea_station, and a dea_weakest stands behind them */
     bool waveform; /* takes a waveform instead of drive.voltage */
     const char *bias;      /* key of the voltage that it has instead of drive.voltage, NULL: none */

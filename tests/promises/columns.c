@@ -17,14 +17,6 @@ static const struct {
     {offsetof(dea_sample, capacitance), "capacitance"},
 };
 
-/* How far off the truth of a column may be [its unit]; the others follow from displacement and voltage. */
-static double doubt(const true_run *run, size_t offset)
-{
-    return offset == offsetof(dea_sample, velocity)  ? run->velocity_error
-           : offset == offsetof(dea_sample, current) ? run->current_error
-                                                     : 0.0;
-}
-
 static bool has(const judged *j, size_t offset)
 {
     for (size_t i = 0; i < j->layout.column_count; i++) {
@@ -60,7 +52,7 @@ column_error columns_error(const judged *j, size_t point, const dea_sample *rows
     for (size_t c = 0; c < sizeof columns / sizeof *columns; c++) {
         const size_t offset = columns[c].offset;
         const double promise = dea_scales_allowance(offset) * number_at(&scale, offset);
-        if (has(j, offset) && doubt(truth, offset) <= 0.1 * accuracy * promise) {
+        if (has(j, offset) && number_at(&truth->errors, offset) <= 0.1 * accuracy * promise) {
             hold(truth, rows, c, promise, &worst);
         }
     }

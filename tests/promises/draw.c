@@ -1,5 +1,5 @@
 /* Random scenes of all studies, written as the YAML that the program reads, so that what is judged is what --dump shows. */
-#include "promises.h"
+#include "draws.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,110 +8,7 @@
 #include "../unit/random_transients.h"
 #include "scene/reader.h"
 
-enum { TEXT = 16384, SWEEP_POINTS = 6, BRANCHES = 8 };
-
-typedef struct paper {
-    char *text;
-    size_t used;
-} paper;
-
-static void put(paper *p, const char *format, ...) DEA_PRINTF(2, 3);
-
-static void put(paper *p, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    const int length = vsnprintf(p->text + p->used, TEXT - p->used, format, arguments);
-    va_end(arguments);
-    p->used += length > 0 ? (size_t)length : 0;
-}
-
-static void put_given(paper *p, const char *key, double value, const char *unit)
-{
-    if (!isnan(value)) {
-        put(p, "  %s: %.17g %s\n", key, value, unit);
-    }
-}
-
-static void put_actuator(paper *p, const dea_actuator *a)
-{
-    put(p, "actuator:\n  kind: %s\n", a->kind == DEA_DOT ? "dot" : "lens");
-    put(p, "  frame_radius: %.17g m\n  coverage: %.17g\n", a->frame_radius, a->coverage);
-    put(p, "  film_thickness: %.17g m\n  prestretch: %.17g\n", a->film_thickness, a->prestretch);
-    put_given(p, "electrode_mass", a->electrode_mass, "kg/m^2");
-    if (!isnan(a->focal_length)) {
-        put(p, "  optics: {focal_length: %.17g m, refractive_index: %.17g}\n", a->focal_length, a->refractive_index);
-    }
-}
-
-/* One law as a mapping of its constants, or a list of such mappings. */
-static void put_law(paper *p, const dea_material *m)
-{
-    const dea_law *law = m->law;
-    put(p, "  %s: %s", law->name, law->entries > 1 ? "[" : "");
-    for (size_t entry = 0; entry < m->entry_count; entry++) {
-        put(p, "%s", entry > 0 ? ", " : "");
-        for (size_t i = 0; i < law->constant_count; i++) {
-            const dea_constant *constant = &law->constants[i];
-            const char *unit = constant->modulus ? " Pa" : "";
-            put(p, "%s%s: %.17g%s", i > 0 ? ", " : "{", constant->name, m->constants[entry * law->constant_count + i], unit);
-        }
-        put(p, "}");
-    }
-    put(p, "%s\n", law->entries > 1 ? "]" : "");
-}
-
-static void put_material(paper *p, const dea_material *m)
-{
-    put(p, "material:\n");
-    put_law(p, m);
-    put(p, "  permittivity: {constant: %.17g, per_stretch: %.17g}\n", m->permittivity, m->permittivity_per_stretch);
-    put_given(p, "density", m->density, "kg/m^3");
-    put_given(p, "retardation", m->retardation, "s");
-    put_given(p, "modulus", m->modulus, "Pa");
-    put_given(p, "breakdown", m->breakdown, "V/m");
-    if (m->prony_count > 0) {
-        put(p, "  moduli: %s\n  prony:\n", m->instantaneous ? "instantaneous" : "long-term");
-    }
-    for (size_t i = 0; i < m->prony_count; i++) {
-        put(p, "    - {g: %.17g, tau: %.17g s}\n", m->prony[i].g, m->prony[i].tau);
-    }
-}
-
-static void put_wave(paper *p, const dea_waveform *w)
-{
-    put(p, "  waveform:\n");
-    if (w->kind == DEA_WAVE_STEP) {
-        put(p, "    step: {on: %.17g s, voltage: %.17g V, rise: %.17g s", w->step.on, w->step.voltage, w->step.rise);
-        if (!isnan(w->step.off)) {
-            put(p, ", off: %.17g s", w->step.off);
-        }
-        put(p, "}\n");
-    } else if (w->kind == DEA_WAVE_SINE) {
-        put(p, "    sine: {offset: %.17g V, amplitude: %.17g V, frequency: %.17g Hz, phase: %.17g rad, delay: %.17g s}\n",
-            w->sine.offset, w->sine.amplitude, w->sine.frequency, w->sine.phase, w->sine.delay);
-    } else {
-        put(p, "    points:\n");
-        for (size_t i = 0; i < w->point_count; i++) {
-            put(p, "      - [%.17g s, %.17g V]\n", w->times[i], w->voltages[i]);
-        }
-    }
-    if (!isnan(w->period)) {
-        put(p, "    period: %.17g s\n", w->period);
-    }
-}
-
-static void put_drive(paper *p, const dea_scene *scene)
-{
-    put(p, "drive:\n");
-    put_given(p, "series_resistance", scene->drive.series_resistance, "Ohm");
-    put_given(p, "leakage_resistance", scene->drive.leakage_resistance, "Ohm");
-    if (scene->study == DEA_STUDY_TRANSIENT) {
-        put_wave(p, &scene->drive.waveform);
-    } else {
-        put(p, "  voltage: %.17g V\n", scene->drive.voltage);
-    }
-}
+enum { SWEEP_POINTS = 6, BRANCHES = 8 };
 
 /* ---- materials and geometry */
 
@@ -215,7 +112,7 @@ static void soften(dea_scene *scene)
 }
 
 /* W11 at rest [Pa]. */
-static double stiffness_of(const dea_scene *scene)
+double stiffness_of(const dea_scene *scene)
 {
     double constants[DEA_LAW_CONSTANTS];
     dea_material_long_term(&scene->material, constants);
@@ -223,16 +120,97 @@ static double stiffness_of(const dea_scene *scene)
 }
 
 /* First resonance of a film of that frame, roughly [Hz]. */
-static double pace_of(const dea_scene *scene)
+double pace_of(const dea_scene *scene)
 {
     const double wave = sqrt(stiffness_of(scene) / scene->material.density);
     return 0.6 * scene->actuator.prestretch / scene->actuator.frame_radius * wave;
 }
 
-static void draw_film(uint64_t *seed, dea_scene *scene)
+/* ---- beside the film */
+
+static void draw_skin(uint64_t *seed, dea_scene *scene)
+{
+    dea_electrode *e = &scene->electrode;
+    const double share = random_decades(seed, 1e-3, 1.0); /* of the film's stiffness */
+    e->law = dea_law_find(random_chance(seed, 0.7) ? "neo_hookean" : "yeoh");
+    e->entry_count = 1;
+    e->thickness = scene->actuator.film_thickness * random_decades(seed, 0.01, 1.0);
+    e->constants[0] = share * stiffness_of(scene) * scene->actuator.film_thickness / (8.0 * e->thickness);
+    e->constants[1] = e->law == dea_law_find("yeoh") ? 0.1 * e->constants[0] : 0.0;
+    e->density = random_chance(seed, 0.5) ? random_between(seed, 900.0, 1500.0) : (double)NAN;
+}
+
+static void draw_load(uint64_t *seed, dea_scene *scene)
+{
+    const dea_actuator *a = &scene->actuator;
+    const double thickness = a->layers * a->film_thickness, stiffness = 4.0 * DEA_PI * thickness * stiffness_of(scene);
+    const double mass = 1000.0 * DEA_PI * thickness * pow(a->frame_radius / a->prestretch, 2.0);
+    if (random_chance(seed, 0.4)) {
+        *dea_scene_load(scene, "mass") = mass * random_decades(seed, 1e-3, 10.0);
+    }
+    if (random_chance(seed, 0.4)) {
+        *dea_scene_load(scene, "stiffness") = stiffness * random_decades(seed, 1e-3, 10.0);
+    }
+    if (random_chance(seed, 0.4)) {
+        *dea_scene_load(scene, "damping") = sqrt(stiffness * mass) * random_decades(seed, 1e-3, 1.0);
+    }
+    if (random_chance(seed, 0.4)) {
+        const double room = fmin(a->coverage, 1.0 - a->coverage) * a->frame_radius; /* of the edge */
+        *dea_scene_load(scene, "force") = stiffness * room * random_between(seed, -0.15, 0.15);
+    }
+}
+
+/* 10 K and more above and below the temperature of the data. */
+static void draw_temperature(uint64_t *seed, dea_material *m)
+{
+    const double reference = random_between(seed, 270.0, 320.0), rise = random_between(seed, -30.0, 60.0);
+    const bool stiffens = random_chance(seed, 0.5), shifts = random_chance(seed, 0.5);
+    m->temperature = reference + rise;
+    if (stiffens || !shifts) {
+        m->modulus_slope = random_between(seed, -2e-3, 4e-3);
+        m->modulus_reference = reference;
+    }
+    if (shifts && random_chance(seed, 0.6)) {
+        m->shift.c1 = random_between(seed, 2.0, 18.0);
+        m->shift.c2 = random_between(seed, 50.0, 200.0);
+        m->shift.reference = reference;
+    } else if (shifts) {
+        m->shift.count = 3;
+        for (int i = 0; i < 3; i++) {
+            m->shift.table[i][0] = reference + 60.0 * (i - 1);
+            m->shift.table[i][1] = pow(random_between(seed, 5.0, 30.0), 1 - i);
+        }
+    }
+}
+
+void draw_beside(uint64_t seed, double share, dea_scene *scene)
+{
+    dea_material *m = &scene->material;
+    uint64_t own = seed ^ UINT64_C(0x5851F42D4C957F2D);
+    if (random_chance(&own, share)) {
+        scene->actuator.layers = 1.0 + (double)(int)random_decades(&own, 1.0, 20.0);
+    }
+    if (random_chance(&own, share)) {
+        draw_skin(&own, scene);
+    }
+    if (random_chance(&own, share)) {
+        draw_load(&own, scene);
+    }
+    if (random_chance(&own, share)) {
+        m->permittivity_follows = true;
+        m->permittivity_per_stretch = m->permittivity_per_stretch == 0.0 ? random_between(&own, -0.1, 0.1) * m->permittivity
+                                                                         : m->permittivity_per_stretch;
+    }
+    if (random_chance(&own, share)) {
+        draw_temperature(&own, m);
+    }
+}
+
+void draw_film(uint64_t *seed, dea_scene *scene)
 {
     dea_actuator *a = &scene->actuator;
     *scene = random_scene(seed);
+    dea_scene_unload(scene);
     a->prestretch = random_chance(seed, 0.6) ? random_between(seed, 1.05, 1.6) : random_between(seed, 1.6, 4.0);
     draw_material(seed, a->prestretch, &scene->material);
     a->coverage = random_chance(seed, 0.3)
@@ -243,10 +221,11 @@ static void draw_film(uint64_t *seed, dea_scene *scene)
     if (!(stiffness_of(scene) > 0.0)) {
         soften(scene);
     }
+    draw_beside(*seed, 0.1, scene);
 }
 
 /* Voltage at which a film pulls in, or one that strains it well. */
-static double limit_voltage(dea_scene *scene, const char *model)
+double limit_voltage(dea_scene *scene, const char *model)
 {
     for (int i = 0; i < 2; i++) {
         const double most =
@@ -288,11 +267,15 @@ static void draw_sweep(uint64_t *seed, paper *p)
     draw_film(seed, &scene);
     const dea_model *model = dea_model_at((size_t)((double)dea_model_count() * random_unit(seed)));
     scene.actuator.kind = model->lens ? scene.actuator.kind : DEA_DOT;
+    if (!model->edge) {
+        *dea_scene_load(&scene, "stiffness") = *dea_scene_load(&scene, "force") = (double)NAN;
+    }
+    *dea_scene_load(&scene, "mass") = *dea_scene_load(&scene, "damping") = (double)NAN; /* at rest they do nothing */
     const double limit = limit_voltage(&scene, model->name), kind = random_unit(seed);
     const double share = scene.drive.leakage_resistance / (scene.drive.leakage_resistance + scene.drive.series_resistance);
     const double source = limit / (isnan(share) ? 1.0 : share);
     scene.drive.voltage = source * random_between(seed, 0.1, 0.9);
-    put_actuator(p, &scene.actuator);
+    put_actuator(p, &scene);
     put_material(p, &scene.material);
     put_drive(p, &scene);
     put(p, "model: %s\n", model->name);
@@ -307,7 +290,7 @@ static void draw_sweep(uint64_t *seed, paper *p)
 
 /* ---- motion */
 
-static void draw_motion(uint64_t *seed, dea_scene *scene, double until)
+void draw_motion(uint64_t *seed, dea_scene *scene, double until)
 {
     dea_material *m = &scene->material;
     m->prony_count = random_chance(seed, 0.4) ? 0 : 1 + (size_t)(BRANCHES * random_unit(seed));
@@ -319,7 +302,7 @@ static void draw_motion(uint64_t *seed, dea_scene *scene, double until)
     m->retardation = random_chance(seed, 0.4) ? until * random_decades(seed, 1e-5, 1e-1) : (double)NAN;
 }
 
-static void draw_ports(uint64_t *seed, dea_scene *scene, double time)
+void draw_ports(uint64_t *seed, dea_scene *scene, double time)
 {
     const dea_actuator *a = &scene->actuator;
     const double capacitance = 1e-10 * pow(a->frame_radius * a->prestretch, 2.0) / a->film_thickness;
@@ -340,13 +323,16 @@ static const char *draw_mover(uint64_t *seed, dea_scene *scene, bool heavy)
 {
     static const char *const models[] = {"lumped", "lame", "coverage", "ring"};
     draw_film(seed, scene);
+    *dea_scene_load(scene, "mass") = heavy ? *dea_scene_load(scene, "mass") : (double)NAN;
     scene->material.density = heavy ? random_between(seed, 900.0, 1200.0) : (double)NAN;
-    scene->actuator.electrode_mass = heavy && random_chance(seed, 0.3) ? random_decades(seed, 1e-3, 0.1) : (double)NAN;
+    const bool weighed = scene->electrode.law && !isnan(scene->electrode.density); /* that of the skin is all then */
+    const double areal = heavy && random_chance(seed, 0.3) ? random_decades(seed, 1e-3, 0.1) : (double)NAN;
+    scene->actuator.electrode_mass = weighed ? (double)NAN : areal;
     return models[(int)(4.0 * random_unit(seed))];
 }
 
 /* Squeezes the waveform into a period of which the run holds some. */
-static void repeat(uint64_t *seed, dea_waveform *w, double until)
+void repeat(uint64_t *seed, dea_waveform *w, double until)
 {
     const double period = until / random_between(seed, 1.5, 6.0), squeeze = period / (1.3 * until);
     if (w->kind == DEA_WAVE_SINE) {
@@ -363,7 +349,7 @@ static void repeat(uint64_t *seed, dea_waveform *w, double until)
 }
 
 /* A rise is a jump, or no shorter than edges can be. */
-static void lengthen(dea_waveform *w)
+void lengthen(dea_waveform *w)
 {
     if (w->kind == DEA_WAVE_STEP && w->step.rise < DEA_EDGE_MIN) {
         w->step.rise = 0.0;
@@ -371,7 +357,7 @@ static void lengthen(dea_waveform *w)
 }
 
 /* Windows of means: none, or up to three, the whole run too. */
-static void put_windows(uint64_t *seed, paper *p, double until)
+void put_windows(uint64_t *seed, paper *p, double until)
 {
     const int count = (int)random_between(seed, -2.0, 4.0);
     for (int i = 0; i < count; i++) {
@@ -403,7 +389,7 @@ static void draw_transient(uint64_t *seed, paper *p)
     }
     lengthen(&scene.drive.waveform);
     draw_ports(seed, &scene, run->until);
-    put_actuator(p, &scene.actuator);
+    put_actuator(p, &scene);
     put_material(p, &scene.material);
     put_drive(p, &scene);
     put(p, "model: %s\nstudy:\n  transient: {until: %.17g s, every: %.17g s, start: %s", model, run->until, run->every,
@@ -423,7 +409,7 @@ static void draw_response(uint64_t *seed, paper *p)
     draw_motion(seed, &scene, 1.0 / centre);
     scene.drive.voltage = random_between(seed, 0.05, 0.95) * limit_voltage(&scene, model);
     draw_ports(seed, &scene, 1.0 / centre);
-    put_actuator(p, &scene.actuator);
+    put_actuator(p, &scene);
     put_material(p, &scene.material);
     put_drive(p, &scene);
     put(p, "model: %s\nstudy:\n  ac: {from: %.17g Hz, to: %.17g Hz, points_per_decade: %d}\n", model,
@@ -431,13 +417,20 @@ static void draw_response(uint64_t *seed, paper *p)
         (int)random_between(seed, 3.0, 12.0));
 }
 
-char *draw_scene(uint64_t seed, size_t number)
+/* A stream of its own for each scene. */
+uint64_t stream_of(uint64_t seed, size_t number)
 {
     uint64_t own = (seed + 1u) * UINT64_C(0x9E3779B97F4A7C15) ^ ((uint64_t)number + 1u) * UINT64_C(0xD1B54A32D192ED03);
-    paper p = {.text = malloc(TEXT)};
     for (int i = 0; i < 8; i++) {
         (void)random_unit(&own);
     }
+    return own;
+}
+
+char *draw_scene(uint64_t seed, size_t number)
+{
+    uint64_t own = stream_of(seed, number);
+    paper p = {.text = malloc(TEXT)};
     if (p.text) {
         put(&p, "title: promise %zu of seed %llu\n", number, (unsigned long long)seed);
         const double kind = random_unit(&own);

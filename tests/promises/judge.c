@@ -8,6 +8,7 @@
 
 #include "scene/line.h"
 #include "promises.h"
+#include "radial.h"
 
 enum { COLUMNS = 9 };
 
@@ -79,6 +80,7 @@ static dea_scene scene_at(const judged *j, size_t point)
 {
     dea_scene here = j->scene;
     dea_axes_place(&here, point);
+    here.accuracy = j->tightest;
     return here;
 }
 
@@ -100,10 +102,18 @@ static void find_truth(judged *j, size_t point)
     }
 }
 
+void judge_find(judged *j)
+{
+    for (size_t i = 0; i < j->points && !j->found; i++) {
+        find_truth(j, i);
+    }
+    j->found = true;
+}
+
 bool judge_open(judged *j, const char *text, size_t number)
 {
     dea_error error = {0};
-    *j = (judged){.number = number};
+    *j = (judged){.number = number, .tightest = 1e-12};
     if (dea_scene_parse(text, strlen(text), "promise", ".", NULL, 0, NULL, &j->scene, &error) != DEA_OK) {
         fprintf(stderr, "scene %zu: %s\n", number, error.message);
         return false;
@@ -113,9 +123,6 @@ bool judge_open(judged *j, const char *text, size_t number)
     j->truth = calloc(j->points, j->layout.point_size);
     j->errors = calloc(j->points, sizeof *j->errors);
     j->runs = calloc(j->points, sizeof *j->runs);
-    for (size_t i = 0; i < j->points; i++) {
-        find_truth(j, i);
-    }
     return true;
 }
 
@@ -164,6 +171,20 @@ static bool near_limit(const judged *j, size_t point, size_t row, dea_state stat
     return false;
 }
 
+/* Errors of stretches and stresses along the radius over that of the edge, relative to the accuracy. */
+static const double along_radius = 20.0;
+
+/* A membrane's state follows from its stretches all along the radius. */
+static bool near_margin(const judged *j, size_t point, size_t row, dea_state state, double u_peak, double accuracy)
+{
+    const radial_margins *margins = &j->runs[point].margins[row];
+    dea_sample sample;
+    memcpy(&sample, row_of(j, j->truth, point, row), sizeof sample);
+    const bool breaks = state == DEA_STATE_BREAKDOWN || sample.state == DEA_STATE_BREAKDOWN;
+    const double strain = fmin(1.0, sample.displacement != 0.0 ? u_peak * fabs(sample.strain / sample.displacement) : 1.0);
+    return breaks ? margins->strength <= along_radius * accuracy : margins->tension <= along_radius * accuracy * strain;
+}
+
 /* A sample's state follows from displacement and film voltage, each good to the accuracy of its peak. */
 static bool near_sample(const judged *j, size_t point, size_t row, dea_state state, double u_peak, double accuracy)
 {
@@ -205,22 +226,14 @@ static double gap(measure how, double a, double b, double scale, double peak)
     return !(off > 0.0) && isfinite(off) ? 0.0 : isfinite(off) ? off / over : (double)INFINITY;
 }
 
-/* What the largest voltage would do at rest, a hundredth of it. */
-static void set_least(const judged *j, const column *chosen, size_t count, double *least)
+/* A hundredth of what the largest voltage would do at rest. */
+static void set_least(const judged *j, size_t point, const column *chosen, size_t count, double *least)
 {
-    const dea_waveform *w = &j->scene.drive.waveform;
-    double volts = fabs(w->step.voltage);
-    volts = w->kind == DEA_WAVE_SINE ? fabs(w->sine.offset) + fabs(w->sine.amplitude) : volts;
-    for (size_t i = 0; w->kind == DEA_WAVE_POINTS && i < w->point_count; i++) {
-        volts = fmax(i == 0 ? 0.0 : volts, fabs(w->voltages[i]));
-    }
+    const double u = least_swing * j->runs[point].still;
     const true_film film = film_of(&j->scene, j->scene.models[0]);
-    const true_edge e = film_edge(&film, 0.0L);
-    const double push = fabs((double)e.push.value) * volts * volts;
-    const double u = fmin(push / (double)edge_viscous(&e), (double)fminl(film.divide, film.frame - film.divide));
     const dea_sample swing = {.displacement = u, .strain = u / (double)film.divide};
     for (size_t c = 0; c < count; c++) {
-        least[c] = least_swing * number_at(&swing, chosen[c].offset);
+        least[c] = number_at(&swing, chosen[c].offset);
     }
 }
 
@@ -240,6 +253,9 @@ static bool states_agree(const judged *j, size_t point, size_t row, dea_state go
         return true;
     }
     const bool sampled = j->scene.study == DEA_STUDY_TRANSIENT;
+    if (sampled && j->runs[point].margins && wanted != DEA_STATE_PULL_IN && got != DEA_STATE_PULL_IN) {
+        return near_margin(j, point, row, got, u_peak, accuracy);
+    }
     return (sampled && got != DEA_STATE_PULL_IN && wanted != DEA_STATE_PULL_IN &&
             near_sample(j, point, row, got, u_peak, accuracy)) ||
            near_limit(j, point, row, got, accuracy);
@@ -262,7 +278,7 @@ static found compare(const judged *j, const void *points, double accuracy)
     const size_t count = columns_of(j, chosen);
     found worst = {.column = ""};
     if (j->scene.study == DEA_STUDY_TRANSIENT) {
-        set_least(j, chosen, count, least);
+        set_least(j, 0, chosen, count, least); /* a transient is drawn with one point */
     }
     for (size_t c = 0; c < count; c++) {
         for (size_t p = 0; p < j->points; p++) {
@@ -411,6 +427,7 @@ bool judge_engine(judged *j, const dea_engine *engine, double accuracy, tally *t
         count_reason(t, "refused", why);
         return false;
     }
+    judge_find(j);
     hearing h = {.j = j, .points = calloc(j->points, j->layout.point_size)};
     dea_error error = {0};
     const dea_run_options options = {.jobs = 1, .points = hear_points, .log = hear_line, .user = &h};

@@ -1,7 +1,7 @@
 /* The exact membrane of physics.md, section 3, by its energy: with x = ln(R/R_a) and e = lambda_2 - lambda_pre,
  *
  *     lambda_2 = lambda_pre + e,   lambda_1 = lambda_pre + e + de/dx,
- *     Pi/(2 pi H R_a^2) = 1/2 [W - k lambda^4/2]_disc + int e^(2x) [W - k lambda_1^2 lambda_2^2/2] dx,
+ *     Pi/(2 pi n H R_a^2) = 1/2 [W - k lambda^4/2]_disc + int e^(2x) [W - k lambda_1^2 lambda_2^2/2] dx + loads at the edge,
  *
  * e by polynomials on elements of the annulus. The equilibrium is followed from 0 V as the load grows (tangent, then Newton). It
  * is stable as long as all pivots of the second derivative are positive; the last one is what a force on the edge would feel, and
@@ -11,6 +11,8 @@
 
 #include <math.h>
 #include <stdlib.h>
+
+#include "legendre.h"
 
 enum { DEGREE = 12, SHAPES = DEGREE + 1, PLACES = DEGREE + 2, MOST_ELEMENTS = 64, MOST = MOST_ELEMENTS * DEGREE, NEWTON = 8 };
 
@@ -24,20 +26,16 @@ static const long double widest = 0.35L;       /* element to begin with, in ln R
 static const double good = 1e-14;              /* relative change of a row from one mesh to the next */
 static const long double lost = 1e-3L;         /* share of the stiffness at rest below which it counts as gone */
 
-/* Shapes on -1..1 at a place: two linear ones and integrated Legendre polynomials, with two derivatives. */
-typedef struct shape {
-    long double value[SHAPES], slope[SHAPES], curve[SHAPES];
-} shape;
-
 typedef struct membrane {
     const true_film *film;
-    long double load;   /* M at full voltage [Pa] */
+    long double load;   /* (U/H)^2 at full voltage [V^2/m^2] */
+    bool steady;        /* the steady force on the edge grows, without voltage */
     long double width;  /* of an element, in x */
     int elements, size; /* unknowns, from the frame to the edge */
     shape at[PLACES];
     long double place[PLACES], weight[PLACES];
     long double stiffness[MOST][DEGREE + 1]; /* row i: columns i - DEGREE ... i */
-    long double force[MOST], pull[MOST];     /* dPi/de and its derivative over the load */
+    long double force[MOST], pull[MOST];     /* dPi/de and its derivative over the share of what grows */
     shape begin;                             /* at -1, the end of an element towards the edge */
     long double least_s11;                   /* smallest over places and begins [Pa] */
 } membrane;
@@ -49,47 +47,13 @@ typedef struct tension {
 
 /* ---- shapes */
 
-static shape shape_at(long double xi)
-{
-    shape s = {{0.0L}, {0.0L}, {0.0L}};
-    long double p[SHAPES] = {1.0L, xi}, d[SHAPES] = {0.0L, 1.0L};
-    for (int n = 2; n < SHAPES; n++) {
-        p[n] = ((2.0L * n - 1.0L) * xi * p[n - 1] - (n - 1.0L) * p[n - 2]) / n;
-        d[n] = d[n - 2] + (2.0L * n - 1.0L) * p[n - 1];
-    }
-    s.value[0] = 0.5L * (1.0L - xi);
-    s.value[1] = 0.5L * (1.0L + xi);
-    s.slope[0] = -0.5L;
-    s.slope[1] = 0.5L;
-    for (int n = 2; n < SHAPES; n++) {
-        const long double norm = sqrtl(2.0L * (2.0L * n - 1.0L));
-        s.value[n] = (p[n] - p[n - 2]) / norm;
-        s.slope[n] = (2.0L * n - 1.0L) * p[n - 1] / norm;
-        s.curve[n] = (2.0L * n - 1.0L) * d[n - 1] / norm;
-    }
-    return s;
-}
-
-/* Places and weights of Gauss on -1..1, by Newton's method from their asymptotic places. */
 static void set_places(membrane *m)
 {
+    gauss_rule(PLACES, m->place, m->weight);
     for (int i = 0; i < PLACES; i++) {
-        long double x = -cosl(pi * (i + 0.75L) / (PLACES + 0.5L)), slope = 1.0L;
-        for (int k = 0; k < 20; k++) {
-            long double before = 1.0L, p = x;
-            for (int n = 2; n <= PLACES; n++) {
-                const long double next = ((2.0L * n - 1.0L) * x * p - (n - 1.0L) * before) / n;
-                before = p;
-                p = next;
-            }
-            slope = PLACES * (x * p - before) / (x * x - 1.0L);
-            x -= p / slope;
-        }
-        m->place[i] = x;
-        m->weight[i] = 2.0L / ((1.0L - x * x) * slope * slope);
-        m->at[i] = shape_at(x);
+        m->at[i] = shape_at(DEGREE, m->place[i]);
     }
-    m->begin = shape_at(-1.0L);
+    m->begin = shape_at(DEGREE, -1.0L);
 }
 
 /* Unknown of a shape of an element, -1 at the frame. Element 0 lies at the frame, and x runs from the edge. */
@@ -101,12 +65,21 @@ static int unknown(int element, int number)
 
 /* ---- stresses */
 
-/* At lambda_pre + d1, lambda_pre + d2. */
-static tension tension_at(const true_film *f, long double k, long double d1, long double d2)
+/* At lambda_pre + d1, lambda_pre + d2, of disc or annulus, where it is electroded under (U/H)^2 = k. */
+static tension tension_at(const true_film *f, bool disc, long double k, long double d1, long double d2)
 {
     const long double l1 = f->prestretch + d1, l2 = f->prestretch + d2, area = l1 * l2;
     const true_stress p = film_stress(f, d1, d2);
-    return (tension){p.p1 - k * area * l2, p.p2 - k * area * l1, p.w11 - k * l2 * l2, p.w12 - 2.0L * k * area, p.w22 - k * l1 * l1};
+    if (disc != f->dot) {
+        return (tension){p.p1, p.p2, p.w11, p.w12, p.w22};
+    }
+    const true_stress skin = film_skin(f, d1, d2);
+    const true_electric e = film_electric(f, area);
+    return (tension){p.p1 + skin.p1 - k * e.first * area * l2,
+                     p.p2 + skin.p2 - k * e.first * area * l1,
+                     p.w11 + skin.w11 - k * e.second * l2 * l2,
+                     p.w12 + skin.w12 - k * (e.first + e.second) * area,
+                     p.w22 + skin.w22 - k * e.second * l1 * l1};
 }
 
 /* e, de/dx and its derivative at a place of an element. */
@@ -137,6 +110,7 @@ static void note_ellipticity(membrane *m, long double l1, long double l2, long d
     m->least_s11 = is_film ? fminl(m->least_s11, s11) : -(long double)INFINITY;
 }
 
+/* Of a place of the annulus. */
 static void add_place(membrane *m, int element, int place, const long double *e, long double k)
 {
     const shape *s = &m->at[place];
@@ -144,7 +118,8 @@ static void add_place(membrane *m, int element, int place, const long double *e,
     const long double weight = 0.5L * m->width * m->weight[place] * expl(2.0L * x);
     const strain here = strain_at(m, e, element, s);
     const long double d2 = here.e, d1 = here.e + here.slope, l1 = m->film->prestretch + d1, l2 = m->film->prestretch + d2;
-    const tension t = tension_at(m->film, k, d1, d2);
+    const tension t = tension_at(m->film, false, k, d1, d2);
+    const long double drive = m->film->dot || m->steady ? 0.0L : m->load * film_electric(m->film, l1 * l2).first;
     note_ellipticity(m, l1, l2, t.s11);
     for (int i = 0; i < SHAPES; i++) {
         const int row = unknown(element, i);
@@ -154,7 +129,7 @@ static void add_place(membrane *m, int element, int place, const long double *e,
             continue;
         }
         m->force[row] += weight * (t.s1 * b1 + t.s2 * b2);
-        m->pull[row] -= weight * l1 * l2 * (l2 * b1 + l1 * b2);
+        m->pull[row] -= weight * drive * l1 * l2 * (l2 * b1 + l1 * b2);
         for (int j = 0; j < SHAPES; j++) {
             const int column = unknown(element, j);
             if (column >= 0 && column <= row) {
@@ -164,11 +139,12 @@ static void add_place(membrane *m, int element, int place, const long double *e,
     }
 }
 
+/* Derivatives of the energy at a share of what grows: of the voltage's square or, while that is 0, of the steady force. */
 static void derive(membrane *m, const long double *e, long double share)
 {
     const true_film *f = m->film;
     const int edge = m->size - 1;
-    const long double k = share * m->load, disc = f->dot ? k : 0.0L, annulus = f->dot ? 0.0L : k;
+    const long double k = m->steady ? 0.0L : share * m->load;
     for (int i = 0; i < m->size; i++) {
         m->force[i] = m->pull[i] = 0.0L;
         for (int j = 0; j <= DEGREE; j++) {
@@ -179,19 +155,17 @@ static void derive(membrane *m, const long double *e, long double share)
     for (int i = 0; i < m->elements; i++) {
         const strain end = strain_at(m, e, i, &m->begin);
         const long double l2 = f->prestretch + end.e;
-        note_ellipticity(m, l2 + end.slope, l2, tension_at(f, annulus, end.e + end.slope, end.e).s11);
+        note_ellipticity(m, l2 + end.slope, l2, tension_at(f, false, k, end.e + end.slope, end.e).s11);
         for (int q = 0; q < PLACES; q++) {
-            add_place(m, i, q, e, annulus);
+            add_place(m, i, q, e, k);
         }
     }
-    for (int i = 0; i < m->size && f->dot; i++) {
-        m->pull[i] = 0.0L; /* only the disc is driven */
-    }
-    const tension t = tension_at(f, disc, e[edge], e[edge]);
-    const long double l = f->prestretch + e[edge];
-    m->force[edge] += t.s1;
-    m->stiffness[edge][DEGREE] += t.s11 + t.s12;
-    m->pull[edge] -= f->dot ? l * l * l : 0.0L;
+    const tension t = tension_at(f, true, k, e[edge], e[edge]);
+    const long double l = f->prestretch + e[edge], whole = 2.0L * pi * f->layers * f->thickness, radius = f->divide / f->prestretch;
+    const long double push = f->load_force / (whole * radius); /* u = R_a e */
+    m->force[edge] += t.s1 + f->load_stiffness / whole * e[edge] - (m->steady ? share : 1.0L) * push;
+    m->stiffness[edge][DEGREE] += t.s11 + t.s12 + f->load_stiffness / whole;
+    m->pull[edge] -= m->steady ? push : f->dot ? m->load * film_electric(f, l * l).first * l * l * l : 0.0L;
 }
 
 /* L D L^T within the band, in place; false where a pivot is not positive. The last pivot is the stiffness of the edge. */
@@ -286,7 +260,7 @@ static bool settle(membrane *m, long double share, long double most, long double
 
 typedef enum end { AT_LOAD, FOLDED, LOST } end;
 
-/* Follows the equilibrium from 0 V to the full load. */
+/* Follows the equilibrium from none to all of what grows. */
 static end follow(membrane *m, long double *e)
 {
     long double share = 0.0L, ahead = 1.0L, tangent[MOST], next[MOST];
@@ -304,7 +278,7 @@ static end follow(membrane *m, long double *e)
         }
         const long double stiffness = m->stiffness[m->size - 1][DEGREE];
         for (int i = 0; i < m->size; i++) {
-            tangent[i] = -m->load * m->pull[i];
+            tangent[i] = -m->pull[i];
         }
         solve(m, tangent);
         const long double rate = largest(m, tangent);
@@ -344,7 +318,7 @@ static long double area_slope(const membrane *m, const strain *s)
 static void widen(const membrane *m, const strain *s, long double k, extremes *x)
 {
     const long double l2 = m->film->prestretch + s->e, l1 = l2 + s->slope;
-    const tension t = tension_at(m->film, k, s->e + s->slope, s->e);
+    const tension t = tension_at(m->film, false, k, s->e + s->slope, s->e);
     x->area = fmaxl(x->area, l1 * l2);
     x->stress = fminl(x->stress, m->film->tension + fminl(t.s1, t.s2));
 }
@@ -354,22 +328,22 @@ static extremes extremes_of(const membrane *m, const long double *e)
 {
     enum { GRID = 16 };
     const true_film *f = m->film;
-    const long double k = f->dot ? 0.0L : m->load, edge = e[m->size - 1];
-    extremes x = {f->tension + tension_at(f, f->dot ? m->load : 0.0L, edge, edge).s1, 0.0L};
+    const long double k = m->load, edge = e[m->size - 1];
+    extremes x = {f->tension + tension_at(f, true, k, edge, edge).s1, 0.0L};
     for (int i = 0; i < m->elements; i++) {
         for (int g = 0; g < GRID; g++) {
             long double low = -1.0L + 2.0L * g / GRID, high = -1.0L + 2.0L * (g + 1) / GRID;
-            shape s = shape_at(low);
+            shape s = shape_at(DEGREE, low);
             strain here = strain_at(m, e, i, &s);
             widen(m, &here, k, &x);
             const bool rises = area_slope(m, &here) > 0.0L;
             for (int n = 0; rises && n < 64; n++) {
                 const long double middle = 0.5L * (low + high);
-                s = shape_at(middle);
+                s = shape_at(DEGREE, middle);
                 here = strain_at(m, e, i, &s);
                 *(area_slope(m, &here) > 0.0L ? &low : &high) = middle;
             }
-            s = shape_at(high);
+            s = shape_at(DEGREE, high);
             here = strain_at(m, e, i, &s);
             widen(m, &here, k, &x);
         }
@@ -377,21 +351,21 @@ static extremes extremes_of(const membrane *m, const long double *e)
     return x;
 }
 
-/* eps times the area of the deformed film over its thickness there, (2 pi eps/H) int (lambda_1 lambda_2)^2 R dR [F]. */
+/* eps times the area of the deformed film over its thickness there, (2 pi n/H) int eps (lambda_1 lambda_2)^2 R dR [F]. */
 static long double capacitance_of(const membrane *m, const long double *e)
 {
     const true_film *f = m->film;
     const long double radius = f->divide / f->prestretch, disc = f->prestretch + e[m->size - 1];
-    long double sum = f->dot ? 0.5L * disc * disc * disc * disc : 0.0L;
+    long double sum = f->dot ? 0.5L * film_electric(f, disc * disc).own * disc * disc * disc * disc : 0.0L;
     for (int i = 0; i < m->elements && !f->dot; i++) {
         for (int q = 0; q < PLACES; q++) {
             const long double x = m->width * (m->elements - i - 0.5L + 0.5L * m->place[q]);
             const strain s = strain_at(m, e, i, &m->at[q]);
             const long double area = (f->prestretch + s.e) * (f->prestretch + s.e + s.slope);
-            sum += 0.5L * m->width * m->weight[q] * expl(2.0L * x) * area * area;
+            sum += 0.5L * m->width * m->weight[q] * expl(2.0L * x) * film_electric(f, area).own * area * area;
         }
     }
-    return 2.0L * pi * f->permittivity / f->thickness * radius * radius * sum;
+    return 2.0L * pi * f->layers / f->thickness * radius * radius * sum;
 }
 
 static dea_row row_at(const membrane *m, const long double *e, long double voltage)
@@ -402,7 +376,8 @@ static dea_row row_at(const membrane *m, const long double *e, long double volta
     const extremes x = extremes_of(m, e);
     const long double field = fabsl(voltage) / f->thickness * (f->dot ? disc * disc : x.area);
     const long double radial = f->dot ? disc : disc + behind.slope; /* of the electroded side */
-    const long double force = sign * 2.0L * pi * f->thickness * m->load * (f->divide / l) * radial * disc * disc;
+    const long double stress = m->load * film_electric(f, radial * disc).first * radial * disc * disc;
+    const long double force = sign * 2.0L * pi * f->layers * f->thickness * (f->divide / l) * stress;
     return film_state(f, (true_numbers){edge / l, force, field, capacitance_of(m, e), voltage, x.stress > 0.0L});
 }
 
@@ -430,12 +405,12 @@ static void halve_elements(membrane *m, long double *e)
     set_mesh(m, 2 * m->elements);
     for (int i = 0; i < m->elements; i++) {
         const long double middle = i % 2 == 0 ? 0.5L : -0.5L; /* of the halves, the first lies towards the frame */
-        const shape begin = shape_at(middle - 0.5L);
+        const shape begin = shape_at(DEGREE, middle - 0.5L);
         e[unknown(i, 0)] = strain_at(coarse, known, i / 2, &begin).e;
         for (int n = 2; n < SHAPES; n++) {
             long double sum = 0.0L;
             for (int q = 0; q < PLACES; q++) {
-                const shape there = shape_at(middle + 0.5L * m->place[q]);
+                const shape there = shape_at(DEGREE, middle + 0.5L * m->place[q]);
                 sum += m->weight[q] * m->at[q].slope[n] * strain_at(coarse, known, i / 2, &there).slope * 0.5L * m->width;
             }
             e[unknown(i, n)] = sum;
@@ -488,13 +463,16 @@ true_row membrane_truth(const true_film *film, long double voltage)
         return truth;
     }
     m->film = film;
-    m->load = film->permittivity * nominal * nominal;
+    m->load = nominal * nominal;
     set_places(m);
     end last = LOST;
     for (int n = 2 + (int)(length / widest); 2 * n <= MOST_ELEMENTS && isinf(truth.error); n *= 2) {
         long double e[MOST] = {0.0L};
         set_mesh(m, n);
-        const end reached = follow(m, e);
+        m->steady = true;
+        end reached = film->load_force != 0.0L ? follow(m, e) : AT_LOAD;
+        m->steady = false;
+        reached = reached == AT_LOAD ? follow(m, e) : reached;
         if (reached == AT_LOAD) {
             truth.error = refine(m, e, voltage, &truth.row);
         } else if (reached == FOLDED && last == FOLDED) { /* on two meshes */

@@ -7,23 +7,14 @@
 #include <string.h>
 
 #include "drive/signal.h"
+#include "radau.h"
+#include "radial.h"
 #include "truths.h"
 
-enum { STAGES = 6, UNKNOWNS = 2 * STAGES, NEWTON = 20 };
+enum { UNKNOWNS = STAGE_UNKNOWNS, NEWTON = 20 };
 
 static const double most_steps = 60000.0;
 static const long double nearly = 0.02L; /* share of what is there at rest below which it counts as lost */
-static const long double pi = 3.14159265358979323846264338327950288L;
-
-typedef struct square {
-    long double at[STAGES][STAGES];
-} square;
-
-/* The method: places of the stages, their weights, and the inverse of these. */
-typedef struct method {
-    long double place[STAGES];
-    square weight, slope;
-} method;
 
 typedef struct state {
     long double u, v, w, q; /* displacement, velocity, film voltage, charge */
@@ -49,188 +40,16 @@ typedef struct motion {
     bool gone; /* pulled in */
 } motion;
 
-/* ---- linear algebra */
-
-static bool solve(int n, long double a[UNKNOWNS][UNKNOWNS], long double *x)
-{
-    for (int k = 0; k < n; k++) {
-        int pivot = k;
-        for (int i = k + 1; i < n; i++) {
-            pivot = fabsl(a[i][k]) > fabsl(a[pivot][k]) ? i : pivot;
-        }
-        if (!(fabsl(a[pivot][k]) > 0.0L)) {
-            return false;
-        }
-        for (int j = 0; j < n && pivot != k; j++) {
-            const long double swap = a[k][j];
-            a[k][j] = a[pivot][j];
-            a[pivot][j] = swap;
-        }
-        const long double swap = x[k];
-        x[k] = x[pivot];
-        x[pivot] = swap;
-        for (int i = k + 1; i < n; i++) {
-            const long double share = a[i][k] / a[k][k];
-            for (int j = k; j < n; j++) {
-                a[i][j] -= share * a[k][j];
-            }
-            x[i] -= share * x[k];
-        }
-    }
-    for (int k = n - 1; k >= 0; k--) {
-        for (int j = k + 1; j < n; j++) {
-            x[k] -= a[k][j] * x[j];
-        }
-        x[k] /= a[k][k];
-    }
-    return true;
-}
-
-static square inverse_of(const square *of)
-{
-    square inverse;
-    for (int column = 0; column < STAGES; column++) {
-        long double a[UNKNOWNS][UNKNOWNS] = {{0.0L}}, x[UNKNOWNS] = {0.0L};
-        x[column] = 1.0L;
-        for (int i = 0; i < STAGES; i++) {
-            for (int j = 0; j < STAGES; j++) {
-                a[i][j] = of->at[i][j];
-            }
-        }
-        (void)solve(STAGES, a, x);
-        for (int i = 0; i < STAGES; i++) {
-            inverse.at[i][column] = x[i];
-        }
-    }
-    return inverse;
-}
-
-/* ---- the method */
-
-static long double legendre(int n, long double x, long double *before)
-{
-    long double p = 1.0L, last = 0.0L;
-    for (int k = 1; k <= n; k++) {
-        const long double next = ((2.0L * k - 1.0L) * x * p - (k - 1.0L) * last) / k;
-        last = p;
-        p = next;
-    }
-    *before = last;
-    return p;
-}
-
-/* P_n - share P_(n-1): its roots are the places of Gauss (0) and of Radau (1). */
-static long double polynomial(int n, long double share, long double x)
-{
-    long double before;
-    const long double p = legendre(n, x, &before);
-    return p - share * before;
-}
-
-static void find_places(int n, long double share, long double *place)
-{
-    enum { GRID = 4000 };
-    int found = 0;
-    for (int i = 0; i < GRID && found < n; i++) {
-        long double low = -1.0L + 2.0L * i / GRID, high = -1.0L + 2.0L * (i + 1) / GRID;
-        if (i == GRID - 1 && share > 0.0L) {
-            break;
-        }
-        if (polynomial(n, share, low) * polynomial(n, share, high) < 0.0L || polynomial(n, share, low) == 0.0L) {
-            for (int k = 0; k < 80; k++) {
-                const long double middle = 0.5L * (low + high);
-                *(polynomial(n, share, low) * polynomial(n, share, middle) <= 0.0L ? &high : &low) = middle;
-            }
-            place[found++] = 0.5L * (1.0L + 0.5L * (low + high));
-        }
-    }
-    if (share > 0.0L) {
-        place[n - 1] = 1.0L;
-    }
-}
-
-static long double lagrange(const long double *place, int number, long double x)
-{
-    long double value = 1.0L;
-    for (int i = 0; i < STAGES; i++) {
-        value *= i == number ? 1.0L : (x - place[i]) / (place[number] - place[i]);
-    }
-    return value;
-}
-
-static method radau_method(void)
-{
-    method m;
-    long double gauss[STAGES];
-    find_places(STAGES, 1.0L, m.place);
-    find_places(STAGES, 0.0L, gauss);
-    for (int i = 0; i < STAGES; i++) {
-        for (int j = 0; j < STAGES; j++) {
-            long double sum = 0.0L;
-            for (int k = 0; k < STAGES; k++) {
-                long double before;
-                const long double x = 2.0L * gauss[k] - 1.0L, p = legendre(STAGES, x, &before);
-                const long double slope = STAGES * (x * p - before) / (x * x - 1.0L);
-                const long double weight = 1.0L / ((1.0L - x * x) * slope * slope);
-                sum += weight * lagrange(m.place, j, m.place[i] * gauss[k]);
-            }
-            m.weight.at[i][j] = m.place[i] * sum;
-        }
-    }
-    m.slope = inverse_of(&m.weight);
-    return m;
-}
-
 /* ---- one step */
 
-/* Source voltage a time behind the begin of the segment. */
 static long double source_at(const motion *m, long double time)
 {
-    const dea_segment *s = m->segment;
-    const dea_tone *sine = &m->signal.curve.tones[0];
-    if (s->sine) {
-        const long double turns = (long double)sine->frequency * (s->from + time - (long double)s->origin);
-        return m->factor * (m->signal.curve.offset + sine->amplitude * sinl(2.0L * pi * (turns - floorl(turns)) + sine->phase));
-    }
-    return m->factor * (s->start + ((long double)s->end - s->start) * (time / ((long double)s->to - s->from)));
+    return m->factor * true_source(&m->signal, m->segment, time);
 }
 
 static long double source_slope(const motion *m, long double time)
 {
-    const dea_segment *s = m->segment;
-    const dea_tone *sine = &m->signal.curve.tones[0];
-    if (s->sine) {
-        const long double pace = 2.0L * pi * (long double)sine->frequency;
-        const long double turns = (long double)sine->frequency * (s->from + time - (long double)s->origin);
-        return m->factor * sine->amplitude * pace * cosl(2.0L * pi * (turns - floorl(turns)) + sine->phase);
-    }
-    return m->factor * ((long double)s->end - s->start) / ((long double)s->to - s->from);
-}
-
-/* (1 + h/tau A)^-1 and that times h/tau A, for each branch. */
-typedef struct lag {
-    square rest, gain;
-} lag;
-
-static lag lag_of(const motion *m, long double pace)
-{
-    lag l;
-    square sum;
-    for (int i = 0; i < STAGES; i++) {
-        for (int j = 0; j < STAGES; j++) {
-            sum.at[i][j] = (i == j ? 1.0L : 0.0L) + pace * m->radau.weight.at[i][j];
-        }
-    }
-    l.rest = inverse_of(&sum);
-    for (int i = 0; i < STAGES; i++) {
-        for (int j = 0; j < STAGES; j++) {
-            l.gain.at[i][j] = 0.0L;
-            for (int k = 0; k < STAGES; k++) {
-                l.gain.at[i][j] += l.rest.at[i][k] * pace * m->radau.weight.at[k][j];
-            }
-        }
-    }
-    return l;
+    return m->factor * true_source_slope(&m->signal, m->segment, time);
 }
 
 /* What Newton's method works on: changes of u from the begin of the step, film voltages, and what follows from them. */
@@ -306,13 +125,13 @@ static void equations(const motion *m, const state *from, long double h, const l
     for (int i = 0; i < STAGES; i++) {
         const true_edge *e = &s->edge[i];
         const long double w = s->volts[i];
-        r[i] = f->mass * s->a[i] + e->tension.value - e->push.value * w * w;
+        r[i] = f->mass * s->a[i] + f->load_damping * s->v[i] + e->tension.value - e->push.value * w * w;
         for (int j = 0; j < STAGES; j++) {
             long double inertia = 0.0L;
             for (int k = 0; k < STAGES; k++) {
                 inertia += d->at[i][k] * d->at[k][j];
             }
-            a[i][j] = f->mass * inertia / (h * h);
+            a[i][j] = f->mass * inertia / (h * h) + f->load_damping * d->at[i][j] / h;
         }
         a[i][i] += e->tension.slope - e->push.slope * w * w;
         for (int k = 0; k < e->count; k++) {
@@ -358,7 +177,7 @@ static bool newton(const motion *m, const state *from, long double h, const lag 
         follow_stages(m, from, h, lags, s);
         equations(m, from, h, lags, s, a, r);
         balance_rows(n, m, a, r);
-        if (!solve(n, a, r)) {
+        if (!dense_solve(n, a, r)) {
             return false;
         }
         for (int k = 0; k < n; k++) {
@@ -384,7 +203,7 @@ static bool step_by(const motion *m, const state *from, long double time, long d
     lag lags[DEA_PRONY_MAX];
     stages s;
     for (size_t b = 0; b < f->branches; b++) {
-        lags[b] = lag_of(m, h / f->tau[b]);
+        lags[b] = lag_of(&m->radau, h / f->tau[b]);
     }
     for (int i = 0; i < STAGES; i++) {
         s.source[i] = source_at(m, time + h * m->radau.place[i]);
@@ -506,7 +325,7 @@ static bool jump(motion *m, state *s, long double to)
 
 static bool is_free(const true_film *f)
 {
-    return f->mass == 0.0L && f->retardation == 0.0L;
+    return f->mass == 0.0L && f->retardation == 0.0L && f->load_damping == 0.0L;
 }
 
 /* Velocity: of the mass, the state's. Without one it follows from the balance of forces, with neither mass nor damper from the
@@ -518,9 +337,9 @@ static long double velocity_of(const motion *m, long double time, const state *s
     if (f->mass > 0.0L) {
         return s->v;
     }
-    if (f->retardation > 0.0L) {
+    if (!is_free(f)) {
         const long double rest = e.push.value * s->w * s->w - held_force(f, &e, s);
-        return rest / (f->retardation * edge_viscous(&e));
+        return rest / (f->retardation * edge_viscous(&e) + f->load_damping);
     }
     const long double pull = 2.0L * e.push.value * s->w; /* dF/dU */
     long double rate = 0.0L, slope = source_slope(m, time);
@@ -713,9 +532,9 @@ static bool start(motion *m, state *s)
 {
     const true_film *f = &m->film;
     *s = (state){0};
-    if (m->scene->transient.from_bias) {
+    if (m->scene->transient.from_bias || f->load_force != 0.0L) {
         m->segment = m->signal.segments;
-        s->w = f->kept * source_at(m, 0.0L);
+        s->w = m->scene->transient.from_bias ? f->kept * source_at(m, 0.0L) : 0.0L;
         s->u = still_displacement(f, s->w);
         if (isnan(s->u)) {
             return false;
@@ -794,14 +613,20 @@ double number_at(const void *row, size_t offset)
     return value;
 }
 
-/* Largest difference of a column [its unit]. */
-static double apart(const motion *m, const dea_sample *a, size_t count, size_t offset)
+void raise_errors(dea_sample *errors, const dea_sample *a, const dea_sample *b, size_t count)
 {
-    double most = 0.0;
+    static const size_t offsets[] = {offsetof(dea_sample, displacement), offsetof(dea_sample, strain), offsetof(dea_sample, velocity),
+                                     offsetof(dea_sample, force), offsetof(dea_sample, current), offsetof(dea_sample, charge),
+                                     offsetof(dea_sample, focal_length), offsetof(dea_sample, film_voltage),
+                                     offsetof(dea_sample, capacitance)};
     for (size_t i = 0; i < count; i++) {
-        most = fmax(most, fabs(number_at(&a[i], offset) - number_at(&m->samples[i], offset)));
+        for (size_t k = 0; k < sizeof offsets / sizeof *offsets; k++) {
+            const double gap = fabs(number_at(&a[i], offsets[k]) - number_at(&b[i], offsets[k]));
+            double most = number_at(errors, offsets[k]);
+            most = fmax(most, gap); /* a column that there is not is NAN in both */
+            memcpy((char *)errors + offsets[k], &most, sizeof most);
+        }
     }
-    return most;
 }
 
 /* Mean of u over a window, NAN where the motion ends before it [m]. */
@@ -841,14 +666,14 @@ static void solve_twice(motion *m, true_run *run_out)
     take_means(m, run_out);
     run_out->good = m->done;
     run_out->error = count == m->done ? 1e-16 + gap(m, first, count) : (double)INFINITY;
-    run_out->velocity_error = apart(m, first, count, offsetof(dea_sample, velocity));
-    run_out->current_error = apart(m, first, count, offsetof(dea_sample, current));
+    raise_errors(&run_out->errors, first, second, count);
     run_out->steps = m->steps;
     run_out->why = m->why;
     free(first);
 }
 
-true_run moving_truth(const dea_scene *scene, const dea_model *model, double factor)
+/* That of a film with one node. */
+static true_run edge_motion(const dea_scene *scene, const dea_model *model, double factor)
 {
     dea_error error = {0};
     motion *m = calloc(1, sizeof *m);
@@ -864,18 +689,29 @@ true_run moving_truth(const dea_scene *scene, const dea_model *model, double fac
     } else {
         truth.why = "no signal";
     }
+    const true_edge e = film_edge(&m->film, 0.0L);
+    const double push = fabs((double)e.push.value) * m->signal.largest * m->signal.largest;
+    truth.still = fmin(push / (double)edge_viscous(&e), (double)fminl(m->film.divide, m->film.frame - m->film.divide));
+    dea_signal_close(&m->signal);
+    free(m);
+    return truth;
+}
+
+true_run moving_truth(const dea_scene *scene, const dea_model *model, double factor)
+{
+    true_run truth = model->membrane ? radial_motion(scene, model, factor) : edge_motion(scene, model, factor);
     const double none = (double)NAN;
     for (size_t i = truth.good; i < truth.count; i++) {
         const double time = dea_layout_place(scene, i);
         truth.samples[i] = (dea_sample){time, none, none, none, none, none, none, none, none, none, none, DEA_STATE_PULL_IN, {none, none, none, none}};
     }
-    dea_signal_close(&m->signal);
-    free(m);
     return truth;
 }
 
 void true_run_free(true_run *of)
 {
     free(of->samples);
+    free(of->margins);
     of->samples = NULL;
+    of->margins = NULL;
 }

@@ -10,6 +10,8 @@
 
 /* YAML of the scene of that number; freed by the caller. */
 char *draw_scene(uint64_t seed, size_t number);
+/* The same of membranes that move (films.c). */
+char *draw_moving_film(uint64_t seed, size_t number);
 /* The same of one kind of transients, which names its accuracy (stalls.c). */
 char *draw_stall(uint64_t seed, size_t number);
 
@@ -36,6 +38,8 @@ typedef struct tally {
 typedef struct judged {
     dea_scene scene;
     size_t number;
+    double tightest; /* accuracy that it will be judged at; a truth need not be much better */
+    bool found;     /* the truth, which is looked for once an engine takes the scene */
     void *truth;    /* points as the layout has them */
     double *errors; /* of each point */
     dea_layout layout;
@@ -45,6 +49,8 @@ typedef struct judged {
 } judged;
 
 bool judge_open(judged *j, const char *text, size_t number);
+/* Finds the truth, unless it is found already; judge_engine() does so once an engine takes the scene. */
+void judge_find(judged *j);
 void judge_close(judged *j);
 /* Runs an engine at one accuracy; adds to the tally. True where the promise was broken; *text then says how. */
 bool judge_engine(judged *j, const dea_engine *engine, double accuracy, tally *t, char *text, size_t size);

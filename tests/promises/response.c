@@ -2,7 +2,7 @@
 #include <complex.h>
 #include <math.h>
 
-#include "truths.h"
+#include "radial.h"
 
 static const long double pi = 3.14159265358979323846264338327950288L;
 
@@ -18,7 +18,7 @@ static dea_response response_at(const true_film *f, const true_edge *e, long dou
 {
     const number s = I * (2.0L * pi * frequency);
     const long double spring = edge_viscous(e);
-    number stiffness = f->mass * s * s + spring * s * f->retardation + edge_relaxed(e).slope - e->push.slope * u_bias * u_bias;
+    number stiffness = f->mass * s * s + (spring * f->retardation + f->load_damping) * s + edge_relaxed(e).slope - e->push.slope * u_bias * u_bias;
     for (size_t i = 0; i < f->branches; i++) {
         stiffness += spring * f->share[i] * (s * f->tau[i] / (1.0L + s * f->tau[i]));
     }
@@ -34,6 +34,9 @@ static dea_response response_at(const true_film *f, const true_edge *e, long dou
 
 double response_truth(const dea_scene *scene, const dea_model *model, dea_response *rows)
 {
+    if (model->membrane) {
+        return radial_response(scene, model, rows);
+    }
     const true_film f = film_of(scene, model);
     const size_t count = dea_layout_of(scene).rows;
     const long double bias = f.kept * (long double)scene->ac.bias;

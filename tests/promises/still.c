@@ -19,17 +19,21 @@ static dea_row refused(void)
 
 typedef struct branch {
     const true_film *film;
-    long double load;  /* eps lambda_pre^4 (U/H)^2 [Pa] */
-    long double ratio; /* strain that the passive film gives back */
+    long double load;        /* what grows: lambda_pre^4 (U/H)^2, U^2, or the force on the edge */
+    long double ratio;       /* strain that the passive film gives back */
+    long double base, toward; /* displacement from which a film with an edge goes, and its sense */
+    bool steady;              /* the force on the edge grows, without voltage */
 } branch;
 
 typedef long double share_function(branch *b, long double place);
 
+/* Stress of the electroded film less that of the passive one, over that of the voltage. */
 static long double balance_share(branch *b, long double e)
 {
-    const long double s = 1.0L + e;
-    const long double active = film_cauchy_change(b->film, e), passive = film_cauchy_change(b->film, -b->ratio * e);
-    return (active - passive) / (b->load * s * s * s * s);
+    const true_film *f = b->film;
+    const long double s = 1.0L + e, l = f->prestretch * s;
+    const long double active = film_cauchy_change(f, e) + film_skin_change(f, e), passive = film_cauchy_change(f, -b->ratio * e);
+    return (active - passive) / (b->load * film_electric(f, l * l).first * s * s * s * s);
 }
 
 /* Place between two where the share is 1. */
@@ -113,21 +117,43 @@ static long double first_place(branch *b, share_function *share, long double siz
     return none;
 }
 
-/* Share of U^2 that holds a film of rings at u. */
-static long double ring_share(branch *b, long double u)
+/* Share of the load that holds a film with an edge at a distance from where it rests. */
+static long double edge_share(branch *b, long double distance)
 {
-    const true_edge e = film_edge(b->film, u);
-    return edge_relaxed(&e).value / (e.push.value * b->load);
+    const true_film *f = b->film;
+    const true_edge e = film_edge(f, b->base + b->toward * distance);
+    const long double held = edge_relaxed(&e).value + (b->steady ? f->load_force : 0.0L);
+    return held / ((b->steady ? 1.0L : e.push.value) * b->load);
+}
+
+/* Moves the base along what grows; false where there is no equilibrium. */
+static bool grow(branch *b, bool steady, long double load)
+{
+    const true_film *f = b->film;
+    const true_edge e = film_edge(f, b->base);
+    const long double size = fminl(f->divide, f->frame - f->divide);
+    b->steady = steady;
+    b->load = load;
+    b->toward = (steady ? load : e.push.value) < 0.0L ? -1.0L : 1.0L;
+    if (load == 0.0L || !(edge_relaxed(&e).slope > 0.0L)) {
+        return load == 0.0L;
+    }
+    const long double room = b->toward > 0.0L ? f->frame - f->divide - b->base : f->divide + b->base;
+    const long double place = first_place(b, edge_share, size, room * (1.0L - 1e-9L));
+    b->base += b->toward * place;
+    return !isnan(place);
 }
 
 static long double balance(const true_film *f, long double ratio, long double voltage)
 {
     const long double l2 = f->prestretch * f->prestretch, nominal = voltage / f->thickness;
-    branch b = {.film = f, .load = f->permittivity * l2 * l2 * nominal * nominal, .ratio = ratio};
+    branch b = {.film = f, .load = l2 * l2 * nominal * nominal, .ratio = ratio};
     if (b.load == 0.0L) {
         return 0.0L;
     }
-    if (!(film_cauchy(f, f->prestretch).slope > 0.0L)) {
+    const long double skin = film_skin(f, 0.0L, 0.0L).w11 + film_skin(f, 0.0L, 0.0L).w12;
+    const long double active = film_cauchy(f, f->prestretch).slope + f->prestretch * skin;
+    if (!(active + ratio * film_cauchy(f, f->prestretch).slope > 0.0L)) {
         return none;
     }
     const long double end = ratio > 0.0L ? 1.0L / ratio : far;
@@ -136,12 +162,13 @@ static long double balance(const true_film *f, long double ratio, long double vo
 
 /* ---- all models */
 
+/* Eq. 4 takes the permittivity at the pre-stretch for its force, Eq. 13 that of the strained film. */
 static dea_row free_row(const true_film *f, long double voltage, bool constant_force)
 {
-    const long double l2 = f->prestretch * f->prestretch, nominal = voltage / f->thickness;
-    const long double pressure = f->permittivity * l2 * l2 * nominal * nominal,
-                      section = 2.0L * pi * f->divide * f->thickness / l2;
-    const long double x = pressure / f->modulus;
+    const long double l = f->prestretch, l2 = l * l, nominal = voltage / f->thickness;
+    const long double square = l2 * l2 * nominal * nominal, section = 2.0L * pi * f->divide * f->layers * f->thickness / l2;
+    const true_stress skin = film_skin(f, 0.0L, 0.0L);
+    const long double pressure = film_electric(f, l2).first * square, x = pressure / (f->modulus + l * (skin.w11 + skin.w12));
     long double s = 0.0L;
     if (constant_force) {
         s = balance(f, 0.0L, voltage);
@@ -151,11 +178,12 @@ static dea_row free_row(const true_film *f, long double voltage, bool constant_f
     if (isnan(s)) {
         return refused();
     }
-    const long double a = 1.0L + s, field = fabsl(nominal) * l2 * a * a;
-    const long double rest = f->permittivity * l2 / f->thickness * pi * f->divide * f->divide;
+    const long double a = 1.0L + s, area = l2 * a * a;
+    const true_electric e = film_electric(f, area);
+    const long double rest = e.own * f->layers * l2 / f->thickness * pi * f->divide * f->divide;
     return film_state(f, (true_numbers){.strain = s,
-                                        .force = pressure * section * (constant_force ? a * a * a : 1.0L),
-                                        .field = field,
+                                        .force = section * (constant_force ? e.first * square * a * a * a : pressure),
+                                        .field = fabsl(nominal) * area,
                                         .capacitance = rest * a * a * a * a,
                                         .voltage = voltage,
                                         .taut = true});
@@ -163,22 +191,20 @@ static dea_row free_row(const true_film *f, long double voltage, bool constant_f
 
 long double still_displacement(const true_film *f, long double voltage)
 {
-    const true_edge e = film_edge(f, 0.0L);
-    if (strcmp(f->model, "coverage") == 0) {
+    const bool hyper = strcmp(f->model, "coverage") == 0, loaded = f->load_stiffness > 0.0L || f->load_force != 0.0L;
+    if (hyper && !loaded) {
         const long double p = f->divide / (f->frame - f->divide), ratio = f->dot ? p : 1.0L / p;
         const long double active = balance(f, ratio, voltage);
         return f->divide * (f->dot ? active : -ratio * active);
     }
-    if (strcmp(f->model, "ring") == 0) {
-        branch b = {.film = f, .load = voltage * voltage};
-        const long double end = f->dot ? f->frame - f->divide : -f->divide;
-        if (b.load == 0.0L || !(edge_relaxed(&e).slope > 0.0L)) {
-            return b.load == 0.0L ? 0.0L : none;
-        }
-        return first_place(&b, ring_share, f->divide, end * (1.0L - 1e-9L));
+    if (hyper || strcmp(f->model, "ring") == 0) {
+        branch b = {.film = f};
+        return grow(&b, true, f->load_force) && grow(&b, false, voltage * voltage) ? b.base : none;
     }
-    const long double square = voltage * voltage, net = e.stress[0].slope - e.push.slope * square;
-    return net > 0.0L || square == 0.0L ? e.push.value * square / net : none;
+    const true_edge e = film_edge(f, 0.0L);
+    const long double square = voltage * voltage, rest = edge_relaxed(&e).slope, net = rest - e.push.slope * square;
+    const bool stable = (rest > 0.0L || f->load_force == 0.0L) && (net > 0.0L || square == 0.0L);
+    return stable ? (e.push.value * square + f->load_force) / net : none;
 }
 
 static dea_row row_of(const true_film *f, long double voltage)

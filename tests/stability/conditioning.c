@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "engine/ida/motion.h"
+#include "network/motion.h"
 #include "engine/ngspice/moving.h"
 #include "engine/ngspice/pieces.h"
 

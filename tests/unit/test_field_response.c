@@ -325,6 +325,35 @@ static void no_equilibrium_under_the_bias_is_pull_in(void **state)
     assert_true(isnan(row.displacement) && isnan(row.impedance));
 }
 
+/* s11 = mu (1 + 3/lambda^6) - k lambda^2 of a neo-Hookean disc [Pa]. */
+static double disc_firmness(const dea_scene *scene, double stretch)
+{
+    const double field = scene->drive.voltage / scene->actuator.film_thickness;
+    const double k = DEA_EPSILON_0 * scene->material.permittivity * field * field;
+    return 2.0 * scene->material.constants[0] * (1.0 + 3.0 * pow(stretch, -6.0)) - k * stretch * stretch;
+}
+
+/* A wide disc rests, slack, long after its radial stiffness has gone: what moves about that rest runs away. */
+static void a_disc_without_radial_stiffness_does_not_answer(void **state)
+{
+    (void)state;
+    bool seen[2] = {false, false};
+    dea_scene scene = moving_scene(DEA_DOT, 1.55, 0.97, 0.0);
+    scene.material.constants[1] = scene.material.constants[2] = 0.0;
+    for (int i = 1; i <= 12; i++) {
+        scene.drive.voltage = 1000.0 * i;
+        const dea_row still = solve_direct(&scene, "field");
+        if (still.state != DEA_STATE_PULL_IN) {
+            const bool firm = disc_firmness(&scene, 1.55 * (1.0 + still.strain)) > 0.0;
+            const dea_response row = respond(scene, 100.0);
+            seen[firm] = true;
+            assert_int_equal(row.state, firm ? still.state : DEA_STATE_PULL_IN);
+            assert_int_equal(isnan(row.displacement), !firm);
+        }
+    }
+    assert_true(seen[0] && seen[1]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -334,6 +363,7 @@ int main(void)
         cmocka_unit_test(hard_films_answer_as_shooting_in_long_double_does),
         cmocka_unit_test(without_a_bias_the_film_is_its_capacitance),
         cmocka_unit_test(no_equilibrium_under_the_bias_is_pull_in),
+        cmocka_unit_test(a_disc_without_radial_stiffness_does_not_answer),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,7 +17,7 @@
 #include <ngspice/sharedspice.h>
 
 #include "engine/ngspice/library.h"
-#include "engine/ngspice/units.h"
+#include "network/units.h"
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
@@ -83,7 +83,7 @@ static int run_child(in_child *check, verdict *copy)
     const pid_t pid = fork();
     assert_true(pid >= 0);
     if (pid == 0) {
-        alarm(60);
+        alarm(600);
         signal(SIGSEGV, SIG_DFL); /* not the test runner's */
         signal(SIGABRT, SIG_DFL);
         if (chdir(folder) != 0 || setenv("TMPDIR", folder, 1) != 0) {

@@ -91,6 +91,96 @@ static void static_truths_are_the_reference_numbers(void **state)
     }
 }
 
+/* The tables of physics.md, section 7: strains of a membrane behind a step at 1, 2, 4 and 8 ms. */
+static void the_truth_of_a_membrane_is_that_of_the_table(void **state)
+{
+    (void)state;
+    static const struct {
+        double coverage, strain[4];
+    } known[] = {{0.25, {0.0741705, 0.0518654, 0.0610839, 0.0613304}}, {0.75, {0.0290929, 0.0200565, 0.0239188, 0.0234764}}};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        dea_scene scene = paper_scene(DEA_DOT, 1.2, known[i].coverage, (double)NAN);
+        scene.study = DEA_STUDY_TRANSIENT;
+        scene.material.density = 1080.0;
+        scene.material.retardation = 5e-5;
+        scene.drive.waveform = (dea_waveform){
+            .kind = DEA_WAVE_STEP, .step = {.off = (double)NAN, .voltage = 4500.0, .rise = 1e-4}, .period = (double)NAN};
+        scene.transient = (dea_transient){.until = 8e-3, .every = 1e-3};
+        true_run run = moving_truth(&scene, dea_model_find("field"), 1.0);
+        assert_null(run.why);
+        assert_int_equal(run.good, run.count);
+        assert_true(run.error < 1e-7);
+        for (int k = 0; k < 4; k++) {
+            assert_near(run.samples[1 << k].strain, known[i].strain[k], 0.6e-7);
+        }
+        true_run_free(&run);
+    }
+}
+
+/* Section 7: displacement per volt, impedance and their phases under a bias of 3 kV. */
+static void the_truth_of_a_membrane_answers_as_the_table_does(void **state)
+{
+    (void)state;
+    static const double known[3][5] = {{1.0, 1.958684830e-07, -0.061248, 5.081569720e8, -89.991833},
+                                       {600.0, 8.019089950e-07, -44.117392, 6.441899044e5, -73.197756},
+                                       {1200.0, 2.869630393e-08, -93.249076, 4.891210525e5, -88.709063}};
+    for (int i = 0; i < 3; i++) {
+        dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, (double)NAN);
+        scene.study = DEA_STUDY_AC;
+        scene.material.density = 1080.0;
+        scene.material.retardation = 2e-5;
+        scene.material.prony_count = 1;
+        scene.material.prony[0] = (dea_prony){.g = 0.1 / 1.1, .tau = 1e-3};
+        scene.ac = (dea_ac){.from = known[i][0], .to = known[i][0], .points_per_decade = 1, .bias = 3000.0};
+        dea_response row;
+        assert_true(response_truth(&scene, dea_model_find("field"), &row) < 1e-11);
+        assert_relative(row.displacement, known[i][1], 1e-9);
+        assert_near(row.displacement_phase, known[i][2], 0.6e-6);
+        assert_relative(row.impedance, known[i][3], 1e-9);
+        assert_near(row.impedance_phase, known[i][4], 0.6e-6);
+    }
+}
+
+/* Section 8: layers, a skin, a permittivity that follows the strain; and that what lies on the edge is in balance with the film. */
+static void truths_know_what_lies_beside_the_film(void **state)
+{
+    (void)state;
+    const dea_model *field = dea_model_find("field");
+    dea_scene scene = paper_scene(DEA_DOT, 1.2, 0.5, 4500.0);
+    scene.actuator.layers = 5.0;
+    assert_printed(still_truth(&scene, field, 1.0).row.charge, 6.771800e-6, 7);
+    scene.actuator.layers = 1.0;
+    scene.electrode = (dea_electrode){.law = dea_law_find("neo_hookean"), .constants = {20e3}, .entry_count = 1, .thickness = 25e-6};
+    assert_printed(still_truth(&scene, field, 1.0).row.strain, 0.0442776413, 9);
+    scene.actuator.kind = DEA_LENS;
+    assert_printed(still_truth(&scene, field, 1.0).row.strain, -0.0370009643, 9);
+    scene = paper_scene(DEA_DOT, 1.2, 0.5, 4500.0);
+    scene.material.permittivity = 2.76;
+    scene.material.permittivity_per_stretch = -0.28;
+    scene.material.permittivity_follows = true;
+    assert_printed(still_truth(&scene, field, 1.0).row.strain, 0.0364111198, 9);
+    assert_printed(still_truth(&scene, field, 1.0).row.charge, 1.128546676e-6, 10);
+}
+
+/* Half a capacitance's slope is the force over the square of the voltage, of every model that moves, whatever its film has. */
+static void the_push_of_a_truth_is_the_slope_of_its_capacitance(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lumped", "lame", "coverage", "ring"};
+    for (int i = 0; i < 16; i++) {
+        dea_scene scene = paper_scene(i % 2 ? DEA_LENS : DEA_DOT, 1.2, 0.4, 4500.0);
+        scene.actuator.layers = 3.0;
+        scene.material.permittivity_per_stretch = i / 8 ? 0.4 : 0.0;
+        scene.material.permittivity_follows = true;
+        const true_film film = film_of(&scene, dea_model_find(models[i / 2 % 4]));
+        for (int k = -2; k <= 2; k++) {
+            const long double u = 1e-3L * k, h = 1e-6L;
+            const long double slope = (film_edge(&film, u + h).capacitance - film_edge(&film, u - h).capacitance) / (2.0L * h);
+            assert_relative((double)(0.5L * slope), (double)film_edge(&film, u).push.value, 1e-6);
+        }
+    }
+}
+
 /* The table of physics.md, section 8: P, Y, W11, W12 [Pa] and the strains of the membrane, dots at B = 0.25 and 0.5. */
 static const struct {
     const char *law;
@@ -325,6 +415,7 @@ static void no_film_is_pulled_in_where_meshes_alone_fold(void **state)
         judged j;
         tally counted = {0};
         assert_true(judge_open(&j, texts[i], 0));
+        judge_find(&j);
         assert_int_equal(((const dea_row *)j.truth)[1].state, i == 0 ? DEA_STATE_SLACK : DEA_STATE_PULL_IN);
         if (judge_engine(&j, dea_engine_find("ngspice"), 1e-4, &counted, line, sizeof line)) {
             fail_msg("%s", line);
@@ -493,6 +584,7 @@ static void engines_keep_the_promises_that_were_broken(void **state)
         char line[LINE];
         judged j;
         assert_true(judge_open(&j, hard_to_keep[i].text, i));
+        judge_find(&j);
         const char *end = (const char *)j.truth + (j.points - 1) * j.layout.point_size + (j.layout.rows - 1) * j.layout.row_size;
         assert_int_equal(dea_layout_state(&j.layout, end), hard_to_keep[i].last);
         for (size_t e = 0; e < dea_engine_count(); e++) {
@@ -559,6 +651,10 @@ int main(void)
         cmocka_unit_test(the_truth_of_a_ring_is_its_closed_form),
         cmocka_unit_test(the_truth_of_a_slow_film_ends_at_rest),
         cmocka_unit_test(static_truths_are_the_reference_numbers),
+        cmocka_unit_test(the_truth_of_a_membrane_is_that_of_the_table),
+        cmocka_unit_test(the_truth_of_a_membrane_answers_as_the_table_does),
+        cmocka_unit_test(truths_know_what_lies_beside_the_film),
+        cmocka_unit_test(the_push_of_a_truth_is_the_slope_of_its_capacitance),
         cmocka_unit_test(truths_of_all_laws_are_the_reference_numbers),
         cmocka_unit_test(truths_of_all_laws_keep_their_digits),
         cmocka_unit_test(the_truth_of_a_film_ends_with_its_energy),

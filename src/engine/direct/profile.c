@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "model/models.h"
+#include "geometry/point.h"
 
 enum { SAMPLES = 65, HALVINGS = 60 };
 

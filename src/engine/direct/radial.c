@@ -11,8 +11,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "geometry/point.h"
 #include "model/field.h"
-#include "model/models.h"
 #include "support/gauss.h"
 
 enum { STAGES = DEA_GAUSS_POINTS, UNKNOWNS = 2 * STAGES };
@@ -392,6 +392,16 @@ static dea_per_volt answer_on(const dea_radial *m, const mesh *grid, double omeg
     return (dea_per_volt){.displacement = radius * u, .charge = m->rest.capacitance + point->voltage * unit * change};
 }
 
+/* At rest the disc stays uniform whatever its radial stiffness ds1/dlambda1 is; where that is lost each of its waves grows instead of
+ * passing, and no small motion about that rest is one. */
+static bool is_disc_firm(const dea_radial *m)
+{
+    const dea_point *point = &m->dynamics->point;
+    const double l = point->film.prestretch * (1.0 + m->rest.strain);
+    const station disc = station_at(point, is_dot(m), 1.0, l, l, maxwell(m, is_dot(m)));
+    return disc.w11 - disc.k11 > 0.0;
+}
+
 void dea_radial_open(const dea_dynamics *d, const dea_scene *scene, dea_radial *m)
 {
     const dea_point *point = &d->point;
@@ -405,6 +415,9 @@ void dea_radial_open(const dea_dynamics *d, const dea_scene *scene, dea_radial *
     m->mass[1] = film + (is_dot(m) ? 0.0 : electrode);
     m->load_mass = d->mass > 0.0 ? dea_scene_edge(scene).mass : 0.0;
     dea_model_solve(d->model, point, fmin(scene->accuracy, 1e-12), &m->rest);
+    if (isfinite(m->rest.strain) && !is_disc_firm(m)) {
+        dea_row_refuse(&m->rest, DEA_STATE_PULL_IN);
+    }
 }
 
 void dea_radial_close(dea_radial *m)

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "network/membrane.h"
+#include "network/sheet.h"
 #include "support/lapack.h"
 
 /* Nodes of each element. */

@@ -27,7 +27,7 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
     if (!model->network && !model->membrane) {
         return "it is neither a network nor a membrane that IDA could solve";
     }
-    if (!model->membrane && scene->study == DEA_STUDY_FORCE) {
+    if (!model->membrane && dea_study_of(scene)->holds) {
         return "of a network whose edge is held no equation is left to solve";
     }
     if (model->membrane && dea_study_of(scene)->timed && dea_load_stalls(scene)) {

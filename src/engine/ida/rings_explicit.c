@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/ida/rings_flight.h"
+#include "engine/ida/rings_solver.h"
 
 /* Steps that tell how many more will be. */
 static const double enough = 5000.0;
@@ -11,7 +11,7 @@ static const double enough = 5000.0;
 enum { WORK, DISSIPATED, BRANCH, ENERGIES };
 
 typedef struct explicit_run {
-    dea_rings_flight *flight; /* borrowed */
+    dea_rings_solver *solver; /* borrowed */
     double energy;            /* size of energies [J] */
     size_t audited;           /* unknowns behind those of the motion: energies */
     size_t integrated;        /* and the integral of u omega */
@@ -25,7 +25,7 @@ typedef struct explicit_run {
 /* Powers at the state that the flight has looked at, in units of the run. */
 static void powers(const explicit_run *run, double time, const double *y, const double *rates, double *out)
 {
-    const dea_rings_flight *f = run->flight;
+    const dea_rings_flight *f = &run->solver->flight;
     dea_audit rate = {0};
     const dea_moment moment = dea_rings_moment(&f->motion, time, &f->state);
     (void)rates;
@@ -38,7 +38,7 @@ static void powers(const explicit_run *run, double time, const double *y, const 
 static int rates_of(sunrealtype time, N_Vector w, N_Vector wp, void *user)
 {
     const explicit_run *run = user;
-    dea_rings_flight *f = run->flight;
+    dea_rings_flight *f = &run->solver->flight;
     const dea_rings_motion *m = &f->motion;
     const sunrealtype *y = NV_DATA_S(w);
     sunrealtype *out = NV_DATA_S(wp);
@@ -61,16 +61,17 @@ static int rates_of(sunrealtype time, N_Vector w, N_Vector wp, void *user)
 
 /* Longest step [s]: samples cut steps, and where they alone did, a tighter tolerance would change nothing that a comparison of two
  * runs could see. */
-static double longest_step(const dea_rings_flight *f)
+static double longest_step(const dea_rings_solver *s)
 {
-    const double sampled = f->scene->transient.every * pow(f->tolerance / f->loosest, 1.0 / 7.0), lines = f->motion.segment->step;
+    const dea_rings_flight *f = &s->flight;
+    const double sampled = f->scene->transient.every * pow(f->tolerance / s->loosest, 1.0 / 7.0), lines = f->motion.segment->step;
     return lines > 0.0 ? fmin(sampled, lines) : sampled;
 }
 
 static bool begin(explicit_run *run)
 {
-    dea_rings_flight *f = run->flight;
-    const dea_sundials *sun = f->sun;
+    dea_rings_flight *f = &run->solver->flight;
+    const dea_sundials *sun = run->solver->sun;
     const size_t count = f->motion.count;
     run->w = sun->N_VNew_Serial((sunindextype)(count + run->audited + run->integrated), sun->context);
     run->tolerances = run->w ? sun->N_VClone(run->w) : NULL;
@@ -81,12 +82,12 @@ static bool begin(explicit_run *run)
     }
     sun->N_VConst(0.0, run->w);
     sun->N_VConst(f->tolerance * f->motion.length, run->tolerances);
-    memcpy(NV_DATA_S(run->w), NV_DATA_S(f->y), count * sizeof(sunrealtype));
-    memcpy(NV_DATA_S(run->tolerances), NV_DATA_S(f->tolerances), count * sizeof(sunrealtype));
+    memcpy(NV_DATA_S(run->w), NV_DATA_S(run->solver->y), count * sizeof(sunrealtype));
+    memcpy(NV_DATA_S(run->tolerances), NV_DATA_S(run->solver->tolerances), count * sizeof(sunrealtype));
     for (size_t i = 0; i < run->audited; i++) {
         NV_DATA_S(run->tolerances)[count + i] = 1e-2 * f->scene->accuracy;
     }
-    run->ark = dea_sundials_verner(sun, rates_of, run->w, f->tolerance, run->tolerances, longest_step(f), run);
+    run->ark = dea_sundials_verner(sun, rates_of, run->w, f->tolerance, run->tolerances, longest_step(run->solver), run);
     return run->ark != NULL;
 }
 
@@ -107,7 +108,7 @@ static double next_end(const dea_rings_flight *f, double time, double to)
 /* Adds what a stretch between two stops does to the windows: but for rounding it lies inside of each, or outside. */
 static void integrate(explicit_run *run, double before, double time)
 {
-    dea_rings_flight *f = run->flight;
+    dea_rings_flight *f = &run->solver->flight;
     const double middle = f->motion.segment->from + 0.5 * (before + time);
     const double whole = run->integrated > 0 ? NV_DATA_S(run->w)[f->motion.count + run->audited] : 0.0;
     for (size_t i = 0; i < f->scene->transient.average_count; i++) {
@@ -123,9 +124,9 @@ static void integrate(explicit_run *run, double before, double time)
 static double current_at(void *user, double time)
 {
     explicit_run *run = user;
-    dea_rings_flight *f = run->flight;
+    dea_rings_flight *f = &run->solver->flight;
     const double at = time - f->motion.segment->from;
-    if (f->sun->DEA_ARK(GetDky)(run->ark, at, 0, run->between) != ARK_SUCCESS) {
+    if (run->solver->sun->DEA_ARK(GetDky)(run->ark, at, 0, run->between) != ARK_SUCCESS) {
         return 0.0;
     }
     return dea_rings_current(f, at, NV_DATA_S(run->between), NV_DATA_S(run->slope), false);
@@ -134,7 +135,7 @@ static double current_at(void *user, double time)
 /* True where the swing will take more steps than there are, told from those so far; they get longer as it decays. */
 static bool endless(const explicit_run *run, double time)
 {
-    dea_rings_flight *f = run->flight;
+    dea_rings_flight *f = &run->solver->flight;
     const double steps = (double)(f->steps - run->before), decay = dea_rings_decay(&f->motion);
     const double rest = decay > 0.0 ? fmin(run->to - time, 3.0 / decay) : run->to - time;
     return steps >= enough && !dea_rings_affords(f, 0.7 * steps * rest / time);
@@ -143,8 +144,8 @@ static bool endless(const explicit_run *run, double time)
 /* Steps to a time of the segment. */
 static dea_state step_to(explicit_run *run, double stop, double *time)
 {
-    dea_rings_flight *f = run->flight;
-    const dea_sundials *sun = f->sun;
+    dea_rings_flight *f = &run->solver->flight;
+    const dea_sundials *sun = run->solver->sun;
     const double start = f->motion.segment->from;
     for (int code = ARK_SUCCESS; *time < stop && code != ARK_TSTOP_RETURN;) {
         const double last = *time;
@@ -168,7 +169,7 @@ static dea_state step_to(explicit_run *run, double stop, double *time)
 /* To the next sample or end of a window, or to the end if that is nearer. */
 static dea_state advance(explicit_run *run, double to, double *time)
 {
-    dea_rings_flight *f = run->flight;
+    dea_rings_flight *f = &run->solver->flight;
     const dea_segment *segment = f->motion.segment;
     const double next = dea_rings_next_sample(f), before = *time, end = next_end(f, before, to);
     const bool sampled = next <= segment->to && next - segment->from <= end;
@@ -184,7 +185,7 @@ static dea_state advance(explicit_run *run, double to, double *time)
 
 static void close_energies(const explicit_run *run)
 {
-    const dea_rings_flight *f = run->flight;
+    const dea_rings_flight *f = &run->solver->flight;
     const double *energy = NV_DATA_S(run->w) + f->motion.count;
     f->audit->work += energy[WORK] * run->energy;
     f->audit->dissipated += energy[DISSIPATED] * run->energy;
@@ -194,7 +195,7 @@ static void close_energies(const explicit_run *run)
 
 static void end(explicit_run *run)
 {
-    const dea_sundials *sun = run->flight->sun;
+    const dea_sundials *sun = run->solver->sun;
     N_Vector vectors[] = {run->tolerances, run->between, run->slope, run->w};
     if (run->ark) {
         sun->DEA_ARK(Free)(&run->ark);
@@ -206,11 +207,12 @@ static void end(explicit_run *run)
     }
 }
 
-dea_state dea_rings_explicit(dea_rings_flight *f, double to)
+dea_state dea_rings_explicit(dea_rings_solver *s, double to)
 {
+    dea_rings_flight *f = &s->flight;
     const double length = f->motion.length;
     const double stiffness = f->motion.rest.capacitance_slope / f->motion.rest.compliance; /* of a size that counts: F = K u */
-    explicit_run run = {.flight = f, .to = to, .before = f->steps, .energy = length * length * stiffness};
+    explicit_run run = {.solver = s, .to = to, .before = f->steps, .energy = length * length * stiffness};
     run.audited = f->audit ? ENERGIES : 0;
     run.integrated = f->scene->transient.average_count > 0 ? 1 : 0;
     dea_state state = begin(&run) ? DEA_STATE_OK : DEA_STATE_FAILED;
@@ -219,7 +221,7 @@ dea_state dea_rings_explicit(dea_rings_flight *f, double to)
         state = advance(&run, to, &time);
     }
     if (run.ark) {
-        memcpy(NV_DATA_S(f->y), NV_DATA_S(run.w), f->motion.count * sizeof(sunrealtype));
+        memcpy(NV_DATA_S(s->y), NV_DATA_S(run.w), f->motion.count * sizeof(sunrealtype));
     }
     if (state == DEA_STATE_OK && f->audit) {
         close_energies(&run);

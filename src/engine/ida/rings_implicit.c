@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/ida/rings_flight.h"
+#include "engine/ida/rings_solver.h"
 #include "support/gauss.h"
 
 /* Failures of one step after which a run is given up: the first step of a segment can be far too long. */
@@ -41,13 +41,14 @@ static int residual(sunrealtype time, N_Vector vy, N_Vector vyp, N_Vector vr, vo
 static int jacobian(sunrealtype time, sunrealtype pace, N_Vector vy, N_Vector vyp, N_Vector r, SUNMatrix matrix, void *user,
                     N_Vector work1, N_Vector work2, N_Vector work3)
 {
-    dea_rings_flight *f = user;
+    dea_rings_solver *s = user;
+    dea_rings_flight *f = &s->flight;
     const sunrealtype *y = NV_DATA_S(vy), *yp = NV_DATA_S(vyp);
     (void)r, (void)matrix, (void)work1, (void)work2, (void)work3;
     if (!dea_rings_look(&f->motion, time, y, speeds(f, y, yp), &f->state)) {
         return 1;
     }
-    return dea_rings_schur_fill(&f->motion, &f->state, pace, &f->schur, SM_DATA_D(f->dense)) ? 0 : 1;
+    return dea_rings_schur_fill(&f->motion, &f->state, pace, &s->schur, SM_DATA_D(s->dense)) ? 0 : 1;
 }
 
 /* ---- the matrix, which stands in the flight, as SUNDIALS wants it */
@@ -78,113 +79,118 @@ static SUNLinearSolver_ID solver_id(SUNLinearSolver solver)
 
 static int solver_setup(SUNLinearSolver solver, SUNMatrix matrix)
 {
-    dea_rings_flight *f = solver->content;
+    dea_rings_solver *s = solver->content;
     (void)matrix;
-    return f->inner->ops->setup(f->inner, f->dense);
+    return s->inner->ops->setup(s->inner, s->dense);
 }
 
 static int solver_solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_Vector b, sunrealtype tolerance)
 {
-    dea_rings_flight *f = solver->content;
+    dea_rings_solver *s = solver->content;
+    dea_rings_flight *f = &s->flight;
     (void)matrix;
-    dea_rings_schur_reduce(&f->motion, &f->schur, NV_DATA_S(b), NV_DATA_S(f->reduced));
-    const int code = f->inner->ops->solve(f->inner, f->dense, f->reduced, f->reduced, tolerance);
-    memcpy(NV_DATA_S(x), NV_DATA_S(f->reduced), f->motion.nodes * sizeof(sunrealtype));
-    dea_rings_schur_expand(&f->motion, &f->schur, NV_DATA_S(b), NV_DATA_S(x));
+    dea_rings_schur_reduce(&f->motion, &s->schur, NV_DATA_S(b), NV_DATA_S(s->reduced));
+    const int code = s->inner->ops->solve(s->inner, s->dense, s->reduced, s->reduced, tolerance);
+    memcpy(NV_DATA_S(x), NV_DATA_S(s->reduced), f->motion.nodes * sizeof(sunrealtype));
+    dea_rings_schur_expand(&f->motion, &s->schur, NV_DATA_S(b), NV_DATA_S(x));
     return code;
 }
 
-static bool make_solver(dea_rings_flight *f)
+static bool make_solver(dea_rings_solver *s)
 {
-    const dea_sundials *sun = f->sun;
+    dea_rings_flight *f = &s->flight;
+    const dea_sundials *sun = s->sun;
     const sunindextype n = (sunindextype)f->motion.nodes;
-    f->reduced = sun->N_VNew_Serial(n, sun->context);
-    f->dense = sun->SUNDenseMatrix(n, n, sun->context);
-    f->inner = f->reduced && f->dense ? sun->SUNLinSol_Dense(f->reduced, f->dense, sun->context) : NULL;
-    f->matrix = sun->SUNMatNewEmpty(sun->context);
-    f->solver = sun->SUNLinSolNewEmpty(sun->context);
-    if (!f->inner || !f->matrix || !f->solver) {
+    s->reduced = sun->N_VNew_Serial(n, sun->context);
+    s->dense = sun->SUNDenseMatrix(n, n, sun->context);
+    s->inner = s->reduced && s->dense ? sun->SUNLinSol_Dense(s->reduced, s->dense, sun->context) : NULL;
+    s->matrix = sun->SUNMatNewEmpty(sun->context);
+    s->solver = sun->SUNLinSolNewEmpty(sun->context);
+    if (!s->inner || !s->matrix || !s->solver) {
         return false;
     }
-    f->matrix->ops->getid = matrix_id;
-    f->matrix->ops->zero = matrix_zero;
-    f->solver->content = f;
-    f->solver->ops->gettype = solver_type;
-    f->solver->ops->getid = solver_id;
-    f->solver->ops->setup = solver_setup;
-    f->solver->ops->solve = solver_solve;
+    s->matrix->ops->getid = matrix_id;
+    s->matrix->ops->zero = matrix_zero;
+    s->solver->content = s;
+    s->solver->ops->gettype = solver_type;
+    s->solver->ops->getid = solver_id;
+    s->solver->ops->setup = solver_setup;
+    s->solver->ops->solve = solver_solve;
     return true;
 }
 
-dea_status dea_rings_implicit_open(dea_rings_flight *f, dea_error *error)
+dea_status dea_rings_implicit_open(dea_rings_solver *s, dea_error *error)
 {
-    const dea_sundials *sun = f->sun;
-    f->ida = make_solver(f) ? sun->IDACreate(sun->context) : NULL;
-    if (!f->ida) {
+    const dea_sundials *sun = s->sun;
+    s->ida = make_solver(s) ? sun->IDACreate(sun->context) : NULL;
+    if (!s->ida) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while IDA starts");
     }
 #if SUNDIALS_VERSION_MAJOR < 7
-    sun->IDASetErrHandlerFn(f->ida, dea_sundials_ignore, NULL);
+    sun->IDASetErrHandlerFn(s->ida, dea_sundials_ignore, NULL);
 #endif
-    sun->N_VConst(0.0, f->y);
-    sun->N_VConst(0.0, f->yp);
-    sun->N_VConst(1.0, f->tolerances);
-    if (sun->IDAInit(f->ida, residual, 0.0, f->y, f->yp) != IDA_SUCCESS ||
-        sun->IDASVtolerances(f->ida, 1e-6, f->tolerances) != IDA_SUCCESS ||
-        sun->IDASetLinearSolver(f->ida, f->solver, f->matrix) != IDA_SUCCESS ||
-        sun->IDASetJacFn(f->ida, jacobian) != IDA_SUCCESS || sun->IDASetUserData(f->ida, f) != IDA_SUCCESS ||
-        sun->IDASetMaxErrTestFails(f->ida, MOST_FAILS) != IDA_SUCCESS ||
-        sun->IDASetMaxConvFails(f->ida, MOST_FAILS) != IDA_SUCCESS) {
+    sun->N_VConst(0.0, s->y);
+    sun->N_VConst(0.0, s->yp);
+    sun->N_VConst(1.0, s->tolerances);
+    if (sun->IDAInit(s->ida, residual, 0.0, s->y, s->yp) != IDA_SUCCESS ||
+        sun->IDASVtolerances(s->ida, 1e-6, s->tolerances) != IDA_SUCCESS ||
+        sun->IDASetLinearSolver(s->ida, s->solver, s->matrix) != IDA_SUCCESS ||
+        sun->IDASetJacFn(s->ida, jacobian) != IDA_SUCCESS || sun->IDASetUserData(s->ida, s) != IDA_SUCCESS ||
+        sun->IDASetMaxErrTestFails(s->ida, MOST_FAILS) != IDA_SUCCESS ||
+        sun->IDASetMaxConvFails(s->ida, MOST_FAILS) != IDA_SUCCESS) {
         return dea_fail(error, DEA_ERROR_ENGINE, "IDA did not start");
     }
     return DEA_OK;
 }
 
-void dea_rings_implicit_close(dea_rings_flight *f)
+void dea_rings_implicit_close(dea_rings_solver *s)
 {
-    if (f->ida) {
-        f->sun->IDAFree(&f->ida);
+    if (s->ida) {
+        s->sun->IDAFree(&s->ida);
     }
-    if (f->inner) {
-        f->sun->SUNLinSolFree(f->inner);
+    if (s->inner) {
+        s->sun->SUNLinSolFree(s->inner);
     }
-    if (f->solver) {
-        f->sun->SUNLinSolFreeEmpty(f->solver);
+    if (s->solver) {
+        s->sun->SUNLinSolFreeEmpty(s->solver);
     }
-    if (f->matrix) {
-        f->sun->SUNMatFreeEmpty(f->matrix);
+    if (s->matrix) {
+        s->sun->SUNMatFreeEmpty(s->matrix);
     }
-    if (f->dense) {
-        f->sun->SUNMatDestroy(f->dense);
+    if (s->dense) {
+        s->sun->SUNMatDestroy(s->dense);
     }
-    if (f->reduced) {
-        f->sun->N_VDestroy(f->reduced);
+    if (s->reduced) {
+        s->sun->N_VDestroy(s->reduced);
     }
 }
 
 /* ---- between steps */
 
 /* State and derivative at a time of the last step; false where IDA has none. */
-static bool look_back(dea_rings_flight *f, double time)
+static bool look_back(dea_rings_solver *s, double time)
 {
-    return f->sun->IDAGetDky(f->ida, time, 0, f->between) == IDA_SUCCESS &&
-           (f->motion.heavy && !f->motion.charged ? true : f->sun->IDAGetDky(f->ida, time, 1, f->slope) == IDA_SUCCESS);
+    dea_rings_flight *f = &s->flight;
+    return s->sun->IDAGetDky(s->ida, time, 0, s->between) == IDA_SUCCESS &&
+           (f->motion.heavy && !f->motion.charged ? true : s->sun->IDAGetDky(s->ida, time, 1, s->slope) == IDA_SUCCESS);
 }
 
 /* Does the derivative of the charge tell more than the drop over R_s? */
-static bool charges_slowly(const dea_rings_flight *f)
+static bool charges_slowly(const dea_rings_solver *s)
 {
+    const dea_rings_flight *f = &s->flight;
     double step;
-    return f->motion.charged && f->sun->IDAGetLastStep(f->ida, &step) == IDA_SUCCESS &&
+    return f->motion.charged && s->sun->IDAGetLastStep(s->ida, &step) == IDA_SUCCESS &&
            step * f->signal->largest >= f->membrane.film.series * f->motion.charge;
 }
 
 /* Velocities of an algebraic film between steps; the rates of its charges stay, and count where they tell more than small drops. */
-static bool solve_velocities(dea_rings_flight *f, double at, const double *y, double *rates)
+static bool solve_velocities(dea_rings_solver *s, double at, const double *y, double *rates)
 {
+    dea_rings_flight *f = &s->flight;
     const dea_rings_motion *m = &f->motion;
     double charging[DEA_SHEET_PLACES];
-    const bool derived = charges_slowly(f);
+    const bool derived = charges_slowly(s);
     memcpy(charging, rates + m->q, m->charges * sizeof *rates);
     const bool solved = dea_rings_rates(m, at, y, rates);
     memcpy(rates + m->q, charging, m->charges * sizeof *rates);
@@ -192,22 +198,23 @@ static bool solve_velocities(dea_rings_flight *f, double at, const double *y, do
 }
 
 /* Samples of the segment up to a time of it. The velocity of an algebraic film is solved for. */
-static dea_state take_samples(dea_rings_flight *f, double time, bool last)
+static dea_state take_samples(dea_rings_solver *s, double time, bool last)
 {
+    dea_rings_flight *f = &s->flight;
     const dea_segment *segment = f->motion.segment;
     for (double next = dea_rings_next_sample(f); next <= segment->to; next = dea_rings_next_sample(f)) {
         const double at = fmax(0.0, next - segment->from);
         if (at > time && !last) {
             return DEA_STATE_OK;
         }
-        if (!look_back(f, fmin(at, time))) {
+        if (!look_back(s, fmin(at, time))) {
             return DEA_STATE_FAILED;
         }
-        double *y = NV_DATA_S(f->between), *rates = NV_DATA_S(f->slope);
-        if (dea_rings_algebraic(&f->motion) && !solve_velocities(f, at, y, rates)) {
+        double *y = NV_DATA_S(s->between), *rates = NV_DATA_S(s->slope);
+        if (dea_rings_algebraic(&f->motion) && !solve_velocities(s, at, y, rates)) {
             return DEA_STATE_PULL_IN;
         }
-        if (!dea_rings_record(f, at, y, rates, charges_slowly(f))) {
+        if (!dea_rings_record(f, at, y, rates, charges_slowly(s))) {
             return DEA_STATE_PULL_IN;
         }
     }
@@ -217,28 +224,30 @@ static dea_state take_samples(dea_rings_flight *f, double time, bool last)
 /* Two-point Gauss rule on [0, 1] for energies: a step is a small part of all that the film does. */
 static const double places[2] = {0.21132486540518711775, 0.78867513459481288225};
 
-static void audit_step(dea_rings_flight *f, double before, double time)
+static void audit_step(dea_rings_solver *s, double before, double time)
 {
-    const bool charging = charges_slowly(f);
+    dea_rings_flight *f = &s->flight;
+    const bool charging = charges_slowly(s);
     for (int g = 0; g < 2; g++) {
         const double at = before + places[g] * (time - before);
-        if (look_back(f, at)) {
-            dea_rings_audit(f, at, NV_DATA_S(f->between), NV_DATA_S(f->slope), charging, 0.5 * (time - before));
+        if (look_back(s, at)) {
+            dea_rings_audit(f, at, NV_DATA_S(s->between), NV_DATA_S(s->slope), charging, 0.5 * (time - before));
         }
     }
 }
 
 /* Adds what a step does inside the windows. */
-static void integrate_step(dea_rings_flight *f, double before, double time)
+static void integrate_step(dea_rings_solver *s, double before, double time)
 {
+    dea_rings_flight *f = &s->flight;
     const double begin = f->motion.segment->from;
     for (size_t i = 0; i < f->scene->transient.average_count; i++) {
         const dea_window *window = &f->scene->transient.averages[i];
         const double from = fmax(before, window->from - begin), to = fmin(time, window->to - begin);
         for (int g = 0; g < DEA_GAUSS_POINTS && from < to; g++) {
             const double at = from + dea_gauss_place(g) * (to - from);
-            if (f->sun->IDAGetDky(f->ida, at, 0, f->between) == IDA_SUCCESS) {
-                f->trace->integrals[i] += dea_gauss_weight(g) * (to - from) * NV_DATA_S(f->between)[f->membrane.rings.edge];
+            if (s->sun->IDAGetDky(s->ida, at, 0, s->between) == IDA_SUCCESS) {
+                f->trace->integrals[i] += dea_gauss_weight(g) * (to - from) * NV_DATA_S(s->between)[f->membrane.rings.edge];
             }
         }
     }
@@ -247,51 +256,54 @@ static void integrate_step(dea_rings_flight *f, double before, double time)
 /* Current at a time of the last step, counted over the run [A]. */
 static double current_at(void *user, double time)
 {
-    dea_rings_flight *f = user;
+    dea_rings_solver *s = user;
+    dea_rings_flight *f = &s->flight;
     const double at = time - f->motion.segment->from;
-    return look_back(f, at) ? dea_rings_current(f, at, NV_DATA_S(f->between), NV_DATA_S(f->slope), charges_slowly(f)) : 0.0;
+    return look_back(s, at) ? dea_rings_current(f, at, NV_DATA_S(s->between), NV_DATA_S(s->slope), charges_slowly(s)) : 0.0;
 }
 
-static bool begin(dea_rings_flight *f, double from)
+static bool begin(dea_rings_solver *s, double from)
 {
-    const dea_sundials *sun = f->sun;
+    dea_rings_flight *f = &s->flight;
+    const dea_sundials *sun = s->sun;
     const dea_segment *segment = f->motion.segment;
-    return dea_rings_rates(&f->motion, from, NV_DATA_S(f->y), NV_DATA_S(f->yp)) &&
-           sun->IDAReInit(f->ida, from, f->y, f->yp) == IDA_SUCCESS &&
-           sun->IDASVtolerances(f->ida, f->tolerance, f->tolerances) == IDA_SUCCESS &&
-           sun->IDASetMaxStep(f->ida, segment->step) == IDA_SUCCESS && /* 0: as long as it likes */
-           sun->IDASetStopTime(f->ida, segment->to - segment->from) == IDA_SUCCESS;
+    return dea_rings_rates(&f->motion, from, NV_DATA_S(s->y), NV_DATA_S(s->yp)) &&
+           sun->IDAReInit(s->ida, from, s->y, s->yp) == IDA_SUCCESS &&
+           sun->IDASVtolerances(s->ida, f->tolerance, s->tolerances) == IDA_SUCCESS &&
+           sun->IDASetMaxStep(s->ida, segment->step) == IDA_SUCCESS && /* 0: as long as it likes */
+           sun->IDASetStopTime(s->ida, segment->to - segment->from) == IDA_SUCCESS;
 }
 
-dea_state dea_rings_implicit(dea_rings_flight *f, double from)
+dea_state dea_rings_implicit(dea_rings_solver *s, double from)
 {
+    dea_rings_flight *f = &s->flight;
     const dea_segment *segment = f->motion.segment;
     const double width = segment->to - segment->from;
-    if (!begin(f, from)) {
+    if (!begin(s, from)) {
         return DEA_STATE_PULL_IN;
     }
     double time = from;
     f->derived = true;
     for (int code = IDA_SUCCESS; code != IDA_TSTOP_RETURN;) {
         const double before = time;
-        code = f->sun->IDASolve(f->ida, width, &time, f->y, f->yp, IDA_ONE_STEP);
+        code = s->sun->IDASolve(s->ida, width, &time, s->y, s->yp, IDA_ONE_STEP);
         if (code < 0) {
-            const bool gone = code == IDA_REP_RES_ERR || dea_rings_firmness(&f->motion, time, NV_DATA_S(f->y)) < soft;
+            const bool gone = code == IDA_REP_RES_ERR || dea_rings_firmness(&f->motion, time, NV_DATA_S(s->y)) < soft;
             return gone ? DEA_STATE_PULL_IN : dea_rings_broke(f, "IDA", code, time);
         }
-        dea_state state = take_samples(f, time, code == IDA_TSTOP_RETURN);
+        dea_state state = take_samples(s, time, code == IDA_TSTOP_RETURN);
         if (state == DEA_STATE_OK) {
-            state = dea_rings_step(f, time, NV_DATA_S(f->y));
+            state = dea_rings_step(f, time, NV_DATA_S(s->y));
         }
         if (state != DEA_STATE_OK) {
             return state;
         }
-        integrate_step(f, before, time);
+        integrate_step(s, before, time);
         if (f->peaks) {
-            dea_peak_search(&f->trace->peak, segment->from + before, segment->from + time, current_at, f);
+            dea_peak_search(&f->trace->peak, segment->from + before, segment->from + time, current_at, s);
         }
         if (f->audit) {
-            audit_step(f, before, time);
+            audit_step(s, before, time);
         }
     }
     return DEA_STATE_OK;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "drive/signal.h"
+#include "engine/ida/rings_solver.h"
 #include "engine/rings_gap.h"
 #include "network/rings_mesh.h"
 #include "support/lapack.h"
@@ -27,7 +28,7 @@ typedef struct search {
     const dea_signal *signal;
     dea_scales scales;
     dea_rings_trace traces[2]; /* owned samples and entries: of the run before, and of the last */
-    dea_rings_flight *flight;  /* owned: of the last */
+    dea_rings_solver *solver;  /* owned: of the last */
     dea_layout layout;
     size_t rows, entries; /* of the layout; numbers that a row tells over the radius */
     double loosest;
@@ -40,15 +41,15 @@ static dea_status run_on(search *s, dea_rings_mesh mesh, double tolerance, dea_s
     const dea_rings_trace before = s->traces[1];
     s->traces[1] = s->traces[0];
     s->traces[0] = before;
-    dea_rings_flight_close(s->flight);
-    const dea_status status = dea_rings_flight_open(s->sun, s->scene, s->model, s->signal, mesh, s->flight, error);
+    dea_rings_solver_close(s->solver);
+    const dea_status status = dea_rings_solver_open(s->sun, s->scene, s->model, s->signal, mesh, s->solver, error);
     if (status != DEA_OK) {
         return status;
     }
-    s->flight->loosest = s->loosest;
-    dea_rings_flight_run(s->flight, tolerance, &s->traces[1], summary);
-    if (dea_rings_flight_fit(s->flight)) {
-        dea_rings_flight_run(s->flight, tolerance, &s->traces[1], summary);
+    s->solver->loosest = s->loosest;
+    dea_rings_solver_run(s->solver, tolerance, &s->traces[1], summary);
+    if (dea_rings_solver_fit(s->solver)) {
+        dea_rings_solver_run(s->solver, tolerance, &s->traces[1], summary);
     }
     return DEA_OK;
 }
@@ -64,7 +65,7 @@ static dea_status look_ahead(search *s, dea_summary *summary, bool *hopeless, de
     }
     dea_status status = run_on(s, dea_rings_mesh_of(s->scene, nodes), tolerance, NULL, error);
     for (int i = 0; i < 2 && status == DEA_OK; i++) {
-        nodes = dea_rings_more_nodes(&s->flight->membrane, &s->flight->motion.rest, nodes);
+        nodes = dea_rings_more_nodes(&s->solver->flight.membrane, &s->solver->flight.motion.rest, nodes);
         tolerance *= first_share;
         status = run_on(s, dea_rings_mesh_of(s->scene, nodes), tolerance, NULL, error);
         const dea_rings_gap apart = dea_rings_gap_of(s->scene, &s->scales, &s->traces[0], &s->traces[1]);
@@ -92,7 +93,7 @@ static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates
     status = run_on(s, mesh, tolerance, NULL, error);
     for (int i = 0; i < MOST_RUNS && status == DEA_OK && s->traces[1].end != DEA_STATE_FAILED; i++) {
         const dea_rings_mesh before = mesh;
-        nodes = dea_rings_more_nodes(&s->flight->membrane, &s->flight->motion.rest, nodes);
+        nodes = dea_rings_more_nodes(&s->solver->flight.membrane, &s->solver->flight.motion.rest, nodes);
         mesh = dea_rings_mesh_of(s->scene, nodes);
         if ((mesh.disc == before.disc && mesh.disc > 1) || mesh.annulus == before.annulus) {
             return status; /* what both have alike tells nothing about itself, but for a disc that is uniform */
@@ -104,14 +105,14 @@ static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates
             return status;
         }
         const dea_rings_gap apart = dea_rings_gap_of(s->scene, &s->scales, &s->traces[0], &s->traces[1]);
-        const double trust = dea_rings_mesh_trust(&s->flight->membrane, &s->flight->motion.rest, nodes);
+        const double trust = dea_rings_mesh_trust(&s->solver->flight.membrane, &s->solver->flight.motion.rest, nodes);
         const bool doubtful = s->traces[1].end == DEA_STATE_PULL_IN && tolerance > certain;
         const bool comparable = s->traces[0].count == s->traces[1].count;
         summary->error = fmax(apart.displacement * trust, fmax(10.0 * tolerance, 0.1 * accuracy));
         *rates = (dea_rate_errors){apart.rates.velocity * trust, apart.rates.current * trust};
         s->worst = fmax(apart.answer * trust, 10.0 * tolerance);
         *good = s->worst <= accuracy && comparable && !doubtful;
-        const bool fronts = s->flight->membrane.sheet.front * nodes * nodes < thin_front; /* they converge late, and then fast */
+        const bool fronts = s->solver->flight.membrane.sheet.front * nodes * nodes < thin_front; /* they converge late, and then fast */
         const bool hopeless = comparable && !(apart.answer < gains_nothing * last) && !fronts;
         if (*good || s->traces[1].end == DEA_STATE_FAILED || hopeless) {
             return status;
@@ -139,13 +140,13 @@ static void tell_averages(const search *s, const dea_rings_trace *trace, dea_sum
 {
     for (size_t i = 0; i < s->scene->transient.average_count; i++) {
         const double u = dea_rings_mean(s->scene, trace, i);
-        summary->averages[i] = (dea_average){u / s->flight->membrane.film.radius, u};
+        summary->averages[i] = (dea_average){u / s->solver->flight.membrane.film.radius, u};
     }
 }
 
 static void explain(const search *s, const dea_summary *summary, dea_error *error)
 {
-    const dea_rings_flight *f = s->flight;
+    const dea_rings_flight *f = &s->solver->flight;
     if (f->why.message[0] != '\0') {
         dea_fail(error, DEA_ERROR_ENGINE, "%s", f->why.message);
     } else {
@@ -178,7 +179,7 @@ static dea_status fly(search *s, dea_sample *samples, dea_summary *summary, dea_
     fill(s, &s->traces[1], good, samples);
     tell_averages(s, &s->traces[1], summary);
     dea_scales_tell(&s->scales, s->traces[1].samples, s->traces[1].count, rates, summary);
-    if (s->flight->peaks && s->traces[1].end == DEA_STATE_OK) {
+    if (s->solver->flight.peaks && s->traces[1].end == DEA_STATE_OK) {
         dea_peak_tell(&s->traces[0].peak, &s->traces[1].peak, s->scene->accuracy, summary);
     }
     return DEA_OK;
@@ -190,8 +191,8 @@ static dea_status search_open(search *s, dea_error *error)
     s->rows = s->layout.rows;
     s->entries = s->layout.spread_points * s->layout.spread_count;
     s->scales = dea_scales_open(s->scene, s->model);
-    s->flight = calloc(1, sizeof *s->flight);
-    bool room = s->flight && s->scales.status != DEA_ERROR_MEMORY;
+    s->solver = calloc(1, sizeof *s->solver);
+    bool room = s->solver && s->scales.status != DEA_ERROR_MEMORY;
     for (int i = 0; i < 2; i++) {
         s->traces[i].samples = malloc(s->rows * sizeof *s->traces[i].samples);
         s->traces[i].entries = s->entries > 0 ? malloc(s->rows * s->entries * sizeof *s->traces[i].entries) : NULL;
@@ -202,10 +203,10 @@ static dea_status search_open(search *s, dea_error *error)
 
 static void search_close(search *s)
 {
-    if (s->flight) {
-        dea_rings_flight_close(s->flight);
+    if (s->solver) {
+        dea_rings_solver_close(s->solver);
     }
-    free(s->flight);
+    free(s->solver);
     for (int i = 0; i < 2; i++) {
         free(s->traces[i].samples);
         free(s->traces[i].entries);

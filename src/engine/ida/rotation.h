@@ -8,7 +8,7 @@
 #ifndef DEA_IDA_ROTATION_H
 #define DEA_IDA_ROTATION_H
 
-#include "engine/ida/motion.h"
+#include "network/motion.h"
 
 typedef struct dea_rotation {
     int n;

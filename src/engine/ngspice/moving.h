@@ -4,8 +4,8 @@
 
 #include "deaspice/engine.h"
 #include "engine/ngspice/library.h"
-#include "engine/ngspice/units.h"
 #include "deaspice/model.h"
+#include "network/units.h"
 #include "scene/line.h"
 
 /* Units in which a transient runs. */

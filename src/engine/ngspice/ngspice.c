@@ -45,7 +45,7 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
     if (model->membrane && still && dea_scene_is_pulled(scene)) {
         return "its membrane at rest carries springs alone, no force and no second film";
     }
-    if (model->membrane && scene->study == DEA_STUDY_FORCE) {
+    if (model->membrane && dea_study_of(scene)->holds) {
         return "it does not hold the edge of the membrane";
     }
     if (model->membrane && dea_study_of(scene)->timed && dea_load_stalls(scene)) {

@@ -3,9 +3,9 @@
 #ifndef DEA_NGSPICE_RINGS_TRACK_H
 #define DEA_NGSPICE_RINGS_TRACK_H
 
-#include "engine/ida/rings_flight.h"
 #include "engine/ngspice/library.h"
 #include "engine/ngspice/pieces.h"
+#include "engine/rings_flight.h"
 #include "netlist/rings_motion.h"
 #include "engine/ngspice/deck.h"
 

@@ -1,4 +1,4 @@
-#include "engine/ngspice/units.h"
+#include "network/units.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -160,12 +160,12 @@ dea_status dea_units_enter(const dea_units *units, const dea_scene *scene, dea_s
     inside->ac.from /= units->time;
     inside->ac.to /= units->time;
     inside->ac.bias *= units->voltage;
-    return inside->drive.waveform.kind == DEA_WAVE_POINTS ? enter_points(units, &inside->drive.waveform, error) : DEA_OK;
+    return dea_wave_is_listed(&inside->drive.waveform) ? enter_points(units, &inside->drive.waveform, error) : DEA_OK;
 }
 
 void dea_units_leave(dea_scene *inside)
 {
-    if (inside->drive.waveform.kind == DEA_WAVE_POINTS) {
+    if (dea_wave_is_listed(&inside->drive.waveform)) {
         free(inside->drive.waveform.times);
     }
 }

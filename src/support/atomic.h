@@ -1,6 +1,6 @@
 /* A file that appears whole under its name or not at all: written beside the target, then renamed. */
-#ifndef DEASPICE_OUTPUT_ATOMIC_H
-#define DEASPICE_OUTPUT_ATOMIC_H
+#ifndef DEA_ATOMIC_H
+#define DEA_ATOMIC_H
 
 #include "deaspice/status.h"
 

@@ -1,17 +1,10 @@
-#include "engine/ida/rings_flight.h"
+#include "engine/rings_flight.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Steps of one run after which it is given up. */
 enum { MOST_STEPS = 500000 };
-
-/* Radians of the fastest mode in a step of an explicit method, at the most. */
-static const double longest_turn = 3.0;
-
-/* Share of its size below which an unknown needs a smaller one. */
-static const double small = 0.03;
 
 /* Share of the stiffness at rest at which a film without mass folds. */
 static const double folded = 1e-4;
@@ -30,38 +23,6 @@ dea_status dea_rings_flight_prepare(const dea_scene *scene, const dea_model *mod
     f->peaks = dea_peak_is_known(scene, &f->membrane.film, signal);
     const dea_layout layout = dea_layout_of(scene);
     return dea_along_open(&f->membrane, scene, &layout, &f->along, error);
-}
-
-dea_status dea_rings_flight_open(const dea_sundials *sun, const dea_scene *scene, const dea_model *model,
-                                 const dea_signal *signal, dea_rings_mesh mesh, dea_rings_flight *f, dea_error *error)
-{
-    const dea_status status = dea_rings_flight_prepare(scene, model, signal, mesh, f, error);
-    if (status != DEA_OK) {
-        return status;
-    }
-    f->sun = sun;
-    const sunindextype count = (sunindextype)f->motion.count;
-    f->y = sun->N_VNew_Serial(count, sun->context);
-    f->yp = f->y ? sun->N_VClone(f->y) : NULL;
-    f->between = f->y ? sun->N_VClone(f->y) : NULL;
-    f->slope = f->y ? sun->N_VClone(f->y) : NULL;
-    f->tolerances = f->y ? sun->N_VClone(f->y) : NULL;
-    if (!f->yp || !f->between || !f->slope || !f->tolerances) {
-        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while IDA starts");
-    }
-    return dea_rings_implicit_open(f, error);
-}
-
-void dea_rings_flight_close(dea_rings_flight *f)
-{
-    N_Vector vectors[] = {f->y, f->yp, f->between, f->slope, f->tolerances};
-    dea_rings_implicit_close(f);
-    dea_along_close(&f->along);
-    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
-        if (vectors[i]) {
-            f->sun->N_VDestroy(vectors[i]);
-        }
-    }
 }
 
 double dea_rings_next_sample(const dea_rings_flight *f)
@@ -146,7 +107,7 @@ dea_state dea_rings_step(dea_rings_flight *f, double time, const double *y)
 {
     f->trace->largest = fmax(f->trace->largest, fabs(y[f->membrane.rings.edge]));
     if (++f->steps > MOST_STEPS) {
-        dea_fail(&f->why, DEA_ERROR_ENGINE, "at a tolerance of %.1g, %ld steps of SUNDIALS take the run to %g s", f->tolerance,
+        dea_fail(&f->why, DEA_ERROR_ENGINE, "at a tolerance of %.1g, %ld steps take the run to %g s", f->tolerance,
                  f->steps, f->motion.segment->from + time);
         return DEA_STATE_FAILED;
     }
@@ -158,30 +119,6 @@ dea_state dea_rings_broke(dea_rings_flight *f, const char *solver, int code, dou
     dea_fail(&f->why, DEA_ERROR_ENGINE, "at a tolerance of %.1g, %s stopped at %g s with its error %d", f->tolerance, solver,
              f->motion.segment->from + time, code);
     return DEA_STATE_FAILED;
-}
-
-bool dea_rings_flight_fit(dea_rings_flight *f)
-{
-    dea_rings_motion *m = &f->motion;
-    const double share = f->trace->largest / m->length;
-    if (!(share > 0.0) || share >= small) {
-        return false;
-    }
-    const double smaller = fmax(share, 10.0 * f->tolerance);
-    m->length *= smaller;
-    m->speed *= smaller;
-    m->stress *= smaller;
-    return true;
-}
-
-static void set_tolerances(dea_rings_flight *f)
-{
-    const dea_rings_motion *m = &f->motion;
-    double *absolute = NV_DATA_S(f->tolerances);
-    for (size_t i = 0; i < m->count; i++) {
-        const double charge = i < m->q ? 0.0 : m->charge * m->shares[i - m->q];
-        absolute[i] = f->tolerance * (i < m->nodes ? m->length : i < m->z ? m->speed : i < m->q ? m->stress : charge);
-    }
 }
 
 /* Energy of the charges at y [J]. */
@@ -210,18 +147,6 @@ bool dea_rings_jump(dea_rings_flight *f, double *y)
     return true;
 }
 
-/* How long the segment is worth an explicit method [s]: while the slowest mode lives, where nothing relaxes faster than the fastest
- * one swings. Once a damper holds the fast modes, BDF has no trouble with them. */
-static double explicit_time(const dea_rings_flight *f)
-{
-    const dea_rings_motion *m = &f->motion;
-    const double width = m->segment->to - m->segment->from;
-    if (!m->heavy || dea_rings_stiffest(m) > m->rest.fastest) {
-        return 0.0;
-    }
-    return fmin(width, log(10.0 / f->tolerance) / dea_rings_decay(m));
-}
-
 bool dea_rings_affords(dea_rings_flight *f, double steps)
 {
     const double left = (double)(MOST_STEPS - f->steps);
@@ -229,28 +154,10 @@ bool dea_rings_affords(dea_rings_flight *f, double steps)
         return true;
     }
     dea_fail(&f->why, DEA_ERROR_ENGINE,
-             "the swing of its %zu nodes takes %.2g more steps of SUNDIALS at a tolerance of %.1g, %.2g are left: a damper "
+             "the swing of its %zu nodes takes %.2g more steps at a tolerance of %.1g, %.2g are left: a damper "
              "(material.retardation) ends it",
              f->motion.nodes, steps, f->tolerance, left);
     return false;
-}
-
-static dea_state fly_segment(dea_rings_flight *f)
-{
-    const dea_segment *segment = f->motion.segment;
-    double *y = NV_DATA_S(f->y), *rates = NV_DATA_S(f->yp);
-    if (!dea_rings_jump(f, y) || !dea_rings_rates(&f->motion, 0.0, y, rates) ||
-        (f->trace->count == 0 && !dea_rings_record(f, 0.0, y, rates, false))) {
-        return DEA_STATE_PULL_IN;
-    }
-    const double turning = explicit_time(f);
-    if (turning > 0.0) {
-        const dea_state state = dea_rings_affords(f, turning * f->motion.rest.fastest / longest_turn) ? dea_rings_explicit(f, turning) : DEA_STATE_FAILED;
-        if (state != DEA_STATE_OK || turning >= segment->to - segment->from) {
-            return state;
-        }
-    }
-    return dea_rings_implicit(f, turning);
 }
 
 dea_membrane_energy dea_rings_energy(dea_rings_flight *f, double time, const double *y)
@@ -266,30 +173,4 @@ dea_membrane_energy dea_rings_energy(dea_rings_flight *f, double time, const dou
         energy.electric = energy.fed + dea_sheet_energy(&f->membrane, &f->state.charges);
     }
     return energy;
-}
-
-void dea_rings_flight_run(dea_rings_flight *f, double tolerance, dea_rings_trace *trace, dea_summary *summary)
-{
-    dea_audit audit = {0};
-    dea_rings_motion *m = &f->motion;
-    *trace = (dea_rings_trace){.samples = trace->samples, .entries = trace->entries};
-    f->trace = trace;
-    f->audit = summary ? &audit : NULL;
-    f->tolerance = tolerance;
-    f->steps = 0;
-    m->segment = f->signal->segments;
-    set_tolerances(f);
-    if (!dea_rings_start(m, f->scene->transient.from_bias, NV_DATA_S(f->y))) {
-        trace->end = DEA_STATE_PULL_IN;
-        return;
-    }
-    const dea_membrane_energy first = dea_rings_energy(f, 0.0, NV_DATA_S(f->y));
-    for (size_t i = 0; trace->end == DEA_STATE_OK && i < f->signal->count; i++) {
-        m->segment = &f->signal->segments[i];
-        trace->end = fly_segment(f);
-    }
-    if (summary && trace->end == DEA_STATE_OK) {
-        const dea_membrane_energy last = dea_rings_energy(f, m->segment->to - m->segment->from, NV_DATA_S(f->y));
-        dea_membrane_audit_close(&audit, &f->membrane, &first, &last, summary);
-    }
 }

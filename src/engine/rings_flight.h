@@ -1,15 +1,12 @@
-/* One run of a membrane on one mesh at one tolerance. Every segment of the voltage is a problem of its own, solved
- *
- *   - by IDA (variable order BDF) in general, with all unknowns but the displacements eliminated from Newton's method;
- *   - by an explicit Runge-Kutta method (ARKODE) while a film with mass swings that nothing stiff holds: BDF would damp its faster
- *     modes or crawl through their periods. */
-#ifndef DEA_IDA_RINGS_FLIGHT_H
-#define DEA_IDA_RINGS_FLIGHT_H
+/* One run of a membrane on one mesh at one tolerance, as what solves it sees it: segment after segment of the voltage, the samples and
+ * energies that it keeps, the steps that it may take. */
+#ifndef DEA_RINGS_FLIGHT_H
+#define DEA_RINGS_FLIGHT_H
 
-#include "engine/ida/rings_motion.h"
-#include "engine/ida/sundials.h"
 #include "network/along.h"
+#include "network/membrane_sample.h"
 #include "network/peak.h"
+#include "network/rings_motion.h"
 
 /* What a run leaves: its samples up to where it ended. */
 typedef struct dea_rings_trace {
@@ -23,22 +20,14 @@ typedef struct dea_rings_trace {
 } dea_rings_trace;
 
 typedef struct dea_rings_flight {
-    const dea_sundials *sun; /* borrowed, as scene and signal */
-    const dea_scene *scene;
+    const dea_scene *scene; /* borrowed, as the signal */
     const dea_signal *signal;
     dea_membrane membrane;
     dea_rings_motion motion;
     size_t rows;
     dea_along along; /* radii that samples tell the film at */
     bool peaks;    /* the current between samples is known */
-    double loosest; /* tolerance that samples alone would cut the steps of */
     dea_error why; /* what a run that failed was about, "" before */
-    N_Vector y, yp, between, slope, tolerances; /* owned, as all below: state, derivative, both between steps */
-    SUNMatrix matrix, dense;
-    SUNLinearSolver solver, inner;
-    N_Vector reduced;
-    void *ida;
-    dea_rings_schur schur;
     dea_rings_state state; /* room for a look */
     /* of one run */
     double tolerance;
@@ -48,21 +37,9 @@ typedef struct dea_rings_flight {
     long steps;
 } dea_rings_flight;
 
-/* Cuts the film of a scene and prepares runs; the caller ends them with dea_rings_flight_close(), also after a failure. */
-dea_status dea_rings_flight_open(const dea_sundials *sun, const dea_scene *scene, const dea_model *model,
-                                 const dea_signal *signal, dea_rings_mesh mesh, dea_rings_flight *flight, dea_error *error);
-void dea_rings_flight_close(dea_rings_flight *flight);
-/* All of it that knows no SUNDIALS: another engine keeps its samples and energies by it. */
+/* Cuts the film of a scene and prepares runs; the caller closes `along`, also after a failure. */
 dea_status dea_rings_flight_prepare(const dea_scene *scene, const dea_model *model, const dea_signal *signal, dea_rings_mesh mesh,
                                     dea_rings_flight *flight, dea_error *error);
-/* IDA with its matrix; part of opening. */
-dea_status dea_rings_implicit_open(dea_rings_flight *flight, dea_error *error);
-void dea_rings_implicit_close(dea_rings_flight *flight);
-
-/* Runs; with a summary, fills its energies. */
-void dea_rings_flight_run(dea_rings_flight *flight, double tolerance, dea_rings_trace *trace, dea_summary *summary);
-/* Shrinks the sizes of the unknowns to what the last run reached, where that is much less; true where it did. */
-bool dea_rings_flight_fit(dea_rings_flight *flight);
 
 /* Takes the displacements of a film without mass and damper to where the voltage at the begin of the segment wants them; false where
  * there is no such place. */
@@ -84,9 +61,5 @@ dea_state dea_rings_step(dea_rings_flight *flight, double time, const double *y)
 bool dea_rings_affords(dea_rings_flight *flight, double steps);
 /* `failed`, because a solver ended with an error code at a time of the segment. */
 dea_state dea_rings_broke(dea_rings_flight *flight, const char *solver, int code, double time);
-
-/* The segment from a time on to its end by IDA, and up to a time by Runge-Kutta; what happened. */
-dea_state dea_rings_implicit(dea_rings_flight *flight, double from);
-dea_state dea_rings_explicit(dea_rings_flight *flight, double to);
 
 #endif

@@ -1,8 +1,8 @@
 /* The units of a study in time or frequency: powers of two in which displacement, stress, force, voltage and a time are of
  * size 1. Tolerances and least values of the library then mean the same for an actuator of any size, and powers of two cost no
  * digit. What a run's netlists and states call m, N, V or s are then these units. */
-#ifndef DEA_NGSPICE_UNITS_H
-#define DEA_NGSPICE_UNITS_H
+#ifndef DEA_NETWORK_UNITS_H
+#define DEA_NETWORK_UNITS_H
 
 #include "network/membrane.h"
 

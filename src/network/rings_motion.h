@@ -6,11 +6,11 @@
  *   q           charge of the film, with series resistance, or charges along electrodes with a sheet resistance
  *
  *   u' = v,  v' = F/m,  z' = (S - z)/tau,  q' = (U_s - U)/R_s - U/R_p;   without mass 0 = F, a damper's v being u'. */
-#ifndef DEA_IDA_RINGS_MOTION_H
-#define DEA_IDA_RINGS_MOTION_H
+#ifndef DEA_RINGS_MOTION_STATE_H
+#define DEA_RINGS_MOTION_STATE_H
 
 #include "drive/signal.h"
-#include "network/membrane.h"
+#include "network/sheet.h"
 
 typedef struct dea_rings_motion {
     const dea_membrane *membrane; /* borrowed, as all here */

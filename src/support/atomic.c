@@ -1,4 +1,4 @@
-#include "output/atomic.h"
+#include "support/atomic.h"
 
 #include <dirent.h>
 #include <errno.h>

@@ -1,4 +1,4 @@
-#include "engine/ida/motion.h"
+#include "network/motion.h"
 
 #include <math.h>
 #include <string.h>

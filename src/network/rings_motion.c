@@ -1,4 +1,4 @@
-#include "engine/ida/rings_motion.h"
+#include "network/rings_motion.h"
 
 #include <math.h>
 #include <string.h>

@@ -5,8 +5,8 @@
  *   v    velocity, with mass
  *   z    stresses that the branches have relaxed from, as the dynamics number them
  *   q    charge of the film, with series resistance */
-#ifndef DEA_IDA_MOTION_H
-#define DEA_IDA_MOTION_H
+#ifndef DEA_MOTION_H
+#define DEA_MOTION_H
 
 #include "drive/signal.h"
 #include "network/dynamics.h"

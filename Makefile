@@ -118,8 +118,9 @@ compilers-agree-stage: all $(BUILD)/stability clang-stage
 	|| { cat $(BUILD)/compilers; false; }; })
 
 # The truths that tests compute for themselves, half of the time of some, run without sanitizers: they share no code with the library.
+ASAN := detect_leaks=1:quarantine_size_mb=64:malloc_context_size=8:max_malloc_fill_size=256
 asan-stage:
-	+@ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS=suppressions=$(abspath tests/leaks.supp):print_suppressions=0 \
+	+@ASAN_OPTIONS=$(ASAN) UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS=suppressions=$(abspath tests/leaks.supp):print_suppressions=0 \
 	$(MAKE) --no-print-directory BUILD=$(BUILD)/asan CFLAGS="$(SANITIZE)" TRUTH_FLAGS="-O2 -fno-sanitize=all" STAGE=asan test-stage
 
 # libFuzzer on the readers of scenes and of tables, side by side; FUZZ_SECONDS=n for longer. What reads a scene is instrumented; what

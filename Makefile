@@ -50,7 +50,7 @@ STABILITY_PARTS := $(STABILITY_SOURCES:%.c=$(BUILD)/%.o)
 CLANG    := $(shell command -v clang 2>/dev/null)
 JOBS     ?= $(shell nproc 2>/dev/null || echo 1)
 # What make check runs, the longest first.
-STAGES   := compilers-agree fuzz examples-agree test asan
+STAGES   := compilers-agree fuzz examples-agree test asan layers
 SANITIZE := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 
 .DELETE_ON_ERROR:
@@ -118,8 +118,9 @@ compilers-agree-stage: all $(BUILD)/stability clang-stage
 	|| { cat $(BUILD)/compilers; false; }; })
 
 # The truths that tests compute for themselves, half of the time of some, run without sanitizers: they share no code with the library.
+ASAN := detect_leaks=1:quarantine_size_mb=64:malloc_context_size=8:max_malloc_fill_size=256
 asan-stage:
-	+@ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS=suppressions=$(abspath tests/leaks.supp):print_suppressions=0 \
+	+@ASAN_OPTIONS=$(ASAN) UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS=suppressions=$(abspath tests/leaks.supp):print_suppressions=0 \
 	$(MAKE) --no-print-directory BUILD=$(BUILD)/asan CFLAGS="$(SANITIZE)" TRUTH_FLAGS="-O2 -fno-sanitize=all" STAGE=asan test-stage
 
 # libFuzzer on the readers of scenes and of tables, side by side; FUZZ_SECONDS=n for longer. What reads a scene is instrumented; what
@@ -210,10 +211,8 @@ $(BUILD)/hard: $(wildcard tests/hard/*.[ch]) $(TRUTHS) $(BUILD)/libdeaspice.a
 	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) $(filter %.c %.o,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) $(LIBS)
 
 # No circle of includes, no arrow upwards.
-.PHONY: layers
-test test-stage: layers
-layers:
-	@tests/run test tests/layers
+layers-stage:
+	@tests/run layers tests/layers
 
 # The ready-made parts for circuit simulators; a unit test finds what is checked in and differs.
 netlists: $(BUILD)/make_netlists

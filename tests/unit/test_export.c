@@ -300,6 +300,7 @@ static void netlists_of_the_moving_examples_give_the_numbers_of_the_engines(void
          1e-6},
     };
     (void)state;
+    simulate_without_sanitizers();
     for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
         check_example(&examples[i], "ida", examples[i].tolerance);
     }
@@ -339,6 +340,7 @@ static void netlists_of_random_transients_are_right_to_half_of_what_is_asked(voi
     uint64_t seed = 20250711;
     size_t done = 0;
     (void)state;
+    simulate_without_sanitizers();
     for (int i = 0; i < RANDOM_SCENES; i++) {
         dea_scene scene;
         plot p;

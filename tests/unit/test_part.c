@@ -235,6 +235,7 @@ static void compare_motion(const child_run *run, int kind)
 static void motion_is_that_of_the_engine_ida(void **state)
 {
     (void)state;
+    simulate_without_sanitizers();
     child_run run;
     run_circuit(begin_moving_circuit(fine_step, ""), &run);
     for (int i = 0; i < KINDS; i++) {
@@ -323,6 +324,7 @@ static void springs_in_parallel_share_the_force_at_the_operating_point(void **st
 static void the_energy_drawn_is_work_and_stores_and_losses(void **state)
 {
     (void)state;
+    simulate_without_sanitizers();
     for (int kind = 0; kind < KINDS; kind++) {
         child_run run;
         dea_dynamics d;
@@ -414,6 +416,7 @@ static double shortest_step(const child_run *run)
 static void a_step_of_a_nanosecond_converges(void **state)
 {
     (void)state;
+    simulate_without_sanitizers();
     static const int order[KINDS] = {0, 1, 2, 3, 4, 5, 6, 7};
     child_run run;
     FILE *file = begin_circuit();
@@ -437,6 +440,7 @@ static void a_step_of_a_nanosecond_converges(void **state)
 static void a_step_of_a_nanosecond_converges_in_every_order_of_the_parts(void **state)
 {
     (void)state;
+    simulate_without_sanitizers();
     static const int orders[][KINDS] = {{6, 0, 2, 4, 3, 5, 1, 7}, {7, 5, 4, 1, 2, 3, 0, 6}, {3, 5, 2, 6, 1, 0, 4, 7}, {7, 6, 5, 4, 3, 2, 1, 0}};
     for (size_t k = 0; k < sizeof orders / sizeof *orders; k++) {
         child_run run;
@@ -454,6 +458,7 @@ static void a_step_of_a_nanosecond_converges_in_every_order_of_the_parts(void **
 static void neither_compatibility_modes_nor_uic_change_a_number(void **state)
 {
     (void)state;
+    simulate_without_sanitizers();
     static const char *const modes[] = {"", "set ngbehavior=psa\n", "set ngbehavior=lta\n", "set ngbehavior=kiltpsa\n", ""};
     static double first[KINDS][SAMPLES];
     for (size_t m = 0; m < sizeof modes / sizeof *modes; m++) {
@@ -502,6 +507,7 @@ static void write_multiples(FILE *file, const char *part)
 static void m_parts_in_one_are_as_many_side_by_side(void **state)
 {
     (void)state;
+    simulate_without_sanitizers();
     static const char *const moves[] = {"v(x0.u)", "v(x1.u)", "v(x2.xin.u)"}, *const volts[] = {"v(b0)", "v(b1)", "v(b2)"};
     for (int kind = 0; kind < KINDS; kind++) {
         child_run run;
@@ -525,6 +531,7 @@ static void m_parts_in_one_are_as_many_side_by_side(void **state)
 static void options_of_the_circuit_change_no_answer(void **state)
 {
     (void)state;
+    simulate_without_sanitizers();
     static const char *const options[] = {
         "",           "rshunt=1e12",  "cshunt=1e-13", "gmin=1e-15", "gmin=1e-9", "method=gear", "abstol=1e-10",
         "vntol=1e-4", "chgtol=1e-16", "pivrel=0.1",   "xmu=0.49",   "itl1=50",   "noopiter",    "trtol=1"};

@@ -42,10 +42,14 @@ typedef struct planner {
 } planner;
 
 /* A load that alone resists the edge of a membrane leaves its other nodes without an equation of motion: they keep their mass; so they do
- * where the rim of a sheet resistance charges at once, which the one resistance of the stand-in hides. */
+ * where the rim of a sheet resistance charges at once, which the one resistance of the stand-in hides. A branch has relaxed where a
+ * steady force pulls the film, and as a spring it would pull it back to where it is without. */
 static bool pays(const planner *p, dea_part part)
 {
     const dea_scene *scene = p->surrogate.scene;
+    if (part == DEA_PART_BRANCH && dea_point_is_pulled(&p->surrogate.dynamics.point)) {
+        return false;
+    }
     if (p->many_nodes && (dea_scene_edge(scene).damping > 0.0 || scene->electrode.sheet_resistance > 0.0)) {
         return false;
     }

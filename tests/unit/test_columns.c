@@ -102,6 +102,7 @@ static void every_column_is_within_ten_times_the_accuracy(void **state)
         {"columns_damper", 1e-8, 1e-4},  {"columns_branches", 1e-4, 1e-2}, {"columns_corners", 1e-4, 1e-2},
         {"columns_bias", 1e-6, 1e-4},    {"columns_held", 1e-6, 1e-2},   {"force_ngspice", 1e-6, 1e-6},
         {"columns_ohms", 1e-8, 1e-6},    {"columns_turning", 1e-4, 1e-2}, {"columns_film_voltage", 1e-8, 1e-4},
+        {"columns_pulled", 1e-4, 1e-4},
     };
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
         char *text = read_case(cases[c].name);

@@ -49,10 +49,12 @@ STABILITY_PARTS := $(STABILITY_SOURCES:%.c=$(BUILD)/%.o)
 
 CLANG    := $(shell command -v clang 2>/dev/null)
 JOBS     ?= $(shell nproc 2>/dev/null || echo 1)
+# What make check runs, the longest first.
+STAGES   := compilers-agree fuzz examples-agree test asan layers
 SANITIZE := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 
 .DELETE_ON_ERROR:
-.PHONY: all unit demo check test asan fuzz clang bench work-precision stability promises hard netlists examples-agree compilers-agree asan-run install uninstall clean packages packages-check
+.PHONY: all unit demo check $(STAGES) $(STAGES:%=%-stage) clang clang-stage checked bench work-precision stability promises hard netlists install uninstall clean packages packages-check
 
 all: $(BUILD)/deaspice $(BUILD)/libdeaspice.so
 
@@ -74,57 +76,73 @@ demo: packages
 	@echo "the table is demo/figure10.csv, the picture demo/figure10.svg; next: $(BUILD)/deaspice run examples/protocol.yaml --plot demo/protocol.svg"
 
 # Everything that must hold: unit tests, engines against each other, examples, bad input, sanitizers, fuzzing, a second compiler.
+# All stages share the jobs of one make, so that no core waits for the last test of a stage.
 check: packages-check
 	@rm -f $(BUILD)/tally; mkdir -p $(BUILD)
-	@TALLY=$(abspath $(BUILD))/tally $(MAKE) --no-print-directory -k test examples-agree clang compilers-agree asan fuzz; \
+	@TALLY=$(abspath $(BUILD))/tally $(MAKE) --no-print-directory -k -j$(JOBS) $(STAGES:%=%-stage); \
 	status=$$?; \
 	awk -v status=$$status '{p += $$1; f += $$2} END {if (status && !f) f = 1; printf "%d passed, %d failed\n", p, f}' $(BUILD)/tally; \
 	exit $$status
 
-test:
-	@$(MAKE) --no-print-directory -j$(JOBS) all unit
-	@JOBS=$(JOBS) DEASPICE=$(abspath $(BUILD))/deaspice tests/run test $(UNIT_PROGRAMS)
+# One stage by itself.
+$(STAGES) clang: %:
+	@$(MAKE) --no-print-directory -k -j$(JOBS) $*-stage
 
-examples-agree:
-	@$(MAKE) --no-print-directory -j$(JOBS) all
-	@$(BUILD)/deaspice check --quiet examples/*.yaml && echo "1 0" >>$${TALLY:-/dev/null} || { echo "0 1" >>$${TALLY:-/dev/null}; exit 1; }
+# $(call counted,COMMAND): one test of the tally.
+counted = $(1) && echo "1 0" >>$${TALLY:-/dev/null} || { echo "0 1" >>$${TALLY:-/dev/null}; exit 1; }
 
-clang:
-	@$(MAKE) --no-print-directory BUILD=$(BUILD)/clang CC=clang CFLAGS="-O1 -Werror" -j$(JOBS) all unit
+STAGE := test
+UNIT_RUNS := $(UNIT_PROGRAMS:%=%-run)
+.PHONY: $(UNIT_RUNS)
+test-stage: $(UNIT_RUNS)
+$(UNIT_RUNS): %-run: % all
+	@DEASPICE=$(abspath $(BUILD))/deaspice tests/run $(STAGE) $<
+
+examples-agree-stage: all
+	@$(call counted,$(BUILD)/deaspice check --quiet examples/*.yaml)
+
+# The warnings of a second compiler, its program, and its library for the fuzzers. Tests are compiled and not linked: nothing runs them.
+CHECKED := $(patsubst %.c,$(BUILD)/%.checked,$(sort $(UNIT_SOURCES) $(wildcard tests/promises/*.c tests/stability/*.c tests/bench/*.c tests/hard/*.c)))
+clang-stage:
+	+@$(MAKE) --no-print-directory BUILD=$(BUILD)/clang CC=clang CFLAGS="-O1 -Werror" all checked
+checked: $(CHECKED)
+$(BUILD)/%.checked: %.c Makefile
+	@mkdir -p $(@D)
+	@echo "CHECK $<"
+	@$(CC) $(ALL_CFLAGS) -Itests/bench -MF $(@:.checked=.d) -MT $@ -fsyntax-only $<
+	@touch $@
 
 # The examples by both compilers.
-compilers-agree: clang
-	@$(MAKE) --no-print-directory -j$(JOBS) all $(BUILD)/stability
-	@$(BUILD)/stability --compilers examples gcc=$(BUILD)/deaspice clang=$(BUILD)/clang/deaspice >$(BUILD)/compilers \
-	&& echo "1 0" >>$${TALLY:-/dev/null} || { cat $(BUILD)/compilers; echo "0 1" >>$${TALLY:-/dev/null}; exit 1; }
+compilers-agree-stage: all $(BUILD)/stability clang-stage
+	@$(call counted,{ $(BUILD)/stability --compilers examples gcc=$(BUILD)/deaspice clang=$(BUILD)/clang/deaspice >$(BUILD)/compilers \
+	|| { cat $(BUILD)/compilers; false; }; })
 
-asan:
-	@$(MAKE) --no-print-directory BUILD=$(BUILD)/asan CFLAGS="$(SANITIZE)" asan-run
+# The truths that tests compute for themselves, half of the time of some, run without sanitizers: they share no code with the library.
+ASAN := detect_leaks=1:quarantine_size_mb=64:malloc_context_size=8:max_malloc_fill_size=256
+asan-stage:
+	+@ASAN_OPTIONS=$(ASAN) UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS=suppressions=$(abspath tests/leaks.supp):print_suppressions=0 \
+	$(MAKE) --no-print-directory BUILD=$(BUILD)/asan CFLAGS="$(SANITIZE)" TRUTH_FLAGS="-O2 -fno-sanitize=all" STAGE=asan test-stage
 
-asan-run:
-	@$(MAKE) --no-print-directory -j$(JOBS) all unit
-	@JOBS=$(JOBS) DEASPICE=$(abspath $(BUILD))/deaspice ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 \
-	LSAN_OPTIONS=suppressions=$(abspath tests/leaks.supp):print_suppressions=0 tests/run asan $(UNIT_PROGRAMS)
-
-# libFuzzer on the readers of scenes and of tables, side by side; FUZZ_SECONDS=n for longer.
+# libFuzzer on the readers of scenes and of tables, side by side; FUZZ_SECONDS=n for longer. What reads a scene is instrumented; what
+# else the tables of kinds bring in comes from clang's library.
 FUZZ_SECONDS ?= 30
 FUZZERS := scene table
-FUZZ = clang $(filter-out -MMD -MP,$(ALL_CFLAGS)) -O1 -g -fsanitize=fuzzer,address,undefined
-fuzz:
-	@$(MAKE) --no-print-directory -j$(JOBS) $(FUZZERS:%=fuzz-%)
-
-fuzz-%: $(BUILD)/fuzz/%_fuzz
+FUZZ = clang $(filter-out -MMD -MP,$(ALL_CFLAGS)) -O1 -g1 -fsanitize=fuzzer,address,undefined
+FUZZ_RUNS := $(FUZZERS:%=fuzz-%)
+.PHONY: $(FUZZ_RUNS)
+fuzz-stage: $(FUZZ_RUNS)
+$(FUZZ_RUNS): fuzz-%: $(BUILD)/fuzz/%_fuzz
 	@mkdir -p $(BUILD)/fuzz/$*
-	@UDUNITS2_XML_PATH=/nonexistent $< -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=2048 -verbosity=0 -print_final_stats=1 \
-	-artifact_prefix=$(BUILD)/fuzz/ $(BUILD)/fuzz/$* $(FUZZ_SEEDS_$*) >$(BUILD)/fuzz/$*.log 2>&1 \
-	&& { grep -h executed $(BUILD)/fuzz/$*.log; echo "1 0" >>$${TALLY:-/dev/null}; } \
-	|| { tail -n 40 $(BUILD)/fuzz/$*.log; echo "0 1" >>$${TALLY:-/dev/null}; exit 1; }
+	@$(call counted,{ UDUNITS2_XML_PATH=/nonexistent $< -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=2048 -verbosity=0 \
+	-print_final_stats=1 -artifact_prefix=$(BUILD)/fuzz/ $(BUILD)/fuzz/$* $(FUZZ_SEEDS_$*) >$(BUILD)/fuzz/$*.log 2>&1 \
+	&& grep -h executed $(BUILD)/fuzz/$*.log || { tail -n 40 $(BUILD)/fuzz/$*.log; false; }; })
 
 FUZZ_SEEDS_scene := tests/bad examples
-$(BUILD)/fuzz/scene_fuzz: tests/fuzz/scene_fuzz.c $(LIBRARY_SOURCES)
+FUZZ_FOLDERS := scene support material drive study geometry load
+$(BUILD)/fuzz/scene_fuzz: tests/fuzz/scene_fuzz.c $(sort $(wildcard $(FUZZ_FOLDERS:%=src/%/*.c))) | clang-stage
 	@mkdir -p $(@D)
 	@echo "CC $@"
-	@$(FUZZ) -DDEA_AXIS_VALUES_MAX=100000 $^ -o $@ $(LIBS)
+	@$(FUZZ) -DDEA_AXIS_VALUES_MAX=100000 $^ $(BUILD)/clang/libdeaspice.a -o $@ $(LIBS)
 
 FUZZ_SEEDS_table := tests/fuzz/tables examples/data
 $(BUILD)/fuzz/table_fuzz: tests/fuzz/table_fuzz.c $(sort $(wildcard src/support/*.c))
@@ -193,10 +211,8 @@ $(BUILD)/hard: $(wildcard tests/hard/*.[ch]) $(TRUTHS) $(BUILD)/libdeaspice.a
 	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) $(filter %.c %.o,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) $(LIBS)
 
 # No circle of includes, no arrow upwards.
-.PHONY: layers
-test test-stage: layers
-layers:
-	@tests/run test tests/layers
+layers-stage:
+	@tests/run layers tests/layers
 
 # The ready-made parts for circuit simulators; a unit test finds what is checked in and differs.
 netlists: $(BUILD)/make_netlists
@@ -241,7 +257,7 @@ clean:
 $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)
 	@echo "CC $@"
-	@$(CC) $(ALL_CFLAGS) -c $< -o $@
+	@$(CC) $(ALL_CFLAGS) $(OWN) -c $< -o $@
 
 $(BUILD)/libdeaspice.a: $(LIBRARY_OBJECTS)
 	@rm -f $@
@@ -256,10 +272,13 @@ $(BUILD)/deaspice: $(PROGRAM_OBJECTS) $(BUILD)/libdeaspice.a
 	@echo "LD $@"
 	@$(CC) $(CFLAGS) $(LDFLAGS) $^ -o $@ $(LIBS)
 
-$(BUILD)/tests/%: tests/unit/%.c $(BUILD)/libdeaspice.a Makefile
-	@mkdir -p $(@D)
-	@echo "CC $@"
-	@$(CC) $(ALL_CFLAGS) -Itests/unit $< $(filter %.o,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) -lcmocka $(LIBS)
+# Unit tests do little work of their own and compile faster with less optimisation; without any, the truths of some run too long.
+UNIT_OBJECTS := $(UNIT_SOURCES:%.c=$(BUILD)/%.o)
+$(UNIT_OBJECTS): OWN = -O1
+$(TRUTHS): OWN = $(TRUTH_FLAGS)
+$(UNIT_PROGRAMS): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(BUILD)/libdeaspice.a
+	@echo "LD $@"
+	@$(CC) $(CFLAGS) $(LDFLAGS) $(filter %.o,$^) $(BUILD)/libdeaspice.a -o $@ -lcmocka $(LIBS)
 
 # The whole program with calls that can be made to fail.
 FAULTS := $(shell awk -F '[^A-Za-z0-9_]+' '$$1 == "FAULT_CALL" {print $$2} $$2 ~ /^__wrap_/ {print substr($$2, 8)}' tests/unit/faults.h)
@@ -276,4 +295,4 @@ $(BUILD)/tests/test_stalls: $(BUILD)/tests/promises/stalls.o
 
 unit: $(UNIT_PROGRAMS)
 
--include $(LIBRARY_OBJECTS:.o=.d) $(PROGRAM_OBJECTS:.o=.d) $(STABILITY_PARTS:.o=.d) $(PROMISES:.o=.d) $(wildcard $(BUILD)/tests/*.d)
+-include $(LIBRARY_OBJECTS:.o=.d) $(PROGRAM_OBJECTS:.o=.d) $(STABILITY_PARTS:.o=.d) $(wildcard $(BUILD)/tests/*.d $(BUILD)/tests/*/*.d)

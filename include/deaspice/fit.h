@@ -74,10 +74,6 @@ typedef struct dea_fit {
     double unloads_from;     /**< largest stretch before the data go back by a fifth of their range [1], NAN: they do not */
 } dea_fit;
 
-/** Name of a load: "uniaxial", "equibiaxial", "unknown". */
-DEA_API const char *dea_load_name(dea_load load);
-/** Load by name, DEA_LOAD_UNKNOWN if there is none. */
-DEA_API dea_load dea_load_find(const char *name);
 
 /** Reads a table of measured points and appends it to @p data.
  *

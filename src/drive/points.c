@@ -1,5 +1,4 @@
 /* Straight lines between points, from a list or a file. */
-#include <math.h>
 
 #include "drive/waves.h"
 

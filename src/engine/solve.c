@@ -3,7 +3,6 @@
 #include "scene/line.h"
 #include "study/study.h"
 
-#include <math.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>

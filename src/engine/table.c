@@ -1,20 +1,11 @@
 #include "deaspice/model.h"
 #include "engine/engines.h"
 #include "study/study.h"
-
-#include <string.h>
+#include "support/named.h"
 
 static const dea_engine *const engines[] = {&dea_engine_direct, &dea_engine_ngspice, &dea_engine_ida};
 
-size_t dea_engine_count(void)
-{
-    return sizeof engines / sizeof engines[0];
-}
-
-const dea_engine *dea_engine_at(size_t index)
-{
-    return index < dea_engine_count() ? engines[index] : NULL;
-}
+DEA_NAMED_ROWS(dea_engine, engines, engines[index])
 
 const char *dea_engine_refuses(const dea_engine *engine, const dea_scene *scene, const dea_model *model)
 {
@@ -30,13 +21,4 @@ const char *dea_engine_refuses(const dea_engine *engine, const dea_scene *scene,
     if (model->membrane && scene->drive.current_limit > 0.0)
         return "its rings of film take no current limit; ring does";
     return engine->refuses ? engine->refuses(scene, model) : NULL;
-}
-
-const dea_engine *dea_engine_find(const char *name)
-{
-    for (size_t i = 0; i < dea_engine_count(); i++) {
-        if (strcmp(engines[i]->name, name) == 0)
-            return engines[i];
-    }
-    return NULL;
 }

@@ -15,9 +15,10 @@
 #define VHB_4905_LONG_TERM 13.4e3
 #define VHB_4905_INSTANTANEOUS (VHB_4905_LONG_TERM + 31.2e3 + 11.6e3)
 
-/* Nothing is known of other temperatures. */
-#define ANY_TEMPERATURE \
-    .temperature = NAN, .modulus_slope = NAN, .modulus_reference = NAN, .shift = {.c1 = NAN, .c2 = NAN, .reference = NAN}
+/* Nothing is known of damping, of an operating modulus, of a breakdown strength, and of other temperatures. */
+#define NOT_GIVEN                                                                                                                \
+    .retardation = NAN, .modulus = NAN, .breakdown = NAN, .temperature = NAN, .modulus_slope = NAN, .modulus_reference = NAN,    \
+    .shift = {.c1 = NAN, .c2 = NAN, .reference = NAN}
 
 static const dea_material materials[] = {
     {
@@ -28,10 +29,7 @@ static const dea_material materials[] = {
         .constants = {178426.0, -6023.0, 4234.0},
         .permittivity = 2.8,
         .density = 1080.0,
-        .retardation = NAN,
-        .modulus = NAN,
-        .breakdown = NAN,
-        ANY_TEMPERATURE,
+        NOT_GIVEN,
     },
     {
         .name = "elastosil-2030-solano",
@@ -43,10 +41,7 @@ static const dea_material materials[] = {
         .permittivity = 2.76,
         .permittivity_per_stretch = -0.28,
         .density = 1080.0,
-        .retardation = NAN,
-        .modulus = NAN,
-        .breakdown = NAN,
-        ANY_TEMPERATURE,
+        NOT_GIVEN,
     },
     {
         .name = "vhb-4910",
@@ -57,10 +52,7 @@ static const dea_material materials[] = {
         .constants = {VHB_4910_LONG_TERM, 5.99},
         .permittivity = 4.8,
         .density = NAN,
-        .retardation = NAN,
-        .modulus = NAN,
-        .breakdown = NAN,
-        ANY_TEMPERATURE,
+        NOT_GIVEN,
         .prony_count = 3,
         .prony = VHB_4910_BRANCHES,
     },
@@ -72,10 +64,7 @@ static const dea_material materials[] = {
         .constants = {VHB_4910_LONG_TERM / 2.0},
         .permittivity = 4.8,
         .density = NAN,
-        .retardation = NAN,
-        .modulus = NAN,
-        .breakdown = NAN,
-        ANY_TEMPERATURE,
+        NOT_GIVEN,
         .prony_count = 3,
         .prony = VHB_4910_BRANCHES,
     },
@@ -88,10 +77,7 @@ static const dea_material materials[] = {
         .constants = {VHB_4905_LONG_TERM},
         .permittivity = 4.8,
         .density = NAN,
-        .retardation = NAN,
-        .modulus = NAN,
-        .breakdown = NAN,
-        ANY_TEMPERATURE,
+        NOT_GIVEN,
         .stretches = {1.0, 3.0},
         .prony_count = 2,
         .prony = {{31.2e3 / VHB_4905_INSTANTANEOUS, 6.45}, {11.6e3 / VHB_4905_INSTANTANEOUS, 140.0}},
@@ -104,10 +90,7 @@ static const dea_material materials[] = {
         .constants = {0.59e6, 30.04},
         .permittivity = 2.8,
         .density = NAN,
-        .retardation = NAN,
-        .modulus = NAN,
-        .breakdown = NAN,
-        ANY_TEMPERATURE,
+        NOT_GIVEN,
     },
 };
 
@@ -121,10 +104,7 @@ dea_material dea_material_default(void)
         .constants = {NAN},
         .permittivity = NAN,
         .density = NAN,
-        .retardation = NAN,
-        .modulus = NAN,
-        .breakdown = NAN,
-        ANY_TEMPERATURE,
+        NOT_GIVEN,
     };
 }
 

@@ -12,10 +12,8 @@
  *
  * A permittivity that follows the strain puts its factors (dea_film_electric()) before k and the integrand of c.
  */
-#include <float.h>
 
 #include "model/field.h"
-#include "model/film_balance.h"
 
 enum { GBS_COLUMNS = 7, ELLIPTIC_SAMPLES = 8 };
 

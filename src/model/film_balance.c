@@ -101,7 +101,7 @@ DEA_INLINE void set_off(walkers *w)
         const double bend = 0.5 * w->curvature[l] - 6.0 * w->m[l];
         const double linear = w->m[l] / room;
         w->strain[l] = w->last[l] = linear / (1.0 + bend * linear / room);
-        w->root[l] = 0.0;
+        w->root[l] = w->load[l] = w->slope[l] = w->curve[l] = 0.0;
         w->live[l] = ((w->strain[l] >= 0.0) & (w->strain[l] < w->end[l])) ? 1.0 : 0.0;
     }
 }
@@ -231,7 +231,9 @@ static bool trace(const dea_point *point, const walkers *w, size_t l, double *st
 /* Strains of up to DEA_LANES films of as many points, each with its own ratio, under the pressures m; false where there is none. */
 static void find(const dea_point *points, size_t count, const double *ratio, const double *m, double *strain, bool *found)
 {
-    walkers w = {.film = &points[0].film, .skin = points[0].skin_share > 0.0 ? &points[0].skin : NULL};
+    walkers w; /* set whole here and as they set off: to clear it first would cost a tenth of the way */
+    w.film = &points[0].film;
+    w.skin = points[0].skin_share > 0.0 ? &points[0].skin : NULL;
     DEA_EACH_LANE(l)
     {
         const size_t from = l < count ? l : 0; /* an idle lane does what the first does */

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "deaspice/needs.h"
-#include "scene/line.h"
 #include "needs/nearness.h"
 #include "needs/trial.h"
 #include "study/study.h"

@@ -1,4 +1,5 @@
 #include "netlist/dialect.h"
+#include "support/named.h"
 
 #include <ctype.h>
 #include <stdbool.h>
@@ -68,27 +69,7 @@ static const dea_dialect dialects[] = {
     },
 };
 
-enum { DIALECT_COUNT = sizeof dialects / sizeof *dialects };
-
-size_t dea_dialect_count(void)
-{
-    return DIALECT_COUNT;
-}
-
-const dea_dialect *dea_dialect_at(size_t index)
-{
-    return index < DIALECT_COUNT ? &dialects[index] : NULL;
-}
-
-const dea_dialect *dea_dialect_find(const char *name)
-{
-    for (size_t i = 0; name && i < DIALECT_COUNT; i++) {
-        if (strcmp(dialects[i].name, name) == 0) {
-            return &dialects[i];
-        }
-    }
-    return NULL;
-}
+DEA_NAMED_ROWS(dea_dialect, dialects, &dialects[index])
 
 void dea_dialect_source_begin(const dea_dialect *dialect, FILE *out, dea_quantity quantity, const char *name, const char *plus,
                               const char *minus)

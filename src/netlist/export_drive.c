@@ -2,7 +2,6 @@
 #include "netlist/export_drive.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "netlist/curve_cards.h"
 

@@ -11,6 +11,7 @@
 #include "expression/derivative.h"
 #include "expression/formula.h"
 #include "geometry/point.h"
+#include "support/named.h"
 
 static const dea_analogy analogies[] = {
     {"mobility", "mobility analogy: v(edge) = velocity [m/s], current = force [N], compliance = inductor, mass = capacitor", 'C',
@@ -22,22 +23,7 @@ static const dea_analogy analogies[] = {
 const dea_cures dea_part_cures = {
     .per_metre = 1e6, .drift = 1e-9, .inertia = 1e-6, .lightest = 1e-24, .stop = 1e-3, .fastest = 1e9, .sense = 1e-3};
 
-enum { ANALOGIES = sizeof analogies / sizeof *analogies };
-
-const dea_analogy *dea_analogy_at(size_t index)
-{
-    return index < ANALOGIES ? &analogies[index] : NULL;
-}
-
-const dea_analogy *dea_analogy_find(const char *name)
-{
-    for (size_t i = 0; i < ANALOGIES; i++) {
-        if (strcmp(analogies[i].name, name) == 0) {
-            return &analogies[i];
-        }
-    }
-    return NULL;
-}
+DEA_NAMED_ROWS(dea_analogy, analogies, &analogies[index])
 
 dea_status dea_mobility_take(dea_mobility *mobility, dea_error *error)
 {

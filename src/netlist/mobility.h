@@ -17,6 +17,7 @@ typedef struct dea_analogy {
 } dea_analogy;
 
 /* Analogy number @p index, the default first, NULL past the end; by name, NULL if there is none. */
+size_t dea_analogy_count(void);
 const dea_analogy *dea_analogy_at(size_t index);
 const dea_analogy *dea_analogy_find(const char *name);
 

@@ -1,6 +1,5 @@
 #include "netlist/rings_cards.h"
 
-#include <math.h>
 
 #include "expression/derivative.h"
 #include "expression/formula.h"

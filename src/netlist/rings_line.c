@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "scene/line.h"
-#include "expression/formula.h"
 #include "expression/tape.h"
 #include "netlist/netlist.h"
 #include "netlist/rings_text.h"

@@ -1,7 +1,6 @@
 #include "netlist/rings_moving.h"
 #include "netlist/rings_cards.h"
 
-#include <math.h>
 
 #include "expression/derivative.h"
 #include "expression/formula.h"

@@ -3,7 +3,6 @@
 #include <ctype.h>
 #include <math.h>
 
-#include "expression/formula.h"
 
 dea_rings_label dea_rings_label_of(const char *name, size_t number)
 {

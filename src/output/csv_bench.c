@@ -1,6 +1,5 @@
 /* A work-precision study as CSV: one header row, a row a setting, empty fields for numbers that are not there. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "output/bench.h"

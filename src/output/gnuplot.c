@@ -228,10 +228,11 @@ void dea_gnuplot_put(FILE *script, const char *format, ...)
     va_end(values);
 }
 
-/* Starts gnuplot, from a file into a pipe and its words into another file. */
+/* Starts gnuplot, from a file into a pipe and its words into another file. Its standard input it reads byte by byte unless it opens it by
+ * name, which takes a third of the time and tells the line of a fault. */
 static dea_status gnuplot_spawn(FILE *script, int picture, FILE *words, pid_t *child, dea_error *error)
 {
-    char *const arguments[] = {"gnuplot", "-d", NULL};
+    char *const arguments[] = {"gnuplot", "-d", "/dev/stdin", NULL};
     posix_spawn_file_actions_t actions;
     if (posix_spawn_file_actions_init(&actions) != 0) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");

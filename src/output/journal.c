@@ -658,29 +658,9 @@ dea_status dea_journal_read(const dea_journal_study *study, const char *path, de
     return journal_hand(opened, status, journal);
 }
 
-dea_shard dea_journal_shard(const dea_journal *journal)
+dea_journal_content dea_journal_tell(const dea_journal *journal)
 {
-    return journal->shard;
-}
-
-size_t dea_journal_points(const dea_journal *journal)
-{
-    return journal->points;
-}
-
-size_t dea_journal_lost(const dea_journal *journal)
-{
-    return journal->lost;
-}
-
-uint64_t dea_journal_cut(const dea_journal *journal)
-{
-    return journal->cut;
-}
-
-uint64_t dea_journal_damaged(const dea_journal *journal)
-{
-    return journal->damaged;
+    return (dea_journal_content){journal->shard, journal->points, journal->lost, journal->cut, journal->damaged};
 }
 
 bool dea_journal_wants(const dea_journal *journal, size_t block)

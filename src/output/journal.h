@@ -47,6 +47,15 @@ dea_stretch dea_shard_points(const dea_journal_study *study, dea_shard shard);
 
 typedef struct dea_journal dea_journal;
 
+/* What a journal holds. */
+typedef struct dea_journal_content {
+    dea_shard shard;  /* of the file */
+    size_t points;    /* for good */
+    size_t lost;      /* points whose block another run shall compute again */
+    uint64_t cut;     /* bytes of a torn end that were cut off when it was opened */
+    uint64_t damaged; /* bytes between its records that are none */
+} dea_journal_content;
+
 /* How a journal ends. */
 typedef enum dea_journal_end {
     DEA_JOURNAL_STAYS,  /* to be gone on with; one without a name of its own is removed */
@@ -66,16 +75,8 @@ dea_status dea_journal_create(const dea_journal_study *study, dea_shard shard, c
 /* Opens a part to read it. Its records are found; their points are verified when they are read. Its shard is what the file says.
  * DEA_ERROR_USAGE: not a part, of another study, or damaged; the message names file and points. */
 dea_status dea_journal_read(const dea_journal_study *study, const char *path, dea_journal **journal, dea_error *error);
-/* The file's shard. */
-dea_shard dea_journal_shard(const dea_journal *journal);
-/* Points in it for good. */
-size_t dea_journal_points(const dea_journal *journal);
-/* Points in it whose block another run shall compute again. */
-size_t dea_journal_lost(const dea_journal *journal);
-/* Bytes of a torn end that were cut off when it was opened. */
-uint64_t dea_journal_cut(const dea_journal *journal);
-/* Bytes between its records that are none. */
-uint64_t dea_journal_damaged(const dea_journal *journal);
+/* What is in it. */
+dea_journal_content dea_journal_tell(const dea_journal *journal);
 /* True where the block belongs to the shard and is not in the journal for good. */
 bool dea_journal_wants(const dea_journal *journal, size_t block);
 /* DEA_OK where it has all points of its shard; else a message that names the first that are missing. */

@@ -93,8 +93,8 @@ void dea_legend_draw(const dea_legend *legend, FILE *script, int width, int heig
     for (size_t i = 0; i < legend->count; i++) {
         const dea_legend_entry *entry = &legend->entries[i];
         if (entry->dash > 0) {
-            fprintf(script, "%s$line%zu using 1:2 with lines linewidth 1.8 linecolor '%s' ", before, i, entry->colour);
-            dea_plot_dash(script, entry->dash);
+            fprintf(script, "%s$line%zu using 1:2 with lines linewidth 1.8 linecolor '%s' %s", before, i, entry->colour,
+                    dea_plot_dash(entry->dash));
             before = ", \\\n ";
         }
         if (entry->symbol > 0) {

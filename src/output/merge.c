@@ -16,12 +16,12 @@ static dea_status part_check(const dea_journal_study *study, part *checked, cons
     dea_journal *journal;
     dea_status status = dea_journal_read(study, checked->path, &journal, error);
     if (status == DEA_OK) {
-        checked->shard = dea_journal_shard(journal);
+        checked->shard = dea_journal_tell(journal).shard;
         status = dea_journal_complete(journal, error);
-        if (status == DEA_OK && dea_journal_lost(journal) > 0 && options->log) {
+        if (status == DEA_OK && dea_journal_tell(journal).lost > 0 && options->log) {
             char line[DEA_ERROR_LENGTH];
             snprintf(line, sizeof line, "%s: the blocks of %zu points lost their workers; run that shard again with --resume",
-                     checked->path, dea_journal_lost(journal));
+                     checked->path, dea_journal_tell(journal).lost);
             options->log(options->user, line);
         }
         dea_journal_close(journal, DEA_JOURNAL_STAYS, NULL, NULL);
@@ -87,8 +87,8 @@ static dea_status part_replay(const dea_journal_study *study, const part *replay
     if (status != DEA_OK) {
         return status;
     }
-    if (dea_journal_shard(journal).number != replayed->shard.number ||
-        dea_journal_shard(journal).count != replayed->shard.count) {
+    if (dea_journal_tell(journal).shard.number != replayed->shard.number ||
+        dea_journal_tell(journal).shard.count != replayed->shard.count) {
         status = dea_fail(error, DEA_ERROR_IO, "%s has changed while it was read", replayed->path);
     } else {
         status = dea_journal_replay(journal, options, error);

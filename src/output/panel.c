@@ -30,11 +30,12 @@ void dea_plot_gradient(double share, char colour[8])
     snprintf(colour, 8, "#%02x%02x%02x", mixed[0], mixed[1], mixed[2]);
 }
 
-void dea_plot_dash(FILE *script, size_t number)
+const char *dea_plot_dash(size_t number)
 {
-    static const char *const dashes[] = {"solid",  "(8, 5)",       "(0.5, 4)", "(8, 4, 0.5, 4)", "(16, 6)", "(8, 4, 0.5, 4, 0.5, 4)",
-                                         "(4, 4)", "(16, 5, 4, 5)"};
-    fprintf(script, "dashtype %s", dashes[(number - 1) % (sizeof dashes / sizeof *dashes)]);
+    static const char *const dashes[] = {"dashtype solid",           "dashtype (8, 5)",  "dashtype (0.5, 4)",
+                                         "dashtype (8, 4, 0.5, 4)",  "dashtype (16, 6)", "dashtype (8, 4, 0.5, 4, 0.5, 4)",
+                                         "dashtype (4, 4)",          "dashtype (16, 5, 4, 5)"};
+    return dashes[(number - 1) % (sizeof dashes / sizeof *dashes)];
 }
 
 void dea_plot_style(FILE *script)

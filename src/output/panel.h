@@ -28,8 +28,8 @@ typedef struct dea_pair {
 
 /* Colours of a map and of many curves, dark to light, 0 <= share <= 1. */
 void dea_plot_gradient(double share, char colour[8]);
-/* Writes the line style of curves of one kind, from 1; number 1 is solid. */
-void dea_plot_dash(FILE *script, size_t number);
+/* "dashtype ..." of curves of one kind, from 1; number 1 is solid. */
+const char *dea_plot_dash(size_t number);
 /* Lines of a script that every picture begins with: tics, grid, border. */
 void dea_plot_style(FILE *script);
 /* Sets the palette to the gradient up to @p end. */

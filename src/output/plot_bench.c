@@ -246,8 +246,8 @@ static void write_curve(const sheet *page, FILE *script, size_t i)
     const dea_look look = look_of(page->bench, setting->model);
     int hollow, filled;
     symbols_of(setting->engine, &hollow, &filled);
-    fprintf(script, "%s$curve%zu using 1:2 with lines linewidth 1.2 linecolor '%s' ", i > 0 ? ", \\\n " : "plot ", i, look.colour);
-    dea_plot_dash(script, look.dash);
+    fprintf(script, "%s$curve%zu using 1:2 with lines linewidth 1.2 linecolor '%s' %s", i > 0 ? ", \\\n " : "plot ", i,
+            look.colour, dea_plot_dash(look.dash));
     const struct {
         int column, symbol;
         double size;
@@ -328,9 +328,9 @@ static void write_models(sheet *page, FILE *script)
     for (size_t i = 0; i < page->bench->model_count; i++) {
         const dea_look look = look_of(page->bench, i);
         const bool line = page->bench->models[i].model->membrane;
-        fprintf(script, "%s$model%zu using %s linewidth 1.4 linecolor '%s' ", i > 0 ? ", \\\n " : "plot ", i,
-                line ? "1:2 with lines" : "1:2:2:3 with yerrorbars pointtype 7 pointsize 0.9*ps", look.colour);
-        dea_plot_dash(script, line ? look.dash : 1);
+        fprintf(script, "%s$model%zu using %s linewidth 1.4 linecolor '%s' %s", i > 0 ? ", \\\n " : "plot ", i,
+                line ? "1:2 with lines" : "1:2:2:3 with yerrorbars pointtype 7 pointsize 0.9*ps", look.colour,
+                dea_plot_dash(line ? look.dash : 1));
     }
     fputc('\n', script);
 }

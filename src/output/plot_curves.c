@@ -170,9 +170,8 @@ static void write_curve(const sheet *page, FILE *script, size_t curve, int colum
     enum { DOT = 7 };
     const dea_look look = dea_series_look(&page->series, curve / page->series.groups, curve % page->series.groups);
     const int symbol = look.symbol ? look.symbol : page->plot->across.kept <= FEW_POINTS ? DOT : 0;
-    fprintf(script, "%s$curve%zu using 1:%d with lines ", curve > 0 ? ", \\\n " : "plot ", curve, column);
-    dea_plot_dash(script, look.dash);
-    fputs(" linewidth 1.8 ", script);
+    fprintf(script, "%s$curve%zu using 1:%d with lines %s linewidth 1.8 ", curve > 0 ? ", \\\n " : "plot ", curve, column,
+            dea_plot_dash(look.dash));
     dea_look_colour(script, &look);
     fputs(" notitle", script);
     if (symbol) {

@@ -35,8 +35,8 @@ static int lay_legend(dea_legend *legend, int width)
 
 static void write_line(FILE *script, const char *before, const char *block, int number, dea_load load)
 {
-    fprintf(script, "%s$%s%d with lines linewidth 1.8 linecolor '%s' ", before, block, number, loads[load].colour);
-    dea_plot_dash(script, loads[load].dash);
+    fprintf(script, "%s$%s%d with lines linewidth 1.8 linecolor '%s' %s", before, block, number, loads[load].colour,
+            dea_plot_dash(loads[load].dash));
 }
 
 static void write_measured(FILE *script, const char *before, const char *block, int number, dea_load load)

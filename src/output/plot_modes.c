@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double last_colour = 0.85; /* of the gradient: beyond it is too pale for a line */

@@ -377,9 +377,8 @@ static void write_curves(const sheet *page, FILE *script, size_t number)
     order_runs(page, part, order);
     for (size_t i = 0; i < (part->single ? 1 : page->runs->count); i++) {
         const dea_look look = look_of(page, part, order[i]);
-        fprintf(script, "%s$run%zu_%zu using 1:2 with lines ", i > 0 ? ", \\\n " : "plot ", order[i], number);
-        dea_plot_dash(script, look.dash);
-        fprintf(script, " linewidth %s ", part->single ? "1.2" : "1.6");
+        fprintf(script, "%s$run%zu_%zu using 1:2 with lines %s linewidth %s ", i > 0 ? ", \\\n " : "plot ", order[i], number,
+                dea_plot_dash(look.dash), part->single ? "1.2" : "1.6");
         dea_look_colour(script, &look);
         fputs(" notitle", script);
         if (look.symbol) {

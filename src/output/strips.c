@@ -78,9 +78,8 @@ static void write_strip(const dea_strips *s, FILE *script, size_t strip)
     const char *before = "plot ";
     for (size_t i = 0; i < s->curve_count; i++) {
         if (s->curves[i].strip == strip) {
-            fprintf(script, "%s$curve%zu using 1:2 with lines ", before, i);
-            dea_plot_dash(script, s->curves[i].dash);
-            fprintf(script, " linewidth 1.8 linecolor '%s' notitle", s->curves[i].colour);
+            fprintf(script, "%s$curve%zu using 1:2 with lines %s linewidth 1.8 linecolor '%s' notitle", before, i,
+                    dea_plot_dash(s->curves[i].dash), s->curves[i].colour);
             before = ", \\\n ";
         }
     }

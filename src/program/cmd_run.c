@@ -1,4 +1,3 @@
-#include <string.h>
 
 #include "program/audience.h"
 #include "program/program.h"

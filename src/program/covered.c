@@ -4,9 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "output/label.h"
 #include "program/omissions.h"
-#include "program/program.h"
 #include "scene/line.h"
 #include "support/number.h"
 

@@ -153,20 +153,20 @@ static void tell_taken(const recorder *run)
         return;
     }
     dea_complain("%zu of %zu %s taken over from %s", run->taken, run->total, noun(run), run->path);
-    if (dea_journal_damaged(run->journal) > 0) {
+    if (dea_journal_tell(run->journal).damaged > 0) {
         dea_complain("%llu bytes in it are damaged; what they held is computed again, what follows them is kept",
-                     (unsigned long long)dea_journal_damaged(run->journal));
+                     (unsigned long long)dea_journal_tell(run->journal).damaged);
     }
-    if (dea_journal_cut(run->journal) > 0) {
+    if (dea_journal_tell(run->journal).cut > 0) {
         dea_complain("its last %llu bytes are no whole block and were cut off",
-                     (unsigned long long)dea_journal_cut(run->journal));
+                     (unsigned long long)dea_journal_tell(run->journal).cut);
     }
 }
 
 /* Computes what is not in the journal. */
 static dea_status compute(recorder *run, dea_error *error)
 {
-    run->taken = dea_journal_points(run->journal);
+    run->taken = dea_journal_tell(run->journal).points;
     run->total = dea_shard_points(&run->study, run->shard).count;
     tell_taken(run);
     run->audience.before = run->taken;
@@ -204,11 +204,11 @@ static void tell_interrupted(const recorder *run)
     if (dea_signals_caught() == 0) {
         return;
     }
-    if (!run->arguments->resume || !run->journal || dea_journal_points(run->journal) == 0) {
+    if (!run->arguments->resume || !run->journal || dea_journal_tell(run->journal).points == 0) {
         dea_complain("interrupted, nothing written");
         return;
     }
-    dea_complain("interrupted; %zu of %zu %s are kept in %s, --resume goes on with them", dea_journal_points(run->journal),
+    dea_complain("interrupted; %zu of %zu %s are kept in %s, --resume goes on with them", dea_journal_tell(run->journal).points,
                  run->total, noun(run), run->path);
 }
 
@@ -222,7 +222,7 @@ static void tell_lost(const recorder *run, size_t points)
 
 static dea_status close_journal(recorder *run, dea_status status, dea_error *error)
 {
-    const bool whole = !run->journal || dea_journal_lost(run->journal) == 0;
+    const bool whole = !run->journal || dea_journal_tell(run->journal).lost == 0;
     const dea_journal_end done = run->arguments->shard > 0 ? DEA_JOURNAL_IS_PART : whole ? DEA_JOURNAL_GOES : DEA_JOURNAL_STAYS;
     const dea_status closed = dea_journal_close(run->journal, status == DEA_OK ? done : DEA_JOURNAL_STAYS, run->arguments->output,
                                                 status == DEA_OK ? error : NULL);
@@ -270,7 +270,7 @@ dea_exit dea_run_journaled(const dea_arguments *arguments, const dea_scene *scen
     if (status != DEA_OK) {
         tell_interrupted(&run);
     }
-    const size_t lost = run.journal ? dea_journal_lost(run.journal) : 0;
+    const size_t lost = run.journal ? dea_journal_tell(run.journal).lost : 0;
     status = close_journal(&run, status, &error);
     if (status == DEA_OK) {
         tell_share(&run);

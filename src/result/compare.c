@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "drive/signal.h"
 #include "scene/line.h"
 #include "network/dynamics.h"
 #include "result/scales.h"

@@ -144,19 +144,34 @@ dea_scales dea_scales_open(const dea_scene *scene, const dea_model *model)
     return scales;
 }
 
-dea_sample dea_scales_of(const dea_scales *scales, const dea_sample *samples, size_t count)
+/* 0 / 0 = 0: what neither moves nor charges has no error. */
+static double share(double error, double scale)
+{
+    return error > 0.0 ? error / scale : 0.0;
+}
+
+/* The columns that are measured. */
+static const size_t columns[] = {offsetof(dea_sample, displacement), offsetof(dea_sample, strain),       offsetof(dea_sample, velocity),
+                                 offsetof(dea_sample, force),        offsetof(dea_sample, current),      offsetof(dea_sample, charge),
+                                 offsetof(dea_sample, focal_length), offsetof(dea_sample, film_voltage), offsetof(dea_sample, capacitance)};
+enum { COLUMNS = sizeof columns / sizeof *columns };
+
+static double *column(dea_sample *sample, size_t index)
+{
+    return (double *)((char *)sample + columns[index]);
+}
+
+static double value(const dea_sample *sample, size_t index)
+{
+    return *(const double *)((const char *)sample + columns[index]);
+}
+
+/* Rates are measured by what they would be in the run's fastest time too. */
+static dea_sample scale_of(const dea_scales *scales, const dea_sample *largest)
 {
     dea_sample peak = scales->least;
-    for (size_t i = 0; i < count; i++) { /* fmax drops the NAN of rows without numbers */
-        peak.displacement = fmax(peak.displacement, fabs(samples[i].displacement));
-        peak.strain = fmax(peak.strain, fabs(samples[i].strain));
-        peak.velocity = fmax(peak.velocity, fabs(samples[i].velocity));
-        peak.force = fmax(peak.force, fabs(samples[i].force));
-        peak.current = fmax(peak.current, fabs(samples[i].current));
-        peak.charge = fmax(peak.charge, fabs(samples[i].charge));
-        peak.focal_length = fmax(peak.focal_length, fabs(samples[i].focal_length));
-        peak.film_voltage = fmax(peak.film_voltage, fabs(samples[i].film_voltage));
-        peak.capacitance = fmax(peak.capacitance, fabs(samples[i].capacitance));
+    for (size_t c = 0; c < COLUMNS; c++) {
+        *column(&peak, c) = fmax(value(&peak, c), value(largest, c));
     }
     peak.velocity = fmax(peak.velocity, peak.displacement * scales->pace);
     peak.current =
@@ -164,10 +179,39 @@ dea_sample dea_scales_of(const dea_scales *scales, const dea_sample *samples, si
     return peak;
 }
 
-/* 0 / 0 = 0: what neither moves nor charges has no error. */
-static double share(double error, double scale)
+/* fmax drops the NAN of rows without numbers. */
+static void see_peaks(dea_sample *peak, const dea_sample *sample)
 {
-    return error > 0.0 ? error / scale : 0.0;
+    for (size_t c = 0; c < COLUMNS; c++) {
+        *column(peak, c) = fmax(value(peak, c), fabs(value(sample, c)));
+    }
+}
+
+dea_sample dea_scales_of(const dea_scales *scales, const dea_sample *samples, size_t count)
+{
+    dea_sample largest = {0};
+    for (size_t i = 0; i < count; i++) {
+        see_peaks(&largest, &samples[i]);
+    }
+    return scale_of(scales, &largest);
+}
+
+void dea_columns_widen(dea_columns_gap *gap, const dea_sample *a, const dea_sample *b)
+{
+    for (size_t c = 0; c < COLUMNS; c++) {
+        *column(&gap->most, c) = fmax(value(&gap->most, c), fabs(value(a, c) - value(b, c)));
+    }
+    see_peaks(&gap->peak, b);
+}
+
+double dea_columns_worst(const dea_scales *scales, const dea_columns_gap *gap)
+{
+    const dea_sample scale = scale_of(scales, &gap->peak);
+    double worst = 0.0;
+    for (size_t c = 0; c < COLUMNS; c++) {
+        worst = fmax(worst, share(value(&gap->most, c), value(&scale, c)) / dea_scales_allowance(columns[c]));
+    }
+    return worst;
 }
 
 void dea_scales_tell(const dea_scales *scales, const dea_sample *samples, size_t count, dea_rate_errors errors,

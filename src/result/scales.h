@@ -40,6 +40,16 @@ dea_scales dea_scales_open(const dea_scene *scene, const dea_model *model);
 /* Scales of the columns over the rows of a run that have numbers, in the fields of a sample; time and voltage 0. */
 dea_sample dea_scales_of(const dea_scales *scales, const dea_sample *samples, size_t count);
 
+/* Largest differences of two runs, column by column, and the largest numbers of the second. */
+typedef struct dea_columns_gap {
+    dea_sample most, peak;
+} dea_columns_gap;
+
+/* Widens a gap, at first all 0, by a sample of both runs; rows without numbers widen nothing. */
+void dea_columns_widen(dea_columns_gap *gap, const dea_sample *a, const dea_sample *b);
+/* Of the column that is worst against what it promises, times its allowance, over its scale [1]. */
+double dea_columns_worst(const dea_scales *scales, const dea_columns_gap *gap);
+
 /* Errors of velocity and current over their scales, into the summary. */
 void dea_scales_tell(const dea_scales *scales, const dea_sample *samples, size_t count, dea_rate_errors errors,
                      dea_summary *summary);

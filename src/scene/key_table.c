@@ -6,6 +6,12 @@
 #include "scene/key_forms.h"
 #include "study/study.h"
 
+#define LAYERS(name, member, shown, mapping)                                                                                     \
+    {                                                                                                                            \
+        .path = name, .read = dea_read_scalar, .offset = AT(member), .unit = "1", .suffix = "", .low = 1, .high = 1e6,           \
+        .whole = true, .kinds = DEA_KEY_BOTH, .words = shown, .within = mapping, .accepted = "a whole number >= 1, e.g. 5"       \
+    }
+
 static const dea_key keys_before[] = {
     OTHER("title", dea_read_title, "one line of text, at most 1000 bytes"),
     OTHER("actuator", dea_read_mapping, "a mapping with kind, frame_radius, coverage, ..."),
@@ -19,17 +25,7 @@ static const dea_key keys_before[] = {
            "a length > 0 and < frame_radius, e.g. 15 mm"),
     SCALAR("actuator.film_thickness", actuator.film_thickness, "m", "_m", 0, INFINITY, true, DEA_KEY_BOTH, 1,
            "a length > 0, e.g. 100 um"),
-    {.path = "actuator.layers",
-     .read = dea_read_scalar,
-     .offset = AT(actuator.layers),
-     .unit = "1",
-     .suffix = "",
-     .low = 1,
-     .high = 1e6,
-     .whole = true,
-     .kinds = DEA_KEY_BOTH,
-     .words = 1,
-     .accepted = "a whole number >= 1, e.g. 5"},
+    LAYERS("actuator.layers", actuator.layers, 1, NULL),
     SCALAR("actuator.prestretch", actuator.prestretch, "1", "", 1, INFINITY, false, DEA_KEY_BOTH, 1, "a stretch >= 1, e.g. 1.2"),
     SCALAR("actuator.electrode_mass", actuator.electrode_mass, "kg/m^2", "_kg_per_m2", 0, INFINITY, false, DEA_KEY_BOTH, 1,
            "a mass per area >= 0, e.g. 25 g/m^2"),
@@ -107,18 +103,7 @@ static const dea_key keys_beside[] = {
     PART("antagonist.actuator.coverage", antagonist.coverage, "1", "", 0, 1, true, 0, "antagonist", "that of the first film"),
     PART("antagonist.actuator.film_thickness", antagonist.film_thickness, "m", "_m", 0, INFINITY, true, 3, "antagonist",
          "a length > 0, e.g. 100 um"),
-    {.path = "antagonist.actuator.layers",
-     .read = dea_read_scalar,
-     .offset = AT(antagonist.layers),
-     .unit = "1",
-     .suffix = "",
-     .low = 1,
-     .high = 1e6,
-     .whole = true,
-     .kinds = DEA_KEY_BOTH,
-     .words = 3,
-     .within = "antagonist",
-     .accepted = "a whole number >= 1, e.g. 5"},
+    LAYERS("antagonist.actuator.layers", antagonist.layers, 3, "antagonist"),
     PART("antagonist.actuator.prestretch", antagonist.prestretch, "1", "", 1, INFINITY, false, 3, "antagonist", "a stretch >= 1, e.g. 1.2"),
     OTHER("antagonist.material", dea_read_antagonist_material, "a built-in name, the path of a material file, or a mapping"),
     OTHER("antagonist.drive", dea_read_mapping, "a mapping with voltage, e.g. {voltage: 3 kV}"),

@@ -1,7 +1,6 @@
 /* The reading of a scene, step by step. */
 #define _GNU_SOURCE
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,11 +1,9 @@
 /* Reading of the study: what it asks, and over which axes. */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "scene/reader.h"
 #include "study/study.h"
-#include "support/number.h"
 
 static dea_status kind_find(dea_reader *reader, const dea_node *study)
 {

@@ -7,7 +7,6 @@
 #include "output/picture.h"
 #include "scene/key_forms.h"
 #include "study/study.h"
-#include "support/number.h"
 
 #define FORCE "study.force"
 #define DISPLACEMENT FORCE ".displacement"

@@ -5,7 +5,6 @@
 #include "output/picture.h"
 #include "scene/key_forms.h"
 #include "study/study.h"
-#include "support/number.h"
 
 #define MODES "study.modes"
 

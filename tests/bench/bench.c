@@ -14,6 +14,7 @@ int main(int count, char **arguments)
     bench_workers();
     bench_program(arguments[1]);
     bench_transients(arguments[1], arguments[2]);
+    bench_membranes();
     bench_omissions(arguments[3]);
     bench_peers(arguments[2]);
     return 0;

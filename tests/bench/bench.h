@@ -25,6 +25,8 @@ bool bench_fork(void (*function)(void *), void *argument);
 dea_scene bench_scene(const char *kind, const char *model, double prestretch, double accuracy, const char *sweep);
 /* Rows of all points of the scene's first model by that engine, in this process or in a child. Seconds of sweep() alone. */
 double bench_sweep(const dea_engine *engine, const dea_scene *scene, dea_row *rows);
+/* The same of one transient, the median of BENCH_RUNS runs; NAN where the engine failed. The samples lie in memory of bench_shared(). */
+double bench_transient(const dea_engine *engine, const dea_scene *scene, dea_sample *samples);
 /* Largest relative difference of any column of ok rows; infinite where states differ. */
 double bench_difference(const dea_row *rows, const dea_row *reference, size_t count);
 
@@ -40,6 +42,7 @@ void bench_engines(const char *peers);
 void bench_workers(void);
 void bench_program(const char *program);
 void bench_transients(const char *program, const char *peers);
+void bench_membranes(void);
 void bench_omissions(const char *examples);
 void bench_peers(const char *peers);
 

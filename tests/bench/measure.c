@@ -143,3 +143,47 @@ double bench_difference(const dea_row *rows, const dea_row *reference, size_t co
     }
     return worst;
 }
+
+/* Runs of one transient. */
+typedef struct run_job {
+    const dea_engine *engine;
+    const dea_scene *scene;
+    dea_sample *samples; /* shared with the parent, as the rest */
+    dea_summary summary;
+    double seconds[BENCH_RUNS]; /* NAN where the engine failed */
+} run_job;
+
+static void run(void *argument)
+{
+    run_job *job = argument;
+    dea_error error = {0};
+    void *session = NULL;
+    dea_status status = job->engine->begin(&session, &error);
+    for (int i = -1; i < BENCH_RUNS && status == DEA_OK; i++) { /* the first one warms up */
+        const double from = bench_now();
+        status = job->engine->transient(session, job->scene, job->scene->models[0], job->samples, &job->summary, &error);
+        if (status == DEA_OK && i >= 0) {
+            job->seconds[i] = bench_now() - from;
+        }
+    }
+    if (status == DEA_OK) {
+        job->engine->end(session);
+    } else {
+        fprintf(stderr, "%s: %s\n", job->engine->name, error.message);
+    }
+}
+
+double bench_transient(const dea_engine *engine, const dea_scene *scene, dea_sample *samples)
+{
+    run_job *job = bench_shared(sizeof *job);
+    *job = (run_job){.engine = engine, .scene = scene, .samples = samples};
+    for (int i = 0; i < BENCH_RUNS; i++) {
+        job->seconds[i] = NAN;
+    }
+    if (engine->isolated) {
+        bench_fork(run, job);
+    } else {
+        run(job);
+    }
+    return isnan(job->seconds[BENCH_RUNS - 1]) ? (double)NAN : bench_median(job->seconds, BENCH_RUNS);
+}

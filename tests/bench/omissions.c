@@ -76,7 +76,10 @@ static void protocol_row(const char *path, const char *engine, double goal)
     snprintf(what, sizeof what, "protocol, 100 frames/s, %s: what samples need / all", engine);
     snprintf(measured, sizeof measured, "%.1f times, %.3g ms", times_faster, 1e3 * bench_median(times, BENCH_RUNS));
     snprintf(wrong, sizeof wrong, "%.1e, %g wanted", error, scene.accuracy);
-    snprintf(wanted, sizeof wanted, goal > 0.0 ? "%g times" : "", goal);
+    wanted[0] = '\0';
+    if (goal > 0.0) {
+        snprintf(wanted, sizeof wanted, "%g times", goal);
+    }
     bench_row(what, wanted, goal > 0.0 ? times_faster >= goal : -1, measured, wrong);
     free(exact.u);
     dea_scene_free(&scene);

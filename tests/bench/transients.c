@@ -173,34 +173,6 @@ static double solve_exactly(const dea_scene *scene, double *u)
 
 /* ---- the engines */
 
-typedef struct run_job {
-    const dea_engine *engine;
-    const dea_scene *scene;
-    dea_sample *samples; /* shared with the parent, as the rest */
-    dea_summary summary;
-    double seconds[BENCH_RUNS]; /* NAN where the engine failed */
-} run_job;
-
-static void run(void *argument)
-{
-    run_job *job = argument;
-    dea_error error = {0};
-    void *session = NULL;
-    dea_status status = job->engine->begin(&session, &error);
-    for (int i = -1; i < BENCH_RUNS && status == DEA_OK; i++) { /* the first one warms up */
-        const double from = bench_now();
-        status = job->engine->transient(session, job->scene, job->scene->models[0], job->samples, &job->summary, &error);
-        if (status == DEA_OK && i >= 0) {
-            job->seconds[i] = bench_now() - from;
-        }
-    }
-    if (status == DEA_OK) {
-        job->engine->end(session);
-    } else {
-        fprintf(stderr, "%s: %s\n", job->engine->name, error.message);
-    }
-}
-
 /* Seconds of one transient and the error that it delivers: the largest over all samples, relative to the peak. */
 typedef struct work {
     double seconds, error;
@@ -209,19 +181,10 @@ typedef struct work {
 static work run_protocol(const char *engine, double accuracy, const double *exact, double peak)
 {
     dea_scene scene = protocol(accuracy, 1);
-    run_job *job = bench_shared(sizeof *job);
-    *job = (run_job){.engine = dea_engine_find(engine), .scene = &scene, .samples = bench_shared(SAMPLES * sizeof(dea_sample))};
-    for (int i = 0; i < BENCH_RUNS; i++) {
-        job->seconds[i] = NAN;
-    }
-    if (job->engine->isolated) {
-        bench_fork(run, job);
-    } else {
-        run(job);
-    }
-    work done = {isnan(job->seconds[BENCH_RUNS - 1]) ? NAN : bench_median(job->seconds, BENCH_RUNS), 0.0};
+    dea_sample *samples = bench_shared(SAMPLES * sizeof *samples);
+    work done = {bench_transient(dea_engine_find(engine), &scene, samples), 0.0};
     for (int i = 0; i < SAMPLES; i++) {
-        const double off = fabs(job->samples[i].displacement - exact[i]) / peak;
+        const double off = fabs(samples[i].displacement - exact[i]) / peak;
         done.error = off <= done.error ? done.error : isnan(off) ? INFINITY : off;
     }
     dea_scene_free(&scene);

@@ -6,7 +6,7 @@
 
 #include "../hard/cases.h"
 
-/* No case may take longer with one engine, sanitizers and a busy machine included [s]. */
+/* No case may take longer of a processor with one engine, sanitizers included [s]. */
 static const double hard_patience = 120.0;
 
 static inline void hard_check_case(void **state)

@@ -87,12 +87,13 @@ static inline void child_read_vectors(child_run *run)
     fclose(file);
 }
 
-/* Runs @p file of the folder; the caller ends the run with child_end(). A run that fails has no vectors. */
+/* Runs @p file of the folder, for 300 s of the processor at most however busy the machine is; the caller ends the run with child_end().
+ * A run that fails has no vectors. */
 static inline void child_start(const char *file, child_run *run)
 {
     char command[4 * CHILD_PATH];
     *run = (child_run){.width = 1};
-    snprintf(command, sizeof command, "cd '%s' && rm -f out.raw && timeout 300 ngspice -b -r out.raw '%s' >log 2>&1",
+    snprintf(command, sizeof command, "cd '%s' && rm -f out.raw && ulimit -t 300 && ngspice -b -r out.raw '%s' >log 2>&1",
              child_folder, file);
     const int ended = system(command);
     run->status = WIFEXITED(ended) ? WEXITSTATUS(ended) : -1;

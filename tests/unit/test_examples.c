@@ -111,15 +111,20 @@ static void compare_csv(void)
     assert_int_equal(count, here.count);
 }
 
-/* Runs an example by the library and by the program, with both pictures. */
+/* Runs an example by the library and by the program, with both pictures; the rows of the one run last stay. */
 static void run_example(const char *name)
 {
+    char path[sizeof here.path];
+    snprintf(path, sizeof path, "examples/%s.yaml", name);
+    if (strcmp(path, here.path) == 0 && here.count > 0) {
+        return;
+    }
     dea_error error = {0};
     const dea_run_options options = {.jobs = 1, .points = take};
     char words[2 * PATH_LENGTH];
     dea_scene_free(&here.scene);
     here.count = 0;
-    snprintf(here.path, sizeof here.path, "examples/%s.yaml", name);
+    memcpy(here.path, path, sizeof path);
     if (dea_scene_read(here.path, NULL, 0, NULL, &here.scene, &error) != DEA_OK) {
         here.scene = (dea_scene){0};
         fail_msg("%s", error.message);

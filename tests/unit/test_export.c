@@ -6,6 +6,7 @@
 #include <ctype.h>
 #include <fcntl.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -131,7 +132,7 @@ static int simulate(const char *text)
         dup2(log, STDIN_FILENO);
         dup2(log, STDOUT_FILENO);
         dup2(log, STDERR_FILENO);
-        alarm(SECONDS);
+        setrlimit(RLIMIT_CPU, &(struct rlimit){SECONDS, SECONDS});
         execlp("ngspice", "ngspice", "-n", "-b", "-r", "out.raw", "circuit.cir", (char *)NULL);
         _exit(127);
     }
@@ -230,20 +231,23 @@ static double error_of(const plot *p, const answer *a)
     return error / peak;
 }
 
-static void check_transient(const dea_scene *scene, const char *analogy, const char *reference, double tolerance,
+/* The netlist of a scene in each of some analogies, up to NULL, against one run of an engine. */
+static void check_transient(const dea_scene *scene, const char *const *analogies, const char *reference, double tolerance,
                             const char *what)
 {
-    plot p;
     answer a;
     dea_scene exact = *scene;
     exact.accuracy = strcmp(reference, "ngspice") == 0 ? 1e-6 : 1e-9;
     solve(&exact, reference, &a);
-    run_netlist(scene, analogy, &p);
-    const double error = error_of(&p, &a);
-    if (!(error <= tolerance)) {
-        fail_msg("%s, %s against %s: error %.3g, %zu time points", what, analogy, reference, error, p.count);
+    for (; *analogies; analogies++) {
+        plot p;
+        run_netlist(scene, *analogies, &p);
+        const double error = error_of(&p, &a);
+        if (!(error <= tolerance)) {
+            fail_msg("%s, %s against %s: error %.3g, %zu time points", what, *analogies, reference, error, p.count);
+        }
+        free_plot(&p);
     }
-    free_plot(&p);
     free(a.points);
 }
 
@@ -276,8 +280,7 @@ static void check_example(const moving_example *e, const char *reference, double
         count++;
     }
     read_example(e->name, e->changes, count, e->model, &scene);
-    check_transient(&scene, "mobility", reference, tolerance, e->name);
-    check_transient(&scene, "impedance", reference, tolerance, e->name);
+    check_transient(&scene, (const char *const[]){"mobility", "impedance", NULL}, reference, tolerance, e->name);
     dea_scene_free(&scene);
 }
 
@@ -297,6 +300,7 @@ static void netlists_of_the_moving_examples_give_the_numbers_of_the_engines(void
          1e-6},
     };
     (void)state;
+    simulate_without_sanitizers();
     for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
         check_example(&examples[i], "ida", examples[i].tolerance);
     }
@@ -329,26 +333,27 @@ static bool ends_early(const answer *a)
     return dea_layout_state(&a->layout, a->points + (a->layout.rows - 1) * a->layout.row_size) == DEA_STATE_PULL_IN;
 }
 
-/* The step that the file takes for an accuracy of 2e-6 keeps every one of these within 1e-6. */
-static void netlists_of_random_transients_are_right_to_a_millionth(void **state)
+/* The step that the file takes for an accuracy keeps every one of these within half of it. */
+static void netlists_of_random_transients_are_right_to_half_of_what_is_asked(void **state)
 {
     static const char *const analogies[] = {"mobility", "impedance"};
     uint64_t seed = 20250711;
     size_t done = 0;
     (void)state;
+    simulate_without_sanitizers();
     for (int i = 0; i < RANDOM_SCENES; i++) {
         dea_scene scene;
         plot p;
         answer a;
         random_transient(&seed, &scene);
         slow_down(&scene);
-        scene.accuracy = 1e-9;
+        scene.accuracy = 1e-8;
         solve(&scene, "ida", &a);
-        scene.accuracy = 2e-6;
+        scene.accuracy = 2e-5;
         if (!ends_early(&a)) {
             run_netlist(&scene, analogies[i % 2], &p);
             const double error = error_of(&p, &a);
-            if (!(error <= 1e-6)) {
+            if (!(error <= 0.5 * scene.accuracy)) {
                 fail_msg("random scene %d, %s: error %.3g, %zu points", i, scene.models[0]->name, error, p.count);
             }
             free_plot(&p);
@@ -568,7 +573,7 @@ static void netlists_of_every_law_give_the_numbers_of_the_engines(void **state)
         scene.transient = (dea_transient){.until = 4e-3, .every = 1e-4};
         scene.drive.waveform =
             (dea_waveform){.kind = DEA_WAVE_STEP, .step = {1e-3, (double)NAN, 600.0, 1e-4}, .period = (double)NAN};
-        check_transient(&scene, i % 2 ? "mobility" : "impedance", "ida", 1e-4, f->law);
+        check_transient(&scene, (const char *const[]){i % 2 ? "mobility" : "impedance", NULL}, "ida", 1e-4, f->law);
     }
 }
 
@@ -942,11 +947,11 @@ static void transients_for_xyce_step_by_tmax_alone(void **state)
     unlink(netlist);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(netlists_of_the_moving_examples_give_the_numbers_of_the_engines),
-        cmocka_unit_test(netlists_of_random_transients_are_right_to_a_millionth),
+        cmocka_unit_test(netlists_of_random_transients_are_right_to_half_of_what_is_asked),
         cmocka_unit_test(netlists_of_frequency_responses_give_the_numbers_of_the_engine),
         cmocka_unit_test(grid_of_a_frequency_response_ends_below_an_end_that_is_off_it),
         cmocka_unit_test(netlists_of_the_static_examples_give_the_numbers_of_the_engine),
@@ -965,6 +970,7 @@ int main(void)
     if (!mkdtemp(folder)) {
         return 1;
     }
+    cmocka_set_test_filter(argc > 1 ? argv[1] : NULL);
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
     char path[PATH_ROOM];
     path_to("circuit.cir", path);

@@ -26,7 +26,7 @@ enum { SHARE = 4, FIRST = 1 };
 enum { SHARE = 2, FIRST = 0 };
 #endif
 
-enum { WORDS = 24, SECONDS = 120, TEXT = 1 << 16, PERSISTENT = 4 };
+enum { WORDS = 24, SECONDS = 600, TEXT = 1 << 16, PERSISTENT = 4 };
 
 int deaspice_main(int argc, char **argv); /* the program's main */
 

@@ -232,6 +232,31 @@ static void gent_film_past_its_limit_has_a_named_state(void **state)
     }
 }
 
+/* A film of Ogden's whose exponent is just above 4 holds any voltage without a frame, at a thousand times its size: no fold, however
+ * coarse the accuracy. */
+static void a_film_without_a_fold_is_followed_far(void **state)
+{
+    (void)state;
+    const film soft = {"ogden", {22862.88, 4.25955}, 1};
+    dea_scene scene = scene_of(&soft, DEA_DOT, "constant_force", 1.344, 0.5);
+    double voltages[VOLTAGES] = {1e3, 3e3, 1e4, 1.1e4, 1.3e4, 1.6e4};
+    const double accuracies[] = {1e-2, 1e-8};
+    dea_axis axis;
+    add_axis(&scene, &axis, &scene.drive.voltage, voltages, VOLTAGES);
+    run(&scene, "direct", &one);
+    const dea_row *wanted = (const dea_row *)one.bytes;
+    assert_true(wanted[VOLTAGES - 1].strain > 1000.0);
+    for (int k = 0; k < 2; k++) {
+        scene.accuracy = accuracies[k];
+        run(&scene, "ida", &other);
+        const dea_row *rows = (const dea_row *)other.bytes;
+        for (int i = 0; i < VOLTAGES; i++) {
+            assert_int_equal(rows[i].state, wanted[i].state);
+            assert_true(is_close(rows[i].strain, wanted[i].strain, accuracies[k], 0.0));
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -239,6 +264,7 @@ int main(void)
         cmocka_unit_test(tiny_strains_keep_twelve_digits_in_networks),
         cmocka_unit_test(transients_of_every_law_agree),
         cmocka_unit_test(responses_of_every_law_agree),
+        cmocka_unit_test(a_film_without_a_fold_is_followed_far),
         cmocka_unit_test(gent_film_past_its_limit_has_a_named_state),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -122,7 +122,9 @@ static void statics_are_those_of_the_models(void **state)
     child_end(&run);
 }
 
-enum { SAMPLES = 101 };
+enum { SAMPLES = 41 };
+
+static const double moving_end = 8e-3; /* five periods of the film and two of its quicker branch behind the ramp */
 
 /* A damped film with branches, load of its electrodes, series and leakage resistance, under a ramp of 0.2 ms to 4 kV. */
 static dea_scene moving_scene(const struct kind *kind)
@@ -144,7 +146,7 @@ static dea_scene moving_scene(const struct kind *kind)
         scene.actuator.refractive_index = 1.4;
     }
     scene.study = DEA_STUDY_TRANSIENT;
-    scene.transient = (dea_transient){.until = 20e-3, .every = 20e-3 / (SAMPLES - 1)};
+    scene.transient = (dea_transient){.until = moving_end, .every = moving_end / (SAMPLES - 1)};
     scene.accuracy = 1e-9;
     return scene;
 }
@@ -174,7 +176,7 @@ static FILE *begin_moving_circuit(double step, const char *uic)
         fprintf(file, "r%d a c%d 2e6\nvi%d c%d b%d 0\nx%d b%d 0 e%d %s", i, i, i, i, i, i, i, i, kinds[i].name);
         write_parameters(file, &scene);
     }
-    fprintf(file, ".save v(x1.focal)\n.options reltol=1e-6\n.tran %g 20e-3 0 %g %s\n", step, step, uic);
+    fprintf(file, ".save v(x1.focal)\n.options reltol=1e-6\n.tran %g %g 0 %g %s\n", step, moving_end, step, uic);
     return file;
 }
 
@@ -196,6 +198,9 @@ static double at_time(const child_run *run, const char *name, const char *slope,
     return a[v] + x * x * (3.0 - 2.0 * x) * (b[v] - a[v]) + h * scale * x * (1.0 - x) * ((1.0 - x) * a[w] - x * b[w]);
 }
 
+/* Of the trapezoidal rule, whose error falls with the square of the step [s]. */
+static const double fine_step = 2e-6, step_error = 4e-6;
+
 static void compare_motion(const child_run *run, int kind)
 {
     static dea_sample samples[SAMPLES];
@@ -216,13 +221,13 @@ static void compare_motion(const child_run *run, int kind)
     }
     for (int k = 1; k < SAMPLES; k++) {
         const double time = samples[k].time;
-        assert_near(1e-6 * at_time(run, u, velocity, 1e6, time), samples[k].displacement, 1e-6 * peak);
-        assert_near(at_time(run, i, NULL, 0.0, time), samples[k].current, 2e-6 * current);
+        assert_near(1e-6 * at_time(run, u, velocity, 1e6, time), samples[k].displacement, step_error * peak);
+        assert_near(at_time(run, i, NULL, 0.0, time), samples[k].current, 2.0 * step_error * current);
         const double film = 1e-12 * at_time(run, c, NULL, 0.0, time) * at_time(run, b, NULL, 0.0, time);
-        assert_near(1e-9 * at_time(run, q, NULL, 0.0, time), samples[k].charge, 2e-6 * most);
-        assert_near(film, samples[k].charge, 2e-6 * most);
+        assert_near(1e-9 * at_time(run, q, NULL, 0.0, time), samples[k].charge, 2.0 * step_error * most);
+        assert_near(film, samples[k].charge, 2.0 * step_error * most);
         if (kind == 1) {
-            assert_relative(1e-3 * at_time(run, "v(x1.focal)", NULL, 0.0, time), samples[k].focal_length, 1e-6);
+            assert_relative(1e-3 * at_time(run, "v(x1.focal)", NULL, 0.0, time), samples[k].focal_length, step_error);
         }
     }
 }
@@ -230,19 +235,9 @@ static void compare_motion(const child_run *run, int kind)
 static void motion_is_that_of_the_engine_ida(void **state)
 {
     (void)state;
+    simulate_without_sanitizers();
     child_run run;
-    run_circuit(begin_moving_circuit(1e-6, ""), &run);
-    for (int i = 0; i < KINDS; i++) {
-        compare_motion(&run, i);
-    }
-    child_end(&run);
-}
-
-static void a_run_with_uic_is_the_run_from_the_operating_point_at_rest(void **state)
-{
-    (void)state;
-    child_run run;
-    run_circuit(begin_moving_circuit(1e-6, "uic"), &run);
+    run_circuit(begin_moving_circuit(fine_step, ""), &run);
     for (int i = 0; i < KINDS; i++) {
         compare_motion(&run, i);
     }
@@ -329,6 +324,7 @@ static void springs_in_parallel_share_the_force_at_the_operating_point(void **st
 static void the_energy_drawn_is_work_and_stores_and_losses(void **state)
 {
     (void)state;
+    simulate_without_sanitizers();
     for (int kind = 0; kind < KINDS; kind++) {
         child_run run;
         dea_dynamics d;
@@ -342,7 +338,7 @@ static void the_energy_drawn_is_work_and_stores_and_losses(void **state)
         fprintf(file, "xpart f 0 edge %s", kinds[kind].name);
         write_parameters(file, &scene);
         fputs("cload edge 0 1e-3\nrload edge 0 2\nxspring edge 0 dea_spring stiffness=400\n", file);
-        fputs(".save v(f) i(vi) v(edge) v(xpart.u) v(xpart.force) v(xspring.u)\n.tran 2e-6 12e-3 0 2e-6\n", file);
+        fputs(".save v(f) i(vi) v(edge) v(xpart.u) v(xpart.force) v(xspring.u)\n.tran 4e-6 12e-3 0 4e-6\n", file);
         run_circuit(file, &run);
         assert_int_equal(dea_dynamics_open(&scene, scene.models[0], &d, &error), DEA_OK);
         double drawn = 0.0, work = 0.0, losses = 0.0, elastic = 0.0;
@@ -420,6 +416,7 @@ static double shortest_step(const child_run *run)
 static void a_step_of_a_nanosecond_converges(void **state)
 {
     (void)state;
+    simulate_without_sanitizers();
     static const int order[KINDS] = {0, 1, 2, 3, 4, 5, 6, 7};
     child_run run;
     FILE *file = begin_circuit();
@@ -443,6 +440,7 @@ static void a_step_of_a_nanosecond_converges(void **state)
 static void a_step_of_a_nanosecond_converges_in_every_order_of_the_parts(void **state)
 {
     (void)state;
+    simulate_without_sanitizers();
     static const int orders[][KINDS] = {{6, 0, 2, 4, 3, 5, 1, 7}, {7, 5, 4, 1, 2, 3, 0, 6}, {3, 5, 2, 6, 1, 0, 4, 7}, {7, 6, 5, 4, 3, 2, 1, 0}};
     for (size_t k = 0; k < sizeof orders / sizeof *orders; k++) {
         child_run run;
@@ -455,32 +453,36 @@ static void a_step_of_a_nanosecond_converges_in_every_order_of_the_parts(void **
     }
 }
 
-/* KiCad and others put ngspice into modes that read expressions in another way. */
-static void compatibility_modes_change_no_number(void **state)
+/* KiCad and others put ngspice into modes that read expressions in another way; a run with uic begins at rest as one from the
+ * operating point does. */
+static void neither_compatibility_modes_nor_uic_change_a_number(void **state)
 {
     (void)state;
-    static const char *const modes[] = {"", "set ngbehavior=psa\n", "set ngbehavior=lta\n", "set ngbehavior=kiltpsa\n"};
+    simulate_without_sanitizers();
+    static const char *const modes[] = {"", "set ngbehavior=psa\n", "set ngbehavior=lta\n", "set ngbehavior=kiltpsa\n", ""};
     static double first[KINDS][SAMPLES];
     for (size_t m = 0; m < sizeof modes / sizeof *modes; m++) {
         child_run run;
         FILE *start = child_open(".spiceinit", "w");
         fputs(modes[m], start);
         fclose(start);
-        run_circuit(begin_moving_circuit(2e-5, ""), &run);
+        const bool uic = m + 1 == sizeof modes / sizeof *modes;
+        const double same = uic ? 1e-5 : 1e-6; /* its steps begin otherwise */
+        run_circuit(begin_moving_circuit(2e-5, uic ? "uic" : ""), &run);
         for (int i = 0; i < KINDS; i++) {
             char u[32], velocity[32];
             snprintf(u, sizeof u, "v(x%d.u)", i);
             snprintf(velocity, sizeof velocity, "v(e%d)", i);
             double peak = 0.0;
             for (int k = 1; k < SAMPLES; k++) {
-                const double here = at_time(&run, u, velocity, 1e6, 20e-3 * k / (SAMPLES - 1));
+                const double here = at_time(&run, u, velocity, 1e6, moving_end * k / (SAMPLES - 1));
                 first[i][k] = m == 0 ? here : first[i][k];
                 peak = fmax(peak, fabs(first[i][k]));
-                assert_near(here, first[i][k], 1e-6 * peak);
+                assert_near(here, first[i][k], same * peak);
             }
             assert_true(peak > 100.0);
         }
-        assert_true(m == 0 || strstr(run.log, "ompatibility"));
+        assert_true(!*modes[m] || strstr(run.log, "ompatibility"));
         child_end(&run);
     }
     fclose(child_open(".spiceinit", "w"));
@@ -505,6 +507,7 @@ static void write_multiples(FILE *file, const char *part)
 static void m_parts_in_one_are_as_many_side_by_side(void **state)
 {
     (void)state;
+    simulate_without_sanitizers();
     static const char *const moves[] = {"v(x0.u)", "v(x1.u)", "v(x2.xin.u)"}, *const volts[] = {"v(b0)", "v(b1)", "v(b2)"};
     for (int kind = 0; kind < KINDS; kind++) {
         child_run run;
@@ -528,6 +531,7 @@ static void m_parts_in_one_are_as_many_side_by_side(void **state)
 static void options_of_the_circuit_change_no_answer(void **state)
 {
     (void)state;
+    simulate_without_sanitizers();
     static const char *const options[] = {
         "",           "rshunt=1e12",  "cshunt=1e-13", "gmin=1e-15", "gmin=1e-9", "method=gear", "abstol=1e-10",
         "vntol=1e-4", "chgtol=1e-16", "pivrel=0.1",   "xmu=0.49",   "itl1=50",   "noopiter",    "trtol=1"};
@@ -927,7 +931,7 @@ static void gnucap_gives_the_same_mechanics(void **state)
           ".print ac vr(a) vi(a)\n.ac 10 1000 * 10\n.end\n",
           file);
     fclose(file);
-    snprintf(command, sizeof command, "cd '%s' && timeout 20 gnucap -b gnucap.cir", child_folder);
+    snprintf(command, sizeof command, "cd '%s' && ulimit -t 20 && gnucap -b gnucap.cir", child_folder);
     FILE *answer = popen(command, "r");
     int rows = 0;
     assert_non_null(answer);
@@ -1192,14 +1196,13 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(statics_are_those_of_the_models),
         cmocka_unit_test(motion_is_that_of_the_engine_ida),
-        cmocka_unit_test(a_run_with_uic_is_the_run_from_the_operating_point_at_rest),
         cmocka_unit_test(responses_are_those_of_the_linearised_equations),
         cmocka_unit_test(springs_in_parallel_share_the_force_at_the_operating_point),
         cmocka_unit_test(the_energy_drawn_is_work_and_stores_and_losses),
         cmocka_unit_test(instances_of_different_numbers_nest_two_deep_under_long_names),
         cmocka_unit_test(a_step_of_a_nanosecond_converges),
         cmocka_unit_test(a_step_of_a_nanosecond_converges_in_every_order_of_the_parts),
-        cmocka_unit_test(compatibility_modes_change_no_number),
+        cmocka_unit_test(neither_compatibility_modes_nor_uic_change_a_number),
         cmocka_unit_test(m_parts_in_one_are_as_many_side_by_side),
         cmocka_unit_test(options_of_the_circuit_change_no_answer),
         cmocka_unit_test(parameters_out_of_range_are_flagged_and_move_nothing),

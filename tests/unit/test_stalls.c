@@ -113,6 +113,23 @@ static void random_stalls_are_solved(void **state)
     }
 }
 
+/* A damper outweighs the mass, whose time no step resolves: velocities are those of the network, to ten times the accuracy, also
+ * where a piece begins and its steps grow. */
+static void a_heavily_damped_film_keeps_its_velocity(void **state)
+{
+    (void)state;
+    char *text = draw_stall(20261201, 193);
+    assert_non_null(text);
+    agree(text, 1e-6);
+    free(text);
+    double fastest = 0.0, off = 0.0;
+    for (size_t i = 0; i < wanted.count; i++) {
+        fastest = fmax(fastest, fabs(wanted.samples[i].velocity));
+        off = fmax(off, fabs(found.samples[i].velocity - wanted.samples[i].velocity));
+    }
+    assert_true(off <= 1e-5 * fastest);
+}
+
 /* ---- drives of many corners */
 
 static void a_bridge_of_short_edges_is_solved(void **state)
@@ -216,6 +233,7 @@ int main(void)
         cmocka_unit_test(a_spring_on_its_branch_does_not_stall),
         cmocka_unit_test(a_lens_behind_a_small_resistance_does_not_stall),
         cmocka_unit_test(random_stalls_are_solved),
+        cmocka_unit_test(a_heavily_damped_film_keeps_its_velocity),
         cmocka_unit_test(a_bridge_of_short_edges_is_solved),
         cmocka_unit_test(what_takes_too_long_is_refused_at_once),
         cmocka_unit_test(a_ring_that_loses_its_phase_is_refused_by_its_begin),

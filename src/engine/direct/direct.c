@@ -1,6 +1,5 @@
 /* Engine `direct`: the models' own equations, point after point; the closed forms of the linear network over time and frequency.
  */
-#include <math.h>
 #include <stddef.h>
 
 #include "engine/direct/direct.h"

@@ -95,40 +95,61 @@ void dea_ramp_close(dea_ramp *ramp)
     }
 }
 
-/* Starts at rest, where dt/dx is K_0 l/F(0); steps move the stretch by 5 %, or u by 0.1 % of the linear answer or of the way to
- * the film's end, at most, so that no fold is stepped over: linear springs that have all but given way stretch far. */
+/* Starts at rest, where dt/dx is K_0 l/F(0). */
 static bool start(dea_ramp *ramp, double tolerance, double end)
 {
     dea_integrator *m = &ramp->integrator;
     const dea_sundials *sun = m->sun;
-    const double far = fmin(fabs(ramp->load / ramp->stiffness), end * fabs(ramp->length));
-    const double longest = fmax(0.05 * dea_balance_length(ramp->balance), 1e-3 * far) / fabs(ramp->length);
     sun->N_VConst(0.0, m->y);
     sun->N_VConst(1.0, m->yp);
     NV_DATA_S(m->yp)[SHARE] = ramp->stiffness * ramp->length / ramp->load;
     sun->N_VConst(tolerance, m->tolerance);
     return sun->IDAReInit(m->ida, 0.0, m->y, m->yp) == IDA_SUCCESS &&
            sun->IDASVtolerances(m->ida, tolerance, m->tolerance) == IDA_SUCCESS &&
-           sun->IDASetMaxStep(m->ida, longest) == IDA_SUCCESS && sun->IDASetStopTime(m->ida, end) == IDA_SUCCESS;
+           sun->IDASetStopTime(m->ida, end) == IDA_SUCCESS;
+}
+
+/* Steps of one way from rest after which it is given up; a good one takes some hundreds. */
+enum { MOST_STEPS = 20000 };
+
+/* Largest part of the stretch by which a step moves the film, so that no fold is stepped over: of what it is there, since some films
+ * come to thousands of their size. */
+static const double longest = 0.05;
+
+/* Steps to an answer, a fold or the end; IDA's own code says which. */
+static int walk(dea_ramp *ramp, double end)
+{
+    dea_integrator *m = &ramp->integrator;
+    const double size = dea_balance_length(ramp->balance) / fabs(ramp->length);
+    double tau = 0.0;
+    int code = IDA_SUCCESS;
+    for (int i = 0; i < MOST_STEPS && code == IDA_SUCCESS; i++) {
+        code = m->sun->IDASetMaxStep(m->ida, longest * (size + NV_DATA_S(m->y)[PLACE]));
+        if (code == IDA_SUCCESS) {
+            code = m->sun->IDASolve(m->ida, end, &tau, m->y, m->yp, IDA_ONE_STEP);
+        }
+    }
+    return code == IDA_SUCCESS ? IDA_TOO_MUCH_WORK : code;
 }
 
 /* From rest to the answer, a fold or the end; false where IDA gives up, as where the load turns so steeply, just before the
  * chains are straight, that the rounding of u outweighs the tolerance of its share. A coarser one then does: what it leaves open
- * of u is little, which the network itself confirms. */
+ * of u is little, and a fold may be none, which the network itself confirms. */
 static bool follow(dea_ramp *ramp, double tolerance, double end, dea_row *row)
 {
     dea_integrator *m = &ramp->integrator;
-    double tau = 0.0;
+    const bool fine = tolerance <= ramp->accuracy;
+    double share, where;
     int found[ROOTS] = {0, 0};
-    const int code = start(ramp, tolerance, end) ? m->sun->IDASolve(m->ida, end, &tau, m->y, m->yp, IDA_NORMAL) : IDA_ILL_INPUT;
+    const int code = start(ramp, tolerance, end) ? walk(ramp, end) : IDA_ILL_INPUT;
     if (code == IDA_ROOT_RETURN && m->sun->IDAGetRootInfo(m->ida, found) == IDA_SUCCESS && found[FULL_LOAD]) {
         const double u = ramp->begin + NV_DATA_S(m->y)[PLACE] * ramp->length;
-        if (tolerance <= ramp->accuracy) {
+        if (fine) {
             dea_balance_fill(ramp->balance, ramp->symbol, u, row);
         } else {
             (void)dea_balance_accept(ramp->balance, ramp->symbol, u, ramp->accuracy, row);
         }
-    } else if (code >= 0) {
+    } else if (code >= 0 && (fine || dea_balance_folds(ramp->balance, ramp->symbol, &share, &where))) {
         row->state = DEA_STATE_PULL_IN; /* a fold, or the end of the film */
     }
     return code >= 0;

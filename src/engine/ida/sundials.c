@@ -4,7 +4,6 @@
 
 #include <dlfcn.h>
 #include <stdio.h>
-#include <string.h>
 
 #if SUNDIALS_VERSION_MAJOR < 7
 void dea_sundials_ignore(int code, const char *module, const char *function, char *message, void *user)

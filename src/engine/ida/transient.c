@@ -62,6 +62,22 @@ static double current(const dea_dynamics *d, const dea_moment *m)
     return m->charging ? m->charge_slope + m->voltage * d->conductance : d->series > 0.0 ? dea_dynamics_flow(d, m->source - m->voltage) : 0.0;
 }
 
+/* What the other columns of a hyperelastic film make of two runs: next to its centre or its frame force, capacitance and, without a
+ * resistance, current change by many times the share that the displacement does. The columns of linear films do not. */
+static void widen_columns(const dea_flight *flight, const dea_scales *scales, const dea_trace *a, const dea_trace *b, size_t count, gap *g)
+{
+    dea_dynamics *d = flight->motion.dynamics;
+    dea_columns_gap columns = {0};
+    for (size_t i = 0; i < count && !d->linear; i++) {
+        dea_sample p, q;
+        if (dea_dynamics_sample(d, &a->moments[i], &p) && dea_dynamics_sample(d, &b->moments[i], &q)) {
+            dea_columns_widen(&columns, &p, &q);
+        }
+    }
+    g->answer = fmax(g->answer, dea_columns_worst(scales, &columns));
+    g->rates.current = fmax(g->rates.current, columns.most.current);
+}
+
 /* Largest differences of two runs; velocity and current are held to what their columns promise. */
 static gap difference(const dea_flight *flight, const dea_scales *scales, const dea_trace *a, const dea_trace *b)
 {
@@ -88,6 +104,7 @@ static gap difference(const dea_flight *flight, const dea_scales *scales, const 
     flow = fmax(flow, film * dea_dynamics_edge(flight->motion.dynamics, 0.0).capacitance * scales->charging);
     const double rate = fmax(g.rates.velocity / v, g.rates.current / flow);
     g.answer = fmax(g.displacement, rate / dea_scales_allowance(offsetof(dea_sample, velocity)));
+    widen_columns(flight, scales, a, b, count, &g);
     return g;
 }
 
@@ -207,7 +224,7 @@ static void fly_on(dea_flight *flight, const dea_scales *scales, dea_trace trace
     }
     fill(flight, &traces[1], samples);
     tell_averages(flight, &traces[1], summary);
-    if (!(flight->motion.dynamics->series > 0.0)) { /* the current C U' + C' U v is as good as the velocity */
+    if (flight->motion.dynamics->linear && !(flight->motion.dynamics->series > 0.0)) { /* the current C U' + C' U v is as good as the velocity */
         rates.current = scales->motional * rates.velocity;
     }
     dea_scales_tell(scales, samples, flight->rows, rates, summary);

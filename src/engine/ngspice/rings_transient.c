@@ -1,6 +1,5 @@
 /* Transients of a membrane: on coarse steps the mesh is made finer until two runs agree, then the steps, as those of a film of one
  * node are (transient.c): two runs with h and h/2 extrapolate to the fourth order, and the two last of these tell the error. */
-#include <float.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>

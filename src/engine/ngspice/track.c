@@ -587,18 +587,27 @@ static dea_mobility_state scaled(dea_mobility_state state, double speed)
     return state;
 }
 
+/* True where the piece that goes to @p to begins behind a corner of the drive, by what is over of a ring or a kick at a damper, and meets no
+ * other. Steps there begin short: what is fast has died, and stays so. */
+static bool is_calm(const runner *r, double to)
+{
+    const dea_segment *segment = &r->route->signal->segments[r->segment];
+    return r->last.moment.time > segment->from && to <= segment->to;
+}
+
 /* Which rates the steps do not resolve: a branch; a film that charges, but for what follow_source() sees; the velocity of a
- * damper that bridges springs, r/K, or that a damper holds against the mass, m/r, or of a film whose dead ring the steps pass over:
- * one that stiffens as it moves may be kicked into another, which its balance without mass would not show. */
-static void find_fast(runner *r)
+ * damper that bridges springs, r/K, or that a damper holds against the mass, m/r, unless nothing kicks it; or of a film whose dead ring
+ * the steps pass over: one that stiffens as it moves may be kicked into another, which its balance without mass would not show. */
+static void find_fast(runner *r, double to)
 {
     dea_dynamics *d = r->route->dynamics;
     const dea_edge e = dea_dynamics_edge(d, r->last.moment.u);
     const double resistance = dea_edge_resistance(d, &e), limit = r->step / alternating;
     const double held = dea_dynamics_stiffness(d, r->last.moment.u, r->last.moment.voltage, false);
-    const double heavy = r->slow ? 0.0 : d->mass > 0.0 ? (r->rings ? (double)INFINITY : d->mass / resistance) : resistance / held;
-    r->fast =
-        (fast_rates){.u = !dea_dynamics_is_free(d) && heavy<limit, .charge = d->series> 0.0 && d->series * e.capacitance < limit && !r->rings};
+    const double settled = r->rings || is_calm(r, to) ? (double)INFINITY : d->mass / resistance;
+    const double heavy = r->slow ? 0.0 : d->mass > 0.0 ? settled : resistance / held;
+    const bool moves = !dea_dynamics_is_free(d) && heavy < limit;
+    r->fast = (fast_rates){.u = moves, .charge = d->series > 0.0 && d->series * e.capacitance < limit && !r->rings};
     r->fast.any = r->fast.u || r->fast.charge;
     for (size_t i = 0; i < dea_dynamics_states(d); i++) {
         r->fast.z[i] = tau_of(d, i) < limit;
@@ -631,7 +640,7 @@ static void set_piece(runner *r, dea_mobility_piece *piece, double to, double st
     r->lag = 1.0;
     r->carried = 0.0;
     r->euler = true;
-    find_fast(r);
+    find_fast(r, to);
     start_again(r);
     *piece = (dea_mobility_piece){.signal = route->signal,
                                   .segment = r->segment,

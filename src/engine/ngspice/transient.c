@@ -41,6 +41,7 @@ typedef struct levels {
     double error;    /* of the answer: that of the column that is worst against what it promises */
     double displacement;   /* error of displacement and charge */
     dea_rate_errors rates; /* of velocity and current */
+    double motional;       /* error of the current where the charge is no state: C' U v is as good as the velocity [A] */
     dea_scales scales;
     double residual; /* of its energies */
 } levels;
@@ -71,6 +72,8 @@ static size_t common(const levels *l)
 /* Largest differences and peaks of the columns. */
 typedef struct apart {
     dea_track_point most, peak;
+    dea_columns_gap columns; /* of hyperelastic films */
+    size_t segment;          /* of the last sample */
 } apart;
 
 static void widen(apart *g, const dea_track_point *a, const dea_track_point *b)
@@ -168,6 +171,37 @@ static void tell_peak(const dea_route *route, const levels *l, dea_summary *summ
     summary->peak_time = told ? l->before.peak.time : (double)NAN;
 }
 
+/* The moment of a sample. */
+static dea_moment moment_at(const dea_route *route, size_t index, size_t *segment, const dea_track_point *point)
+{
+    const double time = dea_layout_place(route->scene, index);
+    *segment = dea_signal_find(route->signal, *segment, time);
+    const dea_segment *s = dea_segment_seen(&route->signal->segments[*segment], time);
+    const double source = dea_segment_voltage(route->signal, s, time);
+    return (dea_moment){.time = time,
+                        .source = source,
+                        .voltage = dea_route_voltage(route, source, point->u, point->charge),
+                        .slope = dea_segment_slope(route->signal, s, time),
+                        .u = point->u,
+                        .v = point->v,
+                        .charging = route->dynamics->series > 0.0,
+                        .charge_slope = point->current};
+}
+
+/* What the other columns of a hyperelastic film make of two points: next to its centre or its frame force, capacitance and, without a
+ * resistance, current change by many times the share that the displacement does. The columns of linear films do not. */
+static void widen_columns(const dea_route *route, size_t index, apart *g, const dea_track_point *a, const dea_track_point *b)
+{
+    dea_sample p, q;
+    if (route->dynamics->linear) {
+        return;
+    }
+    const dea_moment first = moment_at(route, index, &g->segment, a), second = moment_at(route, index, &g->segment, b);
+    if (dea_dynamics_sample(route->dynamics, &first, &p) && dea_dynamics_sample(route->dynamics, &second, &q)) {
+        dea_columns_widen(&g->columns, &p, &q);
+    }
+}
+
 /* Two runs: twice their difference; the error of the finer one is 1/3 of it in theory. Three: 2.5 times the difference of what
  * they extrapolate to; the error of the later one is 1/15 of it in theory, and more where steps follow the age of an edge, or
  * where the film runs away behind the last of few rows. The factors bound the errors of random scenes. */
@@ -175,9 +209,7 @@ static const double of_second = 2.0, of_fourth = 2.5, running_away = 2.0;
 
 static void judge(const dea_route *route, levels *l)
 {
-    const dea_track_point none = {0.0, 0.0, 0.0, 0.0};
-    apart second = {none, none};
-    apart fourth = second;
+    apart second = {0}, fourth = {0};
     const size_t count = common(l);
     bool shown = true;
     double last = 0.0; /* time of the last row that has numbers */
@@ -187,9 +219,11 @@ static void judge(const dea_route *route, levels *l)
         if (shown) {
             last = dea_layout_place(route->scene, i);
             widen(&second, &l->coarse.points[i], &l->fine.points[i]);
+            widen_columns(route, i, &second, &l->coarse.points[i], &l->fine.points[i]);
         }
         if (shown && l->runs > 2) {
             widen(&fourth, &l->before.points[i], &answer);
+            widen_columns(route, i, &fourth, &l->before.points[i], &answer);
         }
         if (l->runs > 1) {
             l->before.points[i] = answer;
@@ -202,14 +236,17 @@ static void judge(const dea_route *route, levels *l)
     const double two = away * of_second, three = away * of_fourth;
     l->displacement = two * largest(&second);
     l->rates = (dea_rate_errors){two * second.most.v, two * second.most.current};
-    double rate = two * largest_rate(&second, &l->scales);
+    double rate = two * largest_rate(&second, &l->scales), columns = two * dea_columns_worst(&l->scales, &second.columns);
+    l->motional = two * second.columns.most.current;
     if (l->runs > 2) {
         l->displacement = fmin(l->displacement, three * largest(&fourth));
         l->rates.velocity = fmin(l->rates.velocity, three * fourth.most.v);
         l->rates.current = fmin(l->rates.current, three * fourth.most.current);
         rate = fmin(rate, three * largest_rate(&fourth, &l->scales));
+        columns = fmin(columns, three * dea_columns_worst(&l->scales, &fourth.columns));
+        l->motional = fmin(l->motional, three * fourth.columns.most.current);
     }
-    l->error = fmax(l->displacement, rate / dea_scales_allowance(offsetof(dea_sample, velocity)));
+    l->error = fmax(fmax(l->displacement, columns), rate / dea_scales_allowance(offsetof(dea_sample, velocity)));
     if (l->coarse.reached != l->fine.reached || l->coarse.end != l->fine.end) {
         l->error = l->displacement = INFINITY;
     }
@@ -462,29 +499,12 @@ static dea_status refine(const dea_route *route, levels *l, const dea_pace *pace
     return status;
 }
 
-/* The moment of a sample. */
-static dea_moment moment_at(const dea_route *route, size_t index, size_t *segment, const dea_track_point *point)
-{
-    const double time = dea_layout_place(route->scene, index);
-    *segment = dea_signal_find(route->signal, *segment, time);
-    const dea_segment *s = dea_segment_seen(&route->signal->segments[*segment], time);
-    const double source = dea_segment_voltage(route->signal, s, time);
-    return (dea_moment){.time = time,
-                        .source = source,
-                        .voltage = dea_route_voltage(route, source, point->u, point->charge),
-                        .slope = dea_segment_slope(route->signal, s, time),
-                        .u = point->u,
-                        .v = point->v,
-                        .charging = route->dynamics->series > 0.0,
-                        .charge_slope = point->current};
-}
-
-/* Errors of the rates; where no series resistance makes the charge a state, its slope C U' + C' U v is as good as the velocity. */
+/* Errors of the rates; where no series resistance makes the charge a state, its slope is C U' + C' U v. */
 static void tell_rates(const dea_route *route, const levels *l, const dea_sample *samples, dea_summary *summary)
 {
     dea_rate_errors errors = l->rates;
     if (!(route->dynamics->series > 0.0)) {
-        errors.current = l->scales.motional * errors.velocity;
+        errors.current = route->dynamics->linear ? l->scales.motional * errors.velocity : l->motional;
     }
     dea_scales_tell(&l->scales, samples, route->samples, errors, summary);
 }

@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "material/fit_errors.h"
-#include "material/fit_plausible.h"
+#include "material/fit/errors.h"
+#include "material/fit/plausible.h"
 #include "material/law.h"
 #include "support/lapack.h"
 
@@ -30,21 +30,6 @@ static const double rounding = 1e-9;
 
 /* Standard errors by which C1 must lie above 0: less would leave its sign to noise. */
 static const double sign_certain = 2.0;
-
-const char *dea_load_name(dea_load load)
-{
-    static const char *const names[DEA_LOAD_COUNT] = {"uniaxial", "equibiaxial"};
-    return (unsigned)load < DEA_LOAD_COUNT ? names[load] : "unknown";
-}
-
-dea_load dea_load_find(const char *name)
-{
-    int load = 0;
-    while (load < DEA_LOAD_COUNT && strcmp(name, dea_load_name((dea_load)load)) != 0) {
-        load++;
-    }
-    return (dea_load)load;
-}
 
 dea_status dea_fit_add(dea_fit_data *data, dea_fit_point point, dea_error *error)
 {

@@ -50,7 +50,7 @@ STABILITY_PARTS := $(STABILITY_SOURCES:%.c=$(BUILD)/%.o)
 CLANG    := $(shell command -v clang 2>/dev/null)
 JOBS     ?= $(shell nproc 2>/dev/null || echo 1)
 # What make check runs, the longest first.
-STAGES   := compilers-agree fuzz examples-agree test asan
+STAGES   := compilers-agree fuzz examples-agree test asan layers
 SANITIZE := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 
 .DELETE_ON_ERROR:
@@ -211,10 +211,8 @@ $(BUILD)/hard: $(wildcard tests/hard/*.[ch]) $(TRUTHS) $(BUILD)/libdeaspice.a
 	@$(CC) $(filter-out -MMD -MP,$(ALL_CFLAGS)) $(filter %.c %.o,$^) $(BUILD)/libdeaspice.a -o $@ $(LDFLAGS) $(LIBS)
 
 # No circle of includes, no arrow upwards.
-.PHONY: layers
-test test-stage: layers
-layers:
-	@tests/run test tests/layers
+layers-stage:
+	@tests/run layers tests/layers
 
 # The ready-made parts for circuit simulators; a unit test finds what is checked in and differs.
 netlists: $(BUILD)/make_netlists

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "geometry/point.h"
+#include "study/study.h"
 #include "support/gauss.h"
 
 enum { TENSION, PUSH, CAPACITANCE, STRESSES, OUTPUTS = STRESSES + 2 * DEA_STRESSES };
@@ -197,8 +198,9 @@ dea_status dea_dynamics_settle(const dea_scene *scene, const dea_model *model, d
     }
     set_port(scene, d);
     d->biased = scene->transient.from_bias;
-    d->heavy = dea_point_mass(scene, &d->point) > 0.0;
-    d->clamped = d->series > 0.0 || d->dropped > 0.0 || d->heavy || dea_dynamics_is_damped(d) || !isnan(scene->material.retardation);
+    const bool massive = dea_point_mass(scene, &d->point) > 0.0;
+    d->heavy = massive && dea_study_of(scene)->timed;
+    d->clamped = d->series > 0.0 || d->dropped > 0.0 || massive || dea_dynamics_is_damped(d) || !isnan(scene->material.retardation);
     d->radius = d->point.coverage * d->point.frame_radius;
     d->mass = scene->reduction.mass ? 0.0 : dea_point_mass(scene, &d->point);
     if (!isnan(d->focal_length) && !(d->focal_length * (d->refractive_index - 1.0) >= d->radius)) {

@@ -39,7 +39,7 @@ typedef struct dea_dynamics {
     double dropped;                        /* R_s that is left out and shows in the first sample alone [Ohm], else 0 */
     bool biased;                           /* the run starts at the equilibrium under its first voltage */
     bool clamped;                          /* mass, damper or resistance, left out or not, hold the film there for the moment */
-    bool heavy;                            /* a mass, left out or not, holds the film for the moment */
+    bool heavy;                            /* a mass, left out or not, holds a film in time for the moment */
     double limit;                          /* I [A], +inf: any */
     double conductance;                    /* 1/R_p [S], 0: no leakage */
     double radius;                         /* r_a [m] */

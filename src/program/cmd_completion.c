@@ -275,15 +275,8 @@ static const char *shell_word(size_t index, char room[DEA_NAME_LENGTH])
 
 static const shell *shell_find(const char *name)
 {
-    const char *names[SHELLS];
-    for (size_t i = 0; i < SHELLS; i++) {
-        names[i] = shells[i].name;
-        if (strcmp(names[i], name) == 0) {
-            return &shells[i];
-        }
-    }
-    dea_complain_unknown("shell", name, names, SHELLS);
-    return NULL;
+    size_t index;
+    return dea_word_choose("shell", name, shell_word, &index) ? &shells[index] : NULL;
 }
 
 static dea_exit run(const dea_arguments *arguments)

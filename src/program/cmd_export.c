@@ -8,7 +8,7 @@
 #include "support/atomic.h"
 #include "support/memory_text.h"
 
-enum { MOST_NAMES = 8, PATH_ROOM = 4096 };
+enum { PATH_ROOM = 4096 };
 
 /* A kind of export. */
 typedef struct kind {
@@ -162,43 +162,20 @@ static dea_status write_one(const kind *as, dea_export *export, const char *path
 
 static const kind *choose_kind(const char *name)
 {
-    const char *names[KINDS];
-    for (size_t i = 0; i < KINDS; i++) {
-        names[i] = kinds[i].name;
-        if (strcmp(names[i], name) == 0) {
-            return &kinds[i];
-        }
-    }
-    dea_complain_unknown("kind of export", name, names, KINDS);
-    return NULL;
+    size_t index;
+    return dea_word_choose("kind of export", name, dea_export_word, &index) ? &kinds[index] : NULL;
 }
 
 static const dea_dialect *choose_dialect(const char *name)
 {
-    const char *names[MOST_NAMES];
-    size_t count = 0;
-    const dea_dialect *dialect = dea_dialect_find(name);
-    for (; count < MOST_NAMES && dea_dialect_at(count); count++) {
-        names[count] = dea_dialect_at(count)->name;
-    }
-    if (!dialect) {
-        dea_complain_unknown("dialect", name, names, count);
-    }
-    return dialect;
+    size_t index;
+    return dea_word_choose("dialect", name, dea_dialect_word, &index) ? dea_dialect_at(index) : NULL;
 }
 
 static const dea_analogy *choose_analogy(const char *name)
 {
-    const char *names[MOST_NAMES];
-    size_t count = 0;
-    const dea_analogy *analogy = dea_analogy_find(name);
-    for (; count < MOST_NAMES && dea_analogy_at(count); count++) {
-        names[count] = dea_analogy_at(count)->name;
-    }
-    if (!analogy) {
-        dea_complain_unknown("analogy", name, names, count);
-    }
-    return analogy;
+    size_t index;
+    return dea_word_choose("analogy", name, dea_analogy_word, &index) ? dea_analogy_at(index) : NULL;
 }
 
 /* Parts know one analogy and have a name, symbols know one dialect. */

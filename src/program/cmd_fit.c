@@ -29,23 +29,15 @@ static dea_load load_of(dea_given_mode mode)
 /* A name that is neither a law nor auto, or a number of terms that goes with neither. */
 static bool complain_law(const dea_arguments *arguments)
 {
-    const char *names[DEA_FIT_CHOICES];
-    size_t count = 0;
+    size_t index;
     if (!arguments->law || dea_law_find(arguments->law)) {
         return false;
     }
-    if (strcmp(arguments->law, "auto") == 0) {
-        if (arguments->terms > 0) {
-            dea_complain("--terms does not go with --law auto");
-        }
-        return arguments->terms > 0;
+    if (strcmp(arguments->law, "auto") == 0 && arguments->terms > 0) {
+        dea_complain("--terms does not go with --law auto");
+        return true;
     }
-    for (; dea_law_at(count) && count + 1 < DEA_FIT_CHOICES; count++) {
-        names[count] = dea_law_at(count)->name;
-    }
-    names[count++] = "auto";
-    dea_complain_unknown("law", arguments->law, names, count);
-    return true;
+    return !dea_word_choose("law", arguments->law, dea_law_word, &index);
 }
 
 /* Kind of the test that is given, DEA_TESTS: none. */

@@ -143,15 +143,8 @@ static const char *start_word(size_t index, char room[DEA_NAME_LENGTH])
 
 static const start *start_find(const char *name)
 {
-    const char *names[STARTS];
-    for (size_t i = 0; i < STARTS; i++) {
-        names[i] = starts[i].name;
-        if (strcmp(names[i], name) == 0) {
-            return &starts[i];
-        }
-    }
-    dea_complain_unknown("kind of scene", name, names, STARTS);
-    return NULL;
+    size_t index;
+    return dea_word_choose("kind of scene", name, start_word, &index) ? &starts[index] : NULL;
 }
 
 static dea_exit print_list(void)

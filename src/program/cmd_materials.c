@@ -8,7 +8,7 @@
 #include "support/atomic.h"
 #include "support/number.h"
 
-enum { CURVE_POINTS = 101, MOST_MATERIALS = 64, CURVE_COLUMNS = 4 };
+enum { CURVE_POINTS = 101, CURVE_COLUMNS = 4 };
 
 static const double usual_end = 2; /* stretch of curves and tables */
 
@@ -154,25 +154,19 @@ static dea_status write_curves(const dea_material *material, double to, const ch
 /* The built-in material or the file of that name; says what is wrong. */
 static bool material_choose(const char *name, dea_material *material, dea_exit *outcome)
 {
-    const char *names[MOST_MATERIALS];
-    size_t count = 0;
+    size_t index;
     dea_error error = {0};
-    const dea_material *builtin = dea_material_find(name);
     *outcome = DEA_EXIT_USAGE;
-    if (builtin) {
-        *material = *builtin;
-        return true;
+    if (!dea_material_find(name) && strpbrk(name, "./")) {
+        const bool read = dea_material_read(name, material, &error) == DEA_OK;
+        *outcome = read ? *outcome : dea_complain_error(&error);
+        return read;
     }
-    if (strpbrk(name, "./")) {
-        if (dea_material_read(name, material, &error) == DEA_OK)
-            return true;
-        *outcome = dea_complain_error(&error);
-        return false;
+    const bool chosen = dea_word_choose("material", name, material_word, &index);
+    if (chosen) {
+        *material = *dea_material_builtin(index);
     }
-    for (; count < MOST_MATERIALS && dea_material_builtin(count); count++)
-        names[count] = dea_material_builtin(count)->name;
-    dea_complain_unknown("material", name, names, count);
-    return false;
+    return chosen;
 }
 
 static dea_status show(const dea_material *material, const dea_arguments *arguments, double to, dea_error *error)

@@ -1,6 +1,7 @@
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "program/program.h"
 #include "support/text.h"
@@ -62,3 +63,18 @@ void dea_complain_unknown(const char *what, const char *given, const char *const
     fputc('\n', stderr);
 }
 
+bool dea_word_choose(const char *what, const char *given, dea_word *words, size_t *index)
+{
+    enum { MOST = 64 };
+    const char *names[MOST];
+    char room[DEA_NAME_LENGTH];
+    size_t count = 0;
+    for (; count < MOST && (names[count] = words(count, room)); count++) {
+        if (strcmp(names[count], given) == 0) {
+            *index = count;
+            return true;
+        }
+    }
+    dea_complain_unknown(what, given, names, count);
+    return false;
+}

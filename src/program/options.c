@@ -186,7 +186,7 @@ static bool take_equibiaxial(const dea_option *entry, const char *value, dea_arg
 
 /* Names of a table, and one word more. */
 #define NAMES_OF(kind, more)                                                                                                     \
-    static const char *kind##_word(size_t index, char room[DEA_NAME_LENGTH])                                                     \
+    const char *dea_##kind##_word(size_t index, char room[DEA_NAME_LENGTH])                                                      \
     {                                                                                                                            \
         (void)room;                                                                                                              \
         const dea_##kind *row = dea_##kind##_at(index);                                                                          \
@@ -243,8 +243,8 @@ WORDS_OF(axes, "x", "y", "xy")
     }
 
 static const dea_option entries[] = {
-    TEXT("engine", 0, "ENGINE", engine_word, DEA_TAKES_ENGINE, take_text, engine, "engine that solves"),
-    TEXT("model", 0, "MODEL", model_word, DEA_TAKES_SCENE, take_text, model, "model instead of that of the scene"),
+    TEXT("engine", 0, "ENGINE", dea_engine_word, DEA_TAKES_ENGINE, take_text, engine, "engine that solves"),
+    TEXT("model", 0, "MODEL", dea_model_word, DEA_TAKES_SCENE, take_text, model, "model instead of that of the scene"),
     TEXT("set", 0, "KEY=VALUE", key_word, DEA_TAKES_SCENE, take_setting, settings, "change a value of the scene"),
     FLAG("no-files", 0, DEA_TAKES_SCENE, no_files, "refuse a scene that names other files"),
     TEXT("output", 'o', "FILE", NULL, DEA_TAKES_OUTPUT, take_text, output, "write the result to a file"),
@@ -271,7 +271,7 @@ static const dea_option entries[] = {
            "difference that still agrees"),
     TEXT("uniaxial", 0, "FILE", NULL, DEA_TAKES_FIT, take_uniaxial, operands, "data of a uniaxial test"),
     TEXT("equibiaxial", 0, "FILE", NULL, DEA_TAKES_FIT, take_equibiaxial, operands, "data of an equi-biaxial test"),
-    TEXT("law", 0, "LAW", law_word, DEA_TAKES_FIT, take_text, law, "law that is fitted"),
+    TEXT("law", 0, "LAW", dea_law_word, DEA_TAKES_FIT, take_text, law, "law that is fitted"),
     COUNT("terms", 0, "N", DEA_TAKES_FIT, take_count, terms, DEA_LAW_TERMS, "1, 2, 3 or 4", "Yeoh constants or terms of Ogden"),
     TEXT("relaxation", 0, "FILE", NULL, DEA_TAKES_FIT, take_text, tests[DEA_TEST_RELAXATION], "data of a relaxation test"),
     TEXT("dma", 0, "FILE", NULL, DEA_TAKES_FIT, take_text, tests[DEA_TEST_DYNAMIC], "storage and loss modulus over frequency"),
@@ -292,8 +292,8 @@ static const dea_option entries[] = {
     NUMBER("breakdown", "FIELD", DEA_TAKES_FIT, breakdown, "V/m", 0, false, INFINITY, "a field above 0, for example \"80 V/um\"",
            "breakdown strength of the film"),
     TEXT("as", 0, "KIND", dea_export_word, DEA_TAKES_EXPORT, take_text, as, "kind of export"),
-    TEXT("dialect", 0, "DIALECT", dialect_word, DEA_TAKES_EXPORT, take_text, dialect, "simulator that reads it"),
-    TEXT("analogy", 0, "ANALOGY", analogy_word, DEA_TAKES_EXPORT, take_text, analogy, "what voltage and current stand for"),
+    TEXT("dialect", 0, "DIALECT", dea_dialect_word, DEA_TAKES_EXPORT, take_text, dialect, "simulator that reads it"),
+    TEXT("analogy", 0, "ANALOGY", dea_analogy_word, DEA_TAKES_EXPORT, take_text, analogy, "what voltage and current stand for"),
     TEXT("name", 0, "NAME", NULL, DEA_TAKES_EXPORT, take_text, name, "name of the part"),
     COUNT("runs", 0, "N", DEA_TAKES_BENCH, take_count, runs, 1000, "a whole number from 1 to 1000", "timed runs of a setting"),
     NUMBER("budget", "SECONDS", DEA_TAKES_BENCH, budget, "1", 0, false, INFINITY, "a number of seconds above 0, for example 60",

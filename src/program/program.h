@@ -103,8 +103,8 @@ typedef struct dea_command {
 
 /** Command number @p index, NULL past the end. */
 const dea_command *dea_command_at(size_t index);
-/** Kinds of export. */
-dea_word dea_export_word;
+/** Kinds of export, dialects, analogies; laws, engines and models, and auto. */
+dea_word dea_export_word, dea_dialect_word, dea_analogy_word, dea_law_word, dea_engine_word, dea_model_word;
 
 extern const dea_command dea_command_run;
 extern const dea_command dea_command_merge;
@@ -132,6 +132,9 @@ void dea_complain(const char *format, ...) DEA_PRINTF(1, 2);
 dea_exit dea_complain_error(const dea_error *error);
 /** Complains about an unknown @p what, with a guess among @p count names. */
 void dea_complain_unknown(const char *what, const char *given, const char *const *names, size_t count);
+/** Number of the given word among those of a list that needs no room; false with a complaint about an unknown @p what, where it is none of
+ * them. */
+bool dea_word_choose(const char *what, const char *given, dea_word *words, size_t *index);
 /** True where the scene names the engine, or none. */
 bool dea_engine_named(const dea_scene *scene, const dea_engine *engine);
 /** Notes the files of the command line as read; false, with a complaint, without memory. */

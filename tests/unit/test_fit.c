@@ -14,7 +14,7 @@
 
 #include "deaspice/fit.h"
 #include "deaspice/scene.h"
-#include "material/fit_branches.h"
+#include "material/fit/branches.h"
 
 static const double paper[DEA_LAW_CONSTANTS] = {178426.0, -6023.0, 4234.0};
 

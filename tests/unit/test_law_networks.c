@@ -232,6 +232,28 @@ static void gent_film_past_its_limit_has_a_named_state(void **state)
     }
 }
 
+/* The state of a response is that of the film under its bias, not at rest: with a mass it hangs on the bias like a row of a sweep. */
+static void a_response_has_the_state_of_its_bias(void **state)
+{
+    (void)state;
+    static const char *const engines[] = {"direct", "ngspice"};
+    const double voltages[] = {3e3, 10e3, 20e3, 30e3, 50e3};
+    size_t states[DEA_STATE_FAILED + 1] = {0};
+    for (size_t k = 0; k < 2 * sizeof voltages / sizeof *voltages; k++) {
+        dea_scene scene = moving_scene(&films[0], "lumped", DEA_DOT);
+        scene.study = DEA_STUDY_AC;
+        scene.ac = (dea_ac){.from = 10.0, .to = 20.0, .points_per_decade = 3, .bias = voltages[k / 2]};
+        scene.drive.voltage = scene.ac.bias;
+        const dea_row row = solve_direct(&scene, "lumped");
+        const bool framed = row.displacement < scene.actuator.frame_radius * (1.0 - scene.actuator.coverage);
+        run(&scene, engines[k % 2], &one);
+        const dea_state found = ((const dea_response *)one.bytes)->state, wanted = framed ? row.state : DEA_STATE_PULL_IN;
+        assert_int_equal(found, wanted);
+        states[found]++;
+    }
+    assert_true(states[DEA_STATE_OK] > 0 && states[DEA_STATE_OK] < 10);
+}
+
 /* A film of Ogden's whose exponent is just above 4 holds any voltage without a frame, at a thousand times its size: no fold, however
  * coarse the accuracy. */
 static void a_film_without_a_fold_is_followed_far(void **state)
@@ -264,6 +286,7 @@ int main(void)
         cmocka_unit_test(tiny_strains_keep_twelve_digits_in_networks),
         cmocka_unit_test(transients_of_every_law_agree),
         cmocka_unit_test(responses_of_every_law_agree),
+        cmocka_unit_test(a_response_has_the_state_of_its_bias),
         cmocka_unit_test(a_film_without_a_fold_is_followed_far),
         cmocka_unit_test(gent_film_past_its_limit_has_a_named_state),
     };

@@ -274,6 +274,30 @@ static void run(const dea_scene *scene, const char *engine, bool full, taken *re
     }
 }
 
+/* Behind a jump at 0 s only that moment would show a mass, and there a film that has one rests: it goes, and nothing moves. The balance
+ * closes, though the velocity that a damper alone sets is a small difference of forces. */
+static void a_film_with_a_mass_rests_in_its_first_moment(void **state)
+{
+    (void)state;
+    static taken whole, reduced;
+    dea_scene scene = scene_of("model=coverage");
+    scene.drive.waveform.step.on = scene.drive.waveform.step.rise = 0.0;
+    scene.drive.series_resistance = (double)NAN;
+    const dea_needs needs = needs_of(&scene, "ida");
+    assert_true(leaves_out(&needs, DEA_PART_MASS, 0, DEA_BRANCH_WHOLE));
+    run(&scene, "ida", true, &whole);
+    for (int k = 0; k < 2; k++) {
+        run(&scene, k == 0 ? "ida" : "ngspice", false, &reduced);
+        assert_true(reduced.samples[0].displacement == 0.0 && reduced.samples[0].velocity == 0.0);
+        assert_true(whole.samples[0].displacement == 0.0 && reduced.samples[0].force == whole.samples[0].force);
+        assert_true(reduced.summary.residual <= 1e-3);
+        for (size_t i = 0; i < 501; i++) {
+            assert_near(reduced.samples[i].displacement, whole.samples[i].displacement, 2e-4 * whole.samples[500].displacement);
+        }
+    }
+    dea_scene_free(&scene);
+}
+
 /* The bound is part of the estimated error, and both engines without the film's mass agree with one that keeps all. */
 static void reduced_runs_keep_the_accuracy(void **state)
 {
@@ -647,6 +671,7 @@ int main(void)
         cmocka_unit_test(a_series_resistance_is_left_out_where_nothing_shows_it),
         cmocka_unit_test(a_film_that_leaves_its_frame_keeps_all_its_parts),
         cmocka_unit_test(what_costs_an_engine_nothing_stays),
+        cmocka_unit_test(a_film_with_a_mass_rests_in_its_first_moment),
         cmocka_unit_test(reduced_runs_keep_the_accuracy),
         cmocka_unit_test(simpler_forms_of_a_branch_are_springs_and_dampers),
         cmocka_unit_test(model_error_decides_which_model_is_chosen),

@@ -138,6 +138,38 @@ static bool solves_divider(dea_ngspice *library, dea_error *error)
     return right;
 }
 
+/* True where the commands behind a netlist make its capacitor discharge from that voltage with that time constant. */
+static bool discharges(dea_ngspice *library, double voltage, double time, dea_error *error)
+{
+    char netlist[256];
+    vector_result result;
+    snprintf(netlist, sizeof netlist,
+             "* RC\nR1 a 0 1\nC1 a 0 1\n.options method=trap trtol=1e30\n.end\nalter C1 ic=%g\nalter C1=%g\ntran 1e-3 1 0 1e-2 uic\n", voltage, time);
+    const dea_status status = run_vector(library, netlist, "a", &result, error);
+    const bool right = status == DEA_OK && result.count > 50 && fabs(result.values[result.count - 1] - voltage * exp(-1.0 / time)) < 1e-4;
+    free(result.values);
+    return right;
+}
+
+static void discharge_by_commands(verdict *found, const char *folder)
+{
+    dea_error error = {0};
+    dea_ngspice *library;
+    (void)folder;
+    CHECK(dea_ngspice_open(&library, &error) == DEA_OK, "%s", error.message);
+    CHECK(discharges(library, 1.0, 1.0, &error), "%s", error.message);
+    CHECK(discharges(library, -0.5, 2.0, &error), "%s", error.message); /* the circuit of the run before */
+    CHECK(solves_divider(library, &error), "%s", error.message);
+    CHECK(discharges(library, 2.0, 0.5, &error), "%s", error.message);
+    dea_ngspice_close(library);
+}
+
+static void commands_change_the_circuit_that_is_loaded(void **state)
+{
+    (void)state;
+    pass_in_child(discharge_by_commands);
+}
+
 static void solve_divider(verdict *found, const char *folder)
 {
     dea_error error = {0};
@@ -611,6 +643,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(circuit_is_solved),
+        cmocka_unit_test(commands_change_the_circuit_that_is_loaded),
         cmocka_unit_test(times_of_a_study_enter_its_units_together),
         cmocka_unit_test(foreign_start_up_files_are_not_run),
         cmocka_unit_test(user_without_a_name_can_solve),

@@ -1,4 +1,4 @@
-#include "material/fit_test.h"
+#include "material/fit/test.h"
 
 #include "support/number.h"
 

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "material/fit_plausible.h"
-#include "material/fit_test.h"
+#include "material/fit/plausible.h"
+#include "material/fit/test.h"
 #include "support/file.h"
 #include "support/table.h"
 

@@ -8,9 +8,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "material/fit_branches.h"
-#include "material/fit_errors.h"
-#include "material/fit_plausible.h"
+#include "material/fit/branches.h"
+#include "material/fit/errors.h"
+#include "material/fit/plausible.h"
 #include "support/lapack.h"
 
 /* Chance of a gain by noise up to which a branch counts as significant. */

@@ -3,7 +3,7 @@
  * With A = U S V^T, x = V S^-1 U^T b and rows of variance v_i the covariance is W U^T diag(v) U W^T, W = V S^-1. Alike noise has v_i =
  * sum e^2/(rows - columns). Else v_i = e_i^2/(1 - h_i), h_i = |row i of U|^2 (HC2 of MacKinnon and White 1985) is right on the
  * average, but poor where few rows carry a constant. A variance is the larger of the two. */
-#include "material/fit_errors.h"
+#include "material/fit/errors.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* Unknowns without bounds for the method of least squares: a constant above a limit is limit + e^x, a modulus without one is
  * x times the shear modulus of a neo-Hookean film through the data, and other constants are themselves. */
-#include "material/fit_plausible.h"
+#include "material/fit/plausible.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
-#include "material/fit_plausible.h"
+#include "material/fit/plausible.h"
 
-#include "material/fit_test.h"
+#include "material/fit/test.h"
 
 #include <math.h>
 #include <stdlib.h>

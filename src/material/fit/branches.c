@@ -1,7 +1,7 @@
 /* Variable projection: what a test measures (fit_test.h) is linear in the shares a, none of them negative. So only
  * ln tau_i are searched, and the a follow by non-negative least squares. A step is the part of ln tau in a Levenberg-Marquardt
  * step of all unknowns; starts come from a logarithmic grid of times. */
-#include "material/fit_branches.h"
+#include "material/fit/branches.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #define DEA_MATERIAL_FIT_BRANCHES_H
 
 #include <stddef.h>
-#include "material/fit_test.h"
+#include "material/fit/test.h"
 #include "deaspice/status.h"
 
 enum { DEA_BRANCHES_GRID = 128, DEA_BRANCHES_COLUMNS = 2 * DEA_RELAXATION_MOST + 1 };

@@ -1,4 +1,4 @@
-#include "material/fit_branches.h"
+#include "material/fit/branches.h"
 
 #include <math.h>
 #include <stdlib.h>

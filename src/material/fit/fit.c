@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "material/fit_errors.h"
-#include "material/fit_plausible.h"
+#include "material/fit/errors.h"
+#include "material/fit/plausible.h"
 #include "material/law.h"
 #include "support/lapack.h"
 

@@ -81,3 +81,19 @@ double dea_rings_mesh_trust(const dea_membrane *m, const dea_membrane_rest *rest
 {
     return smoothness(m, rest) * nodes > smooth_enough ? certainty : doubt;
 }
+
+/* Elements that two meshes cut alike tell nothing of their own error, but for a disc that is uniform. */
+static bool tells(dea_rings_mesh coarse, dea_rings_mesh fine)
+{
+    return fine.annulus != coarse.annulus && (fine.disc != coarse.disc || fine.disc == 1);
+}
+
+bool dea_rings_finer_mesh(const dea_scene *scene, const dea_membrane *m, const dea_membrane_rest *rest, double *nodes, dea_rings_mesh *mesh)
+{
+    const dea_rings_mesh before = *mesh;
+    do { /* a short element takes so small a share of the nodes that two more may not change it */
+        *nodes = dea_rings_more_nodes(m, rest, *nodes);
+        *mesh = dea_rings_mesh_of(scene, *nodes);
+    } while (!tells(before, *mesh) && mesh->annulus < DEA_RINGS_DEGREE && mesh->disc < DEA_RINGS_DEGREE);
+    return tells(before, *mesh);
+}

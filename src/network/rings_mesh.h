@@ -19,4 +19,8 @@ double dea_rings_first_nodes(double accuracy);
 double dea_rings_more_nodes(const dea_membrane *membrane, const dea_membrane_rest *rest, double nodes);
 double dea_rings_mesh_trust(const dea_membrane *membrane, const dea_membrane_rest *rest, double nodes);
 
+/* The mesh after one: of so many more nodes that neither element stays as it is. False where an element has all that it may. */
+bool dea_rings_finer_mesh(const dea_scene *scene, const dea_membrane *membrane, const dea_membrane_rest *rest, double *nodes,
+                          dea_rings_mesh *mesh);
+
 #endif

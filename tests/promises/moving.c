@@ -703,7 +703,8 @@ true_run moving_truth(const dea_scene *scene, const dea_model *model, double fac
     const double none = (double)NAN;
     for (size_t i = truth.good; i < truth.count; i++) {
         const double time = dea_layout_place(scene, i);
-        truth.samples[i] = (dea_sample){time, none, none, none, none, none, none, none, none, none, none, DEA_STATE_PULL_IN, {none, none, none, none}};
+        truth.samples[i] = (dea_sample){
+            time, none, none, none, none, none, none, none, none, none, none, DEA_STATE_PULL_IN, {none, none, none, none}};
     }
     return truth;
 }

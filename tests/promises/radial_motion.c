@@ -6,7 +6,6 @@
  *
  * Steps end at samples and corners of the drive; their length follows the highest coefficient of the stages' polynomial. The run is
  * repeated on finer meshes at tighter tolerances until two agree: their difference bounds the error. */
-#include <float.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>

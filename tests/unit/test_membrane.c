@@ -406,6 +406,22 @@ static void random_steps_keep_their_promises(void **state)
     }
 }
 
+/* Beside a wide disc the annulus takes a small share of the nodes: a mesh that cuts it as the last one did tells nothing of it, and the
+ * next one is asked instead of none. */
+static void a_wide_disc_gets_meshes_that_differ_in_both_elements(void **state)
+{
+    (void)state;
+    static membrane_run run;
+    for (int i = 0; i < 2; i++) {
+        dea_scene scene = fe_step_scene(DEA_DOT, 1.2, i == 0 ? 0.9585 : 0.0415, 2000.0, 5e-4);
+        scene.material.retardation = 3e-4;
+        scene.transient = (dea_transient){.until = 1.5e-3, .every = 1e-4};
+        scene.accuracy = 1e-3;
+        run_field(&scene, &run);
+        assert_int_equal(run.samples[run.rows - 1].state, DEA_STATE_OK);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -422,6 +438,7 @@ int main(void)
         cmocka_unit_test(a_lens_that_pulls_in_ends_where_the_field_does),
         cmocka_unit_test(a_film_at_its_bias_rests),
         cmocka_unit_test(random_steps_keep_their_promises),
+        cmocka_unit_test(a_wide_disc_gets_meshes_that_differ_in_both_elements),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

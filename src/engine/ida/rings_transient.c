@@ -92,11 +92,8 @@ static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates
     dea_rings_mesh mesh = dea_rings_mesh_of(s->scene, nodes);
     status = run_on(s, mesh, tolerance, NULL, error);
     for (int i = 0; i < MOST_RUNS && status == DEA_OK && s->traces[1].end != DEA_STATE_FAILED; i++) {
-        const dea_rings_mesh before = mesh;
-        nodes = dea_rings_more_nodes(&s->solver->flight.membrane, &s->solver->flight.motion.rest, nodes);
-        mesh = dea_rings_mesh_of(s->scene, nodes);
-        if ((mesh.disc == before.disc && mesh.disc > 1) || mesh.annulus == before.annulus) {
-            return status; /* what both have alike tells nothing about itself, but for a disc that is uniform */
+        if (!dea_rings_finer_mesh(s->scene, &s->solver->flight.membrane, &s->solver->flight.motion.rest, &nodes, &mesh)) {
+            return status;
         }
         tolerance = fmax(first_share * tolerance, least_tolerance);
         *summary = dea_summary_failed();

@@ -138,10 +138,8 @@ static dea_status choose_mesh(search *s, double fineness, dea_error *error)
     }
     for (int i = 0; i < MOST_MESHES && status == DEA_OK; i++) {
         const double before = nodes;
-        const dea_rings_mesh mesh = dea_rings_mesh_of(s->scene, nodes);
-        nodes = dea_rings_more_nodes(&s->track->flight.membrane, &s->track->flight.motion.rest, nodes);
-        const dea_rings_mesh next = dea_rings_mesh_of(s->scene, nodes);
-        if (next.disc == mesh.disc && next.annulus == mesh.annulus) {
+        dea_rings_mesh mesh = dea_rings_mesh_of(s->scene, nodes);
+        if (!dea_rings_finer_mesh(s->scene, &s->track->flight.membrane, &s->track->flight.motion.rest, &nodes, &mesh)) {
             return DEA_OK;
         }
         status = open_mesh(s, nodes, error);

@@ -387,7 +387,7 @@ static dea_status refine_once(const dea_route *route, levels *l, double fineness
         judge(route, l);
         fill_summary(route, l, summary);
         l->residual = summary->residual;
-            const bool ended = l->fine.end == DEA_STATE_OK || (l->fine.end == DEA_STATE_PULL_IN && !l->fine.vague);
+        const bool ended = l->fine.end == DEA_STATE_OK || (l->fine.end == DEA_STATE_PULL_IN && !l->fine.vague);
         const bool settled = ended || (l->runs >= (l->fine.vague ? PATIENT : STUBBORN) && !l->fine.bounces);
         const bool closed = l->fine.end != DEA_STATE_OK || summary->residual <= 10.0 * wanted || l->error <= enough * wanted;
         *done = l->error <= wanted && settled && closed;

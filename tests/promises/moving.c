@@ -273,16 +273,22 @@ static bool is_framed(const motion *m, long double u)
     return u > -m->film.divide && u < m->film.frame - m->film.divide;
 }
 
-/* A film with a port needs a capacitance; that of the linear models may end within the frame. */
+/* What charges a film needs a capacitance, and a permittivity that follows the strain has an end where it falls to 0; that of the linear
+ * models may lie within the frame. */
 static bool has_capacitance(const true_film *f, long double u)
 {
     return film_edge(f, u).capacitance > 0.0L;
 }
 
+static bool needs_capacitance(const true_film *f)
+{
+    return f->series != 0.0L || f->conductance != 0.0L || f->electrostriction != 0.0L;
+}
+
 static bool inside(const motion *m, long double u)
 {
     const true_film *f = &m->film;
-    return is_framed(m, u) && ((f->series == 0.0L && f->conductance == 0.0L) || has_capacitance(f, u));
+    return is_framed(m, u) && (!needs_capacitance(f) || has_capacitance(f, u));
 }
 
 static bool is_linear(const true_film *f)

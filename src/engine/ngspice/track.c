@@ -439,13 +439,16 @@ static dea_state verdict(const runner *r)
     return lost ? DEA_STATE_PULL_IN : DEA_STATE_FAILED;
 }
 
+/* How near to its end a film is still asked for its force, relative: with an exponent of two a lens has stopped 1e-8 before the centre. */
+static const double nearest = 1e-12;
+
 /* True where the film turns back before the frame or the centre that @p n lies behind: the stress of what gets narrow there grows
  * beyond all bounds, against the motion unless the material has lost its stiffness. */
 static bool turns_back(const runner *r, const node *n)
 {
     dea_dynamics *d = r->route->dynamics;
     const double end = n->moment.u > 0.0 ? d->point.frame_radius - d->radius : -d->radius;
-    const dea_edge e = dea_dynamics_edge(d, (1.0 - 1e-6) * end);
+    const dea_edge e = dea_dynamics_edge(d, (1.0 - nearest) * end);
     const double force = e.push * n->moment.voltage * n->moment.voltage - dea_edge_held(d, &e, NULL);
     return !d->linear && isfinite(n->moment.u) && force * end < 0.0;
 }

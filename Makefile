@@ -68,7 +68,7 @@ demo: packages
 	@echo "building the program"
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/deaspice >/dev/null
 	@mkdir -p demo
-	@$(BUILD)/deaspice run examples/figure10.yaml --engine ngspice,direct -o demo/figure10.csv --plot demo/figure10.svg 2>demo/log || { cat demo/log; exit 1; }
+	@$(BUILD)/deaspice run examples/figure10.yaml -o demo/figure10.csv --plot demo/figure10.svg 2>demo/log || { cat demo/log; exit 1; }
 	@$(BUILD)/deaspice check examples/figure10.yaml >demo/check || { cat demo/check; exit 3; }
 	@grep -e ': largest strain' -e ' points in ' demo/log
 	@awk '$$NF == "agrees" {n++; for (i = 4; i < NF - 1; i++) if ($$i + 0 > worst) worst = $$i + 0} \

@@ -9,13 +9,13 @@
  * of intervals are samples where they can be. */
 #include "network/thin.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "deaspice/result.h"
+#include "support/grow.h"
 
 /* Share of the accuracy that thinning takes, all errors of a sample together. */
 static const double share = 0.05;
@@ -81,8 +81,7 @@ static void rate_at(dea_dynamics *d, double u, double voltage, double until, fil
         f->rate = INFINITY;
         return;
     }
-    const double slow = resistance > 0.0 ? held / resistance : (double)INFINITY;
-    double rate = slow, adds = 1.0, reached = fmin(1.0, until * relaxed / resistance);
+    double rate = resistance > 0.0 ? held / resistance : (double)INFINITY, adds = 1.0, reached = fmin(1.0, until * relaxed / resistance);
     if (d->mass > 0.0) {
         const double omega = sqrt(held / d->mass), ratio = 0.5 * resistance / (d->mass * omega);
         rate = fmax(omega, resistance / d->mass);
@@ -224,32 +223,24 @@ static double error_of(const film *f, const interval *v)
 
 static void make(thinner *t, dea_segment segment)
 {
-    if (t->count == t->room) {
-        const size_t room = t->room ? 2 * t->room : 256;
-        dea_segment *more = realloc(t->made, room * sizeof *more);
-        if (!more) {
-            t->exhausted = true;
-            return;
-        }
-        t->made = more;
-        t->room = room;
+    dea_segment *made = dea_grow(t->made, t->count, &t->room, sizeof *made);
+    if (!made) {
+        t->exhausted = true;
+        return;
     }
-    t->made[t->count++] = segment;
+    t->made = made;
+    made[t->count++] = segment;
 }
 
 static void keep_polynomial(thinner *t, const interval *v)
 {
-    if (t->term_count == t->term_room) {
-        const size_t room = t->term_room ? 2 * t->term_room : 256;
-        double *more = realloc(t->terms, room * DEA_TERMS * sizeof *more);
-        if (!more) {
-            t->exhausted = true;
-            return;
-        }
-        t->terms = more;
-        t->term_room = room;
+    double *terms = dea_grow(t->terms, t->term_count, &t->term_room, sizeof v->terms);
+    if (!terms) {
+        t->exhausted = true;
+        return;
     }
-    memcpy(t->terms + DEA_TERMS * t->term_count++, v->terms, sizeof v->terms);
+    t->terms = terms;
+    memcpy(terms + DEA_TERMS * t->term_count++, v->terms, sizeof v->terms);
     make(t, (dea_segment){.from = v->from, .to = v->to, .sine = true, .lines = &t->lines[v->first], .line_count = v->count});
     t->held = SIZE_MAX;
 }

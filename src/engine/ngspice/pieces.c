@@ -1,7 +1,8 @@
 #include "engine/ngspice/pieces.h"
 
 #include <math.h>
-#include <stdlib.h>
+
+#include "support/grow.h"
 
 /* Most corners of the voltage in one piece: the library walks through all of them at every step. */
 enum { MOST_CORNERS = 64 };
@@ -56,18 +57,14 @@ static void add(cutter *c, dea_piece next)
         last->step = fmin(last->step, next.step);
         return;
     }
-    if (pieces->count == c->room) {
-        const size_t room = c->room ? 2 * c->room : 64;
-        dea_piece *more = realloc(pieces->pieces, room * sizeof *more);
-        if (!more) {
-            c->exhausted = true;
-            return;
-        }
-        pieces->pieces = more;
-        c->room = room;
+    dea_piece *grown = dea_grow(pieces->pieces, pieces->count, &c->room, sizeof *grown);
+    if (!grown) {
+        c->exhausted = true;
+        return;
     }
+    pieces->pieces = grown;
     c->corners = 0;
-    pieces->pieces[pieces->count++] = next;
+    grown[pieces->count++] = next;
 }
 
 /* Step wanted at an age since the last corner, and the age up to which it is good: a fraction of the age, since all that was

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "support/grow.h"
+
 /* Most time steps of one netlist: what its plot takes of memory. */
 static const double most_steps = 300000.0;
 
@@ -519,17 +521,13 @@ static double excess_of(const runner *r, const node *n)
 
 static void note_cut(dea_cuts *cuts, double time)
 {
-    if (cuts->count == cuts->room) {
-        const size_t room = cuts->room ? 2 * cuts->room : 64;
-        double *more = realloc(cuts->times, room * sizeof *more);
-        if (!more) {
-            cuts->exhausted = true;
-            return;
-        }
-        cuts->times = more;
-        cuts->room = room;
+    double *times = dea_grow(cuts->times, cuts->count, &cuts->room, sizeof *times);
+    if (!times) {
+        cuts->exhausted = true;
+        return;
     }
-    cuts->times[cuts->count++] = time;
+    cuts->times = times;
+    times[cuts->count++] = time;
 }
 
 /* Where the source comes to its limit or from it before the point @p n, the point there takes its place: the current has a corner

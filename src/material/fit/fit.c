@@ -11,6 +11,7 @@
 #include "material/fit/errors.h"
 #include "material/fit/plausible.h"
 #include "material/law.h"
+#include "support/grow.h"
 #include "support/lapack.h"
 
 /* Condition number of the scaled columns beyond which the data does not tell the constants apart. */
@@ -36,16 +37,12 @@ dea_status dea_fit_add(dea_fit_data *data, dea_fit_point point, dea_error *error
     if (!(point.stretch > 0.0) || !isfinite(point.stretch) || !isfinite(point.stress) || (unsigned)point.load >= DEA_LOAD_COUNT) {
         return dea_fail(error, DEA_ERROR_USAGE, "a measured point needs a stretch above 0, a finite stress and a load");
     }
-    if (data->count == data->room) {
-        const size_t room = data->room > 0 ? 2 * data->room : 64;
-        dea_fit_point *points = realloc(data->points, room * sizeof *points);
-        if (!points) {
-            return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
-        }
-        data->points = points;
-        data->room = room;
+    dea_fit_point *points = dea_grow(data->points, data->count, &data->room, sizeof *points);
+    if (!points) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
-    data->points[data->count++] = point;
+    data->points = points;
+    points[data->count++] = point;
     return DEA_OK;
 }
 

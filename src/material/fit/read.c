@@ -9,6 +9,7 @@
 #include "material/fit/plausible.h"
 #include "material/fit/test.h"
 #include "support/file.h"
+#include "support/grow.h"
 #include "support/table.h"
 
 enum { STRETCH, STRAIN, DISPLACEMENT, STRESS, FORCE, MODE, TIME, COMPLIANCE, COLUMNS };
@@ -310,15 +311,12 @@ static dea_status moduli_rows(dea_table *t, dea_relaxation_point **points, size_
         if (!(omega > 0.0)) {
             return dea_table_fail_at(t, t->seen[FREQUENCY] ? FREQUENCY : OMEGA, "a frequency is above 0:");
         }
-        if (*count == room) {
-            room = room > 0 ? 2 * room : 64;
-            dea_relaxation_point *larger = realloc(*points, room * sizeof *larger);
-            if (!larger) {
-                return dea_fail(t->error, DEA_ERROR_MEMORY, "out of memory");
-            }
-            *points = larger;
+        dea_relaxation_point *grown = dea_grow(*points, *count, &room, sizeof *grown);
+        if (!grown) {
+            return dea_fail(t->error, DEA_ERROR_MEMORY, "out of memory");
         }
-        (*points)[(*count)++] = (dea_relaxation_point){
+        *points = grown;
+        grown[(*count)++] = (dea_relaxation_point){
             .time = omega, .stress = values[STORAGE], .loss = t->seen[LOSS] ? values[LOSS] : values[STORAGE] * values[TANGENT]};
     }
     return status;

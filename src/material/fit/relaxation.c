@@ -11,6 +11,7 @@
 #include "material/fit/branches.h"
 #include "material/fit/errors.h"
 #include "material/fit/plausible.h"
+#include "support/grow.h"
 #include "support/lapack.h"
 
 /* Chance of a gain by noise up to which a branch counts as significant. */
@@ -34,16 +35,12 @@ dea_status dea_relaxation_add(dea_relaxation_data *data, dea_relaxation_point po
         return dea_fail(error, DEA_ERROR_USAGE,
                         "a point of a %s needs a time >= 0 or a frequency after the last and finite numbers", dea_test_of(data->kind)->name);
     }
-    if (data->count == data->room) {
-        const size_t room = data->room > 0 ? 2 * data->room : 64;
-        dea_relaxation_point *points = realloc(data->points, room * sizeof *points);
-        if (!points) {
-            return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
-        }
-        data->points = points;
-        data->room = room;
+    dea_relaxation_point *points = dea_grow(data->points, data->count, &data->room, sizeof *points);
+    if (!points) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory");
     }
-    data->points[data->count++] = point;
+    data->points = points;
+    points[data->count++] = point;
     return DEA_OK;
 }
 

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "scene/line.h"
-#include "expression/tape.h"
 #include "netlist/netlist.h"
 #include "netlist/rings_text.h"
 #include "network/still.h"
@@ -50,39 +49,24 @@ static dea_status write_start(writer *w, dea_error *error)
 {
     const dea_axis *axis = w->line->axis;
     const double none[DEA_RINGS_VARIABLES] = {0.0};
-    double symbols[DEA_RINGS_SYMBOLS];
-    dea_tape tape;
-    size_t count = 0;
-    int *refs = calloc((size_t)w->pool.count + 1, sizeof *refs);
-    if (!refs) {
+    char inside[DEA_PART_NAME];
+    double symbols[DEA_RINGS_SYMBOLS], *values = calloc((size_t)w->pool.count + 1, sizeof *values);
+    if (!values) {
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
-    }
-    for (int i = 0; i < w->pool.count; i++) {
-        if (w->text.terms[i].written && w->text.terms[i].moves) {
-            refs[count++] = i;
-        }
     }
     memcpy(symbols, w->quantities.values, sizeof symbols);
     symbols[AXIS] = axis->values[w->line->from];
-    const dea_status status =
-        dea_tape_compile_many(&w->pool, refs, (int)count, (int)w->quantities.count, DEA_RINGS_VARIABLES, &tape, error);
-    if (status == DEA_OK) {
-        dea_tape_values(&tape, symbols, none);
-        fputs(".nodeset", w->out);
-        if (dea_axis_holds(axis, w->line->from, w->line->to)) {
-            write_guess(w, "point", (double)w->line->from);
-        }
-        write_guess(w, "axis", symbols[AXIS]);
-        for (size_t i = 0; i < count; i++) {
-            char node[DEA_PART_NAME];
-            snprintf(node, sizeof node, "x%d", refs[i]);
-            write_guess(w, node, dea_tape_value(&tape, (int)i));
-        }
-        fputc('\n', w->out);
-        dea_tape_free(&tape);
+    dea_pool_values_at(&w->pool, &(dea_point_values){symbols, none, (int)w->quantities.count, DEA_RINGS_VARIABLES}, values);
+    snprintf(inside, sizeof inside, "xline%zu%s", w->line->number, w->dialect->inside);
+    fputs(".nodeset", w->out);
+    if (dea_axis_holds(axis, w->line->from, w->line->to)) {
+        write_guess(w, "point", (double)w->line->from);
     }
-    free(refs);
-    return status;
+    write_guess(w, "axis", symbols[AXIS]);
+    dea_part_text_start(&w->text, inside, values);
+    fputc('\n', w->out);
+    free(values);
+    return DEA_OK;
 }
 
 static dea_status write_all(writer *w, dea_error *error)

@@ -208,6 +208,33 @@ static void what_is_exported_is_the_text_that_the_engine_runs(void **state)
     free(whole);
 }
 
+/* What a swept geometry needs at the start of Newton's iteration is told of nodes that the circuit has: without it the first matrix
+ * of a sweep is singular, and every point of it would need a circuit of its own. */
+static void newton_starts_at_nodes_that_the_circuit_has(void **state)
+{
+    double values[2][3] = {{0.3, 0.5, 0.7}, {1.1, 1.2, 1.3}};
+    dea_axis axis;
+    (void)state;
+    for (size_t i = 0; i < 2; i++) {
+        dea_scene scene = paper_scene(i == 0 ? DEA_DOT : DEA_LENS, 1.2, 0.5, 500.0);
+        scene.models[0] = dea_model_find("field");
+        add_axis(&scene, &axis, i == 0 ? &scene.actuator.coverage : &scene.actuator.prestretch, values[i], 3);
+        char *text = export_of(&scene, "ngspice"), *guesses = strstr(text, "\n.nodeset "), *rest = NULL;
+        assert_non_null(guesses);
+        *guesses++ = '\0';
+        size_t count = 0;
+        char *guess = strtok_r(strtok_r(guesses, "\n", &rest), " ", &rest);
+        while ((guess = strtok_r(NULL, " ", &rest)) && strncmp(guess, "v(xline1.", 9) == 0) {
+            char node[64];
+            snprintf(node, sizeof node, " %.*s 0 ", (int)strcspn(guess + 9, ")"), guess + 9);
+            assert_non_null(strstr(text, node));
+            count++;
+        }
+        assert_true(count > 3);
+        free(text);
+    }
+}
+
 /* Of the network alone; the caller frees it. */
 static char *network_in(const char *text)
 {
@@ -463,6 +490,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_sweep_goes_on_behind_points_without_equilibrium),
         cmocka_unit_test(small_motion_about_a_bias_is_that_of_the_membrane),
         cmocka_unit_test(what_is_exported_is_the_text_that_the_engine_runs),
+        cmocka_unit_test(newton_starts_at_nodes_that_the_circuit_has),
         cmocka_unit_test(transients_are_one_text),
         cmocka_unit_test(frequency_responses_are_one_text),
         cmocka_unit_test(a_load_is_carried),

@@ -100,7 +100,7 @@ static void place_loads(const dea_scene *scene, dea_point *point)
     }
 }
 
-void dea_point_place(const dea_scene *scene, dea_point *point)
+void dea_point_shape(const dea_scene *scene, dea_point *point)
 {
     const dea_actuator *actuator = &scene->actuator;
     point->kind = actuator->kind;
@@ -111,6 +111,11 @@ void dea_point_place(const dea_scene *scene, dea_point *point)
     point->voltage = scene->drive.voltage * film_share(scene);
     point->focal_length = actuator->focal_length;
     point->refractive_index = actuator->refractive_index;
+}
+
+void dea_point_place(const dea_scene *scene, dea_point *point)
+{
+    dea_point_shape(scene, point);
     place_loads(scene, point);
     place_second(scene, &point->second);
     place_skin(&scene->electrode, point);

@@ -6,6 +6,9 @@
 
 #include "deaspice/model.h"
 
+/* The part of dea_point_place() that actuator and drive alone decide: loads, second film and skin stay as they are. */
+void dea_point_shape(const dea_scene *scene, dea_point *point);
+
 /* +1 for a dot (the disc grows), -1 for a lens (the disc shrinks). */
 static inline double dea_point_sign(const dea_point *point)
 {

@@ -5,6 +5,7 @@
 #include "expression/formula.h"
 #include "network/hyperelastic.h"
 #include "support/gauss.h"
+#include "support/lanes.h"
 
 /* int_1^{1+s} (1 - B x)^4/x dx/(1 - B)^4, what pushes the lens over its way: in closed form, but where its terms cancel, near B = 1
  * for a small strain, by quadrature. */
@@ -74,7 +75,7 @@ static bool is_active_taut(const dea_point *point, double pressure, double activ
     return point->film.tension * point->film.prestretch + change_at(point, active, true).value - electric * pull > 0.0;
 }
 
-static dea_found found_at(const dea_point *point, double pressure, double active, bool alone)
+DEA_INLINE dea_found found_at(const dea_point *point, double pressure, double active, bool alone)
 {
     const bool dot = point->kind == DEA_DOT;
     const double passive = -ratio_of(point) * active;

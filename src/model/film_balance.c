@@ -4,6 +4,11 @@
 #include "model/path.h"
 #include "support/lanes.h"
 
+/* Points on their way at once: two vectors of the widest hide each other's waits. */
+enum { ABREAST = 2 * DEA_LANES };
+
+#define EACH(l) for (size_t l = 0; l < ABREAST; l++)
+
 typedef struct balance {
     double load;  /* N = sigma_A - sigma_P [Pa] */
     double slope; /* dN/de */
@@ -58,44 +63,40 @@ static dea_path_place place_at(const void *user, double e)
     return (dea_path_place){b.load, b.slope, electric.first * square * square, 2.0 * cube * (electric.first + electric.second)};
 }
 
-/* Strain of the active film at which a region vanishes, or the energy of the material ends. */
-static double end_of(const film_pair *pair)
-{
-    const double active = pair->skin ? fmin(pair->film->grows, pair->skin->grows) : pair->film->grows;
-    const double passive = pair->ratio > 0.0 ? pair->film->shrinks / pair->ratio : active;
-    return passive < active ? passive : active;
-}
-
-/* dN/de and d2N/de2 at rest. */
-static double rest_slope(const film_pair *pair)
-{
-    const double film = pair->film->prestretch * pair->film->slope * (1.0 + pair->ratio);
-    return (pair->skin ? film + pair->share * pair->skin->slope : film) + pair->load;
-}
-
-static double rest_curve(const film_pair *pair)
-{
-    const double film = pair->film->square * pair->film->curvature * (1.0 - pair->ratio * pair->ratio);
-    return (pair->skin ? film + pair->share * pair->skin->curvature : film) + 2.0 * pair->load * pair->turn;
-}
-
-/* Films abreast on their way to a root. */
+/* Films abreast on their way to a root: of one film and skin, each with its own ratio, load and pressure. */
 typedef struct walkers {
     const dea_film *film, *skin; /* as of a pair */
-    double share[DEA_LANES], spring[DEA_LANES], turn[DEA_LANES]; /* spring: load of the pair [Pa] */
-    double ratio[DEA_LANES], m[DEA_LANES], end[DEA_LANES];
-    double stiffness[DEA_LANES], curvature[DEA_LANES]; /* dN/de and d2N/de2 at rest */
-    double strain[DEA_LANES], last[DEA_LANES];
-    double load[DEA_LANES], slope[DEA_LANES], curve[DEA_LANES]; /* of N where it was evaluated last */
-    double live[DEA_LANES];                                     /* 1: goes on, 0: has come to its end */
-    double root[DEA_LANES];                                     /* 1: that is a root */
-    double fold[DEA_LANES], clear[DEA_LANES];                   /* (1 + e) dN/de - 4 N there; 1: no fold can lie before */
+    double share[ABREAST], spring[ABREAST], turn[ABREAST]; /* spring: load of the pair [Pa] */
+    double ratio[ABREAST], m[ABREAST];
+    double end[ABREAST]; /* strain of the active film at which a region vanishes, or the energy of the material ends */
+    double stiffness[ABREAST], curvature[ABREAST]; /* dN/de and d2N/de2 at rest */
+    double strain[ABREAST], last[ABREAST];
+    double load[ABREAST], slope[ABREAST], curve[ABREAST]; /* of N where it was evaluated last */
+    double live[ABREAST];                                     /* 1: goes on, 0: has come to its end */
+    double root[ABREAST];                                     /* 1: that is a root */
+    double fold[ABREAST], clear[ABREAST];                   /* (1 + e) dN/de - 4 N there; 1: no fold can lie before */
 } walkers;
+
+/* N at rest. Without a skin or a passive film what they add is 0, and the end of the latter infinitely far. */
+DEA_INLINE void rest(walkers *w)
+{
+    const dea_film *film = w->film;
+    const double slope = film->prestretch * film->slope, curvature = film->square * film->curvature;
+    const double skin_slope = w->skin ? w->skin->slope : 0.0, skin_curvature = w->skin ? w->skin->curvature : 0.0;
+    const double shrinks = film->shrinks, grows = w->skin ? fmin(film->grows, w->skin->grows) : film->grows;
+    EACH(l)
+    {
+        const double ratio = w->ratio[l], spring = w->spring[l], share = w->share[l], passive = shrinks / ratio;
+        w->stiffness[l] = slope * (1.0 + ratio) + share * skin_slope + spring;
+        w->curvature[l] = curvature * (1.0 - ratio * ratio) + share * skin_curvature + 2.0 * spring * w->turn[l];
+        w->end[l] = passive < grows ? passive : grows;
+    }
+}
 
 /* The second-order answer: N = K e + c e^2/2 + ..., m (1 + e)^4 = m (1 + 4 e + 6 e^2 + ...). */
 DEA_INLINE void set_off(walkers *w)
 {
-    DEA_EACH_LANE(l)
+    EACH(l)
     {
         const double room = w->stiffness[l] - 4.0 * w->m[l];
         const double bend = 0.5 * w->curvature[l] - 6.0 * w->m[l];
@@ -108,9 +109,9 @@ DEA_INLINE void set_off(walkers *w)
 
 static void add_skin(const walkers *w, const double *strains, const dea_changes *changes)
 {
-    double value[DEA_LANES], slope[DEA_LANES], curve[DEA_LANES];
-    dea_film_changes(w->skin, DEA_LANES, strains, &(dea_changes){value, slope, curve});
-    DEA_EACH_LANE(l)
+    double value[ABREAST], slope[ABREAST], curve[ABREAST];
+    dea_film_changes(w->skin, ABREAST, strains, &(dea_changes){value, slope, curve});
+    EACH(l)
     {
         changes->value[l] += w->share[l] * value[l];
         changes->slope[l] += w->share[l] * slope[l];
@@ -122,25 +123,25 @@ static void add_skin(const walkers *w, const double *strains, const dea_changes 
  * is below rounding the present step was the last one needed. */
 DEA_INLINE void step_on(walkers *w)
 {
-    double strains[2 * DEA_LANES], value[2 * DEA_LANES], slope[2 * DEA_LANES], curve[2 * DEA_LANES];
+    double strains[2 * ABREAST], value[2 * ABREAST], slope[2 * ABREAST], curve[2 * ABREAST];
     const dea_changes changes = {value, slope, curve};
-    DEA_EACH_LANE(l)
+    EACH(l)
     {
         strains[l] = w->strain[l];
-        strains[DEA_LANES + l] = -w->ratio[l] * w->strain[l];
+        strains[ABREAST + l] = -w->ratio[l] * w->strain[l];
     }
-    dea_film_changes(w->film, 2 * DEA_LANES, strains, &changes);
+    dea_film_changes(w->film, 2 * ABREAST, strains, &changes);
     if (w->skin) {
         add_skin(w, strains, &changes);
     }
-    DEA_EACH_LANE(l)
+    EACH(l)
     {
         const double e = w->strain[l], last = w->last[l], ratio = w->ratio[l], m = w->m[l];
         const double square = (1.0 + e) * (1.0 + e);
         const double spring = w->spring[l], turn = w->turn[l];
-        const double load = value[l] - value[DEA_LANES + l] + spring * e * (1.0 + turn * e);
-        const double first = slope[l] + ratio * slope[DEA_LANES + l] + spring * (1.0 + 2.0 * turn * e);
-        const double second = curve[l] - ratio * ratio * curve[DEA_LANES + l] + 2.0 * spring * turn;
+        const double load = value[l] - value[ABREAST + l] + spring * e * (1.0 + turn * e);
+        const double first = slope[l] + ratio * slope[ABREAST + l] + spring * (1.0 + 2.0 * turn * e);
+        const double second = curve[l] - ratio * ratio * curve[ABREAST + l] + 2.0 * spring * turn;
         const double residual = load - m * square * square;
         const double steep = first - 4.0 * m * square * (1.0 + e);
         const double bent = second - 12.0 * m * square;
@@ -162,12 +163,12 @@ DEA_INLINE void step_on(walkers *w)
 
 DEA_INLINE bool any_lives(const walkers *w)
 {
-    double sum = 0.0;
-    DEA_EACH_LANE(l)
+    long long live = 0; /* as wide as the numbers, so that it goes in vectors */
+    EACH(l)
     {
-        sum += w->live[l];
+        live |= w->live[l] > 0.0;
     }
-    return sum > 0.0;
+    return live != 0;
 }
 
 /* Notes where `fold` keeps far from zero all the way from rest to the root, next to which N was evaluated: over so short a way two
@@ -175,7 +176,7 @@ DEA_INLINE bool any_lives(const walkers *w)
  * dea_path_grows(). */
 DEA_INLINE void look_for_folds(walkers *w)
 {
-    DEA_EACH_LANE(l)
+    EACH(l)
     {
         const double e = w->strain[l], ratio = w->ratio[l], stiffness = w->stiffness[l];
         const double fold = (1.0 + e) * w->slope[l] - 4.0 * w->load[l];
@@ -192,6 +193,7 @@ DEA_INLINE void look_for_folds(walkers *w)
 
 DEA_INLINE void settle_body(walkers *w)
 {
+    rest(w);
     set_off(w);
     for (int i = 0; i < 12 && any_lives(w); i++) {
         step_on(w);
@@ -201,17 +203,26 @@ DEA_INLINE void settle_body(walkers *w)
 
 DEA_LANES_DISPATCH(settle, settle_body, (walkers *w), (w))
 
+/* Strain of the disc per strain of the active film. */
+static double turn_of(const dea_point *point, double ratio)
+{
+    return point->kind == DEA_DOT ? 1.0 : -ratio;
+}
+
+/* The spring at the edge, as the pair takes it [Pa]. */
+static double spring_of(const dea_point *point, double turn)
+{
+    return point->load != 0.0 ? point->load * dea_point_divide(point) / dea_point_cross_section(point) * fabs(turn) : 0.0;
+}
+
 static film_pair pair_of(const dea_point *point, double ratio)
 {
-    const bool skinned = point->skin_share > 0.0;
-    const double turn = point->kind == DEA_DOT ? 1.0 : -ratio;
+    const double turn = turn_of(point, ratio);
     return (film_pair){.film = &point->film,
                        .ratio = ratio,
-                       .skin = skinned ? &point->skin : NULL,
+                       .skin = point->skin_share > 0.0 ? &point->skin : NULL,
                        .share = point->skin_share * point->film.square,
-                       .load = point->load != 0.0
-                                   ? point->load * dea_point_divide(point) / dea_point_cross_section(point) * fabs(turn)
-                                   : 0.0,
+                       .load = spring_of(point, turn),
                        .turn = turn};
 }
 
@@ -228,24 +239,20 @@ static bool trace(const dea_point *point, const walkers *w, size_t l, double *st
     return first || dea_path_trace(&path, w->m[l], strain);
 }
 
-/* Strains of up to DEA_LANES films of as many points, each with its own ratio, under the pressures m; false where there is none. */
+/* Strains of up to ABREAST films of as many points, each with its own ratio, under the pressures m; false where there is none. */
 static void find(const dea_point *points, size_t count, const double *ratio, const double *m, double *strain, bool *found)
 {
     walkers w; /* set whole here and as they set off: to clear it first would cost a tenth of the way */
     w.film = &points[0].film;
     w.skin = points[0].skin_share > 0.0 ? &points[0].skin : NULL;
-    DEA_EACH_LANE(l)
+    EACH(l)
     {
         const size_t from = l < count ? l : 0; /* an idle lane does what the first does */
-        const film_pair pair = pair_of(&points[from], ratio[from]);
-        w.share[l] = pair.share;
-        w.spring[l] = pair.load;
-        w.turn[l] = pair.turn;
         w.ratio[l] = ratio[from];
         w.m[l] = m[from];
-        w.stiffness[l] = rest_slope(&pair);
-        w.curvature[l] = rest_curve(&pair);
-        w.end[l] = end_of(&pair);
+        w.share[l] = points[from].skin_share * points[0].film.square;
+        w.turn[l] = turn_of(&points[from], ratio[from]);
+        w.spring[l] = spring_of(&points[from], w.turn[l]);
     }
     settle(&w);
     const bool constant = points[0].film.electrostriction == 0.0; /* as the films abreast are taken */
@@ -260,7 +267,7 @@ static void find(const dea_point *points, size_t count, const double *ratio, con
 static size_t abreast(const dea_point *points, size_t count)
 {
     size_t some = 1;
-    while (some < count && some < DEA_LANES && points[0].skin_share == 0.0 && points[some].skin_share == 0.0) {
+    while (some < count && some < ABREAST && points[0].skin_share == 0.0 && points[some].skin_share == 0.0) {
         some++;
     }
     return some;
@@ -271,8 +278,8 @@ void dea_film_balances_solve(const dea_point *points, size_t count, double (*rat
 {
     for (size_t from = 0, some; from < count; from += some) {
         some = abreast(points + from, count - from);
-        double ratios[DEA_LANES], pressures[DEA_LANES], strains[DEA_LANES];
-        bool found[DEA_LANES];
+        double ratios[ABREAST], pressures[ABREAST], strains[ABREAST];
+        bool found[ABREAST];
         for (size_t l = 0; l < some; l++) {
             ratios[l] = ratio(&points[from + l]);
             pressures[l] = dea_point_pressure(&points[from + l]);

@@ -4,6 +4,7 @@
 
 #include "engine/direct/direct.h"
 #include "engine/engines.h"
+#include "geometry/point.h"
 #include "scene/line.h"
 #include "study/study.h"
 
@@ -56,14 +57,23 @@ static void solve_one_by_one(const visit_state *state, dea_scene *here, const de
     }
 }
 
+/* True where a line moves actuator or drive alone, without a skin whose share the thickness of the film would change. */
+static bool shapes_alone(const dea_scene *scene, const dea_line *line)
+{
+    const size_t place = line->axis->offset, actuator = offsetof(dea_scene, actuator), drive = offsetof(dea_scene, drive);
+    return !scene->electrode.law && ((place >= actuator && place < actuator + sizeof scene->actuator) ||
+                                     (place >= drive && place < drive + sizeof scene->drive));
+}
+
 /* Valid points in front of others that are not, whose rows are made failed; number[i] is the place of point i on the line. */
 static size_t gather(const visit_state *state, dea_scene *here, const dea_line *line, size_t from, size_t count, dea_point *points,
                      size_t *number)
 {
+    void (*const place)(const dea_scene *, dea_point *) = shapes_alone(here, line) ? dea_point_shape : dea_point_place;
     size_t gathered = 0;
     for (size_t i = from; i < from + count; i++) {
         dea_axis_set(line->axis, here, line->axis->values[line->from + i]);
-        dea_point_place(here, &points[gathered]);
+        place(here, &points[gathered]);
         if (dea_point_valid(&points[gathered])) {
             number[gathered++] = i;
         } else {
@@ -81,8 +91,9 @@ static void solve_abreast(const visit_state *state, dea_scene *here, const dea_l
     dea_row rows[MANY];
     size_t number[MANY];
     dea_film_prepare(here, &points[0].film);
+    dea_point_place(here, &points[0]);
     for (size_t i = 1; i < MANY && i < line->count; i++) {
-        points[i].film = points[0].film;
+        points[i] = points[0];
     }
     for (size_t from = 0; from < line->count; from += MANY) {
         const size_t some = line->count - from < MANY ? line->count - from : MANY;

@@ -378,11 +378,23 @@ static bool is_comment(const char *written)
     return written[0] == '#' || strncmp(written, "//", 2) == 0;
 }
 
-static const double ice_point = 27315.0; /* 0 degC, in hundredths of a kelvin: 20 degC becomes the very number of 293.15 K */
+/* T = (100 number + origin)/parts in K: in hundredths, so that 20 degC and 68 degF become the very number of 293.15 K. */
+typedef struct thermometer {
+    const char *name;
+    double origin, parts;
+} thermometer;
 
-static bool is_celsius(const char *written)
+static bool temperature_apply(const char *written, double *value)
 {
-    return strcmp(written, "degC") == 0 || strcmp(written, "\xC2\xB0\x43") == 0;
+    static const thermometer scales[] = {{"degC", 27315.0, 100.0}, {"degF", 45967.0, 180.0}};
+    char unit[UNIT_LENGTH];
+    for (size_t i = 0; unit_spell(written, unit) && i < sizeof scales / sizeof *scales; i++) {
+        if (strcmp(unit, scales[i].name) == 0) {
+            *value = (100.0 * *value + scales[i].origin) / scales[i].parts;
+            return true;
+        }
+    }
+    return false;
 }
 
 static bool unit_apply(dea_units *units, const char *written, const char *unit, double *value, char reason[DEA_REASON_LENGTH])
@@ -400,8 +412,7 @@ static bool unit_apply(dea_units *units, const char *written, const char *unit, 
     } else if (!plain && !written[0]) {
         snprintf(reason, DEA_REASON_LENGTH, "needs a unit");
         return false;
-    } else if (strcmp(unit, DEA_UNIT_TEMPERATURE) == 0 && is_celsius(written)) {
-        *value = (100.0 * *value + ice_point) / 100.0;
+    } else if (strcmp(unit, DEA_UNIT_TEMPERATURE) == 0 && temperature_apply(written, value)) {
         return true;
     } else if (!plain && !factor_find(units, written, unit, &factor, reason)) {
         return false;

@@ -14,7 +14,7 @@ dea_units *dea_units_open(void);
 /* NULL is fine. */
 void dea_units_close(dea_units *units);
 
-/* The unit of temperatures, which may be given in degC too; that of their differences is "kelvin". */
+/* The unit of temperatures, which may be given in degC and degF too; that of their differences is "kelvin". */
 #define DEA_UNIT_TEMPERATURE "K"
 
 /* Reads "30 mm" as a number of @p unit ("1": a bare number or a percentage). On false, @p reason says why not. */

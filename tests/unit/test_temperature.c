@@ -84,6 +84,9 @@ static void times_shift_by_their_law(void **state)
     assert_true(dea_material_branch(&between, 1).g == 0.2);
     assert_true(dea_material_shift(&row) == 20.0);
     assert_true(material_of("temperature: 20 degC\n" HEAD "material: {base: elastosil-2030" SLOPE "}\n" STILL).temperature == 293.15);
+    assert_true(material_of("temperature: 68 degF\n" HEAD "material: {base: elastosil-2030" SLOPE "}\n" STILL).temperature == 293.15);
+    assert_true(material_of("temperature: -40 °F\n" HEAD "material: {base: elastosil-2030" SLOPE "}\n" STILL).temperature ==
+                material_of("temperature: -40 °C\n" HEAD "material: {base: elastosil-2030" SLOPE "}\n" STILL).temperature);
 }
 
 /* Time-temperature superposition: ten times faster at 40 degC. */

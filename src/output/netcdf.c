@@ -25,7 +25,7 @@
 #define DEA_VERSION "unknown"
 #endif
 
-enum { SLAB_VALUES = 4096, HELD_BYTES = 1 << 25, TEXT_LENGTH = 512, FIGURES = 16, AVERAGES = 2, WINDOW_FIGURES = 3 + 2 * DEA_HARMONICS };
+enum { SLAB_VALUES = 4096, HELD_BYTES = 1 << 25, TEXT_LENGTH = 512, FIGURES = 16, AVERAGES = 2, WINDOW_FIGURES = 3 + 2 * DEA_HARMONICS, EDGE_FIGURES = 7 };
 
 /* Largest number of doubles in one variable of the 64-bit offset format: 2^32 - 4 bytes. */
 static const uint64_t offset_values = UINT64_C(4294967292) / sizeof(double);
@@ -61,6 +61,17 @@ static const dea_column averages[AVERAGES] = {
      offsetof(dea_average, displacement)},
 };
 
+/* Over the axes and the edges of a step, on and off; what is not reached is NAN. */
+static const dea_column edges[EDGE_FIGURES] = {
+    {"edge_time_s", "begin of the edge", "s", offsetof(dea_edge_answer, time)},
+    {"change_m", "displacement that the film relaxes to behind the edge less that before it", "m", offsetof(dea_edge_answer, change)},
+    {"overshoot", "largest excess over that, relative to the change", "1", offsetof(dea_edge_answer, overshoot)},
+    {"rise_least_s", "time from 10 to 90 % of the change, no less than", "s", offsetof(dea_edge_answer, rise.early)},
+    {"rise_most_s", "time from 10 to 90 % of the change, no more than", "s", offsetof(dea_edge_answer, rise.late)},
+    {"settling_least_s", "time until the film stays within 2 % of the change, no less than", "s", offsetof(dea_edge_answer, settling.early)},
+    {"settling_most_s", "time until the film stays within 2 % of the change, no more than", "s", offsetof(dea_edge_answer, settling.late)},
+};
+
 typedef struct grid {
     netcdf_library nc;
     const dea_scene *scene;
@@ -76,6 +87,7 @@ typedef struct grid {
     int columns[DEA_LAYOUT_COLUMNS]; /* variables of the rows; that of the first may be a coordinate */
     int state, model;
     int figures[FIGURES], averages[AVERAGES], window[2], window_figures[WINDOW_FIGURES];
+    int step, step_figures[EDGE_FIGURES]; /* edges of a step */
     int radius, spread[DEA_SPREAD_COLUMNS]; /* what rows tell over the radius */
     int *spread_dimensions;                 /* of those: of the rows, the radius, the points */
     int failed; /* first status of the library that is not 0 */
@@ -467,6 +479,28 @@ static void define_windows(grid *file)
     }
 }
 
+/* Only a step has edges that a film answers one by one. */
+static bool has_edges(const grid *file)
+{
+    return file->study->timed && dea_wave_settles(&file->scene->drive.waveform);
+}
+
+/* Answers to the edges of a step over a dimension of two. */
+static void define_edges(grid *file)
+{
+    static const signed char codes[DEA_EDGES] = {0, 1};
+    int *edge = &file->dimensions[file->lead + file->point_rank];
+    grid_keep(file, file->nc.nc_def_dim(file->file, "edge", DEA_EDGES, edge));
+    grid_keep(file, file->nc.nc_def_var(file->file, "edge", NC_BYTE, 1, edge, &file->step));
+    put_text(file, file->step, "long_name", "edge of the step");
+    put_text(file, file->step, "flag_meanings", "on off");
+    grid_keep(file, file->nc.nc_put_att_schar(file->file, file->step, "flag_values", NC_BYTE, DEA_EDGES, codes));
+    for (size_t i = 0; i < EDGE_FIGURES; i++) {
+        file->step_figures[i] =
+            define_numbers(file, edges[i].name, edges[i].long_name, edges[i].unit, file->lead, file->point_rank + 1);
+    }
+}
+
 static void put_rows_coordinate(grid *file)
 {
     for (size_t first = 0; first < file->layout.rows && !file->failed; first += SLAB_VALUES) {
@@ -497,6 +531,13 @@ static void put_windows(grid *file)
     }
 }
 
+static void put_edges(grid *file)
+{
+    static const signed char codes[DEA_EDGES] = {0, 1};
+    const size_t start = 0, count = DEA_EDGES;
+    grid_keep(file, file->nc.nc_put_vara_schar(file->file, file->step, &start, &count, codes));
+}
+
 static void put_coordinates(grid *file)
 {
     const dea_scene *scene = file->scene;
@@ -515,6 +556,9 @@ static void put_coordinates(grid *file)
     put_radii(file);
     if (file->study->timed) {
         put_windows(file);
+    }
+    if (has_edges(file)) {
+        put_edges(file);
     }
 }
 
@@ -546,6 +590,9 @@ static void grid_define(grid *file, const char *path, const char *engine)
     }
     if (file->study->timed) {
         define_windows(file);
+    }
+    if (has_edges(file)) {
+        define_edges(file);
     }
     grid_keep(file, file->nc.nc_enddef(file->file));
     put_coordinates(file);
@@ -681,6 +728,46 @@ static void put_windows_of(grid *file, size_t first, const char *point, size_t c
     }
 }
 
+/* The answer to an edge of run number @p run, whose samples do not hide the film's swing. */
+static dea_edge_answer edge_of(const grid *file, size_t run, const char *point, size_t edge)
+{
+    const double none = (double)NAN;
+    dea_scene scene = *file->scene;
+    dea_edge_answer found[DEA_EDGES];
+    dea_summary summary;
+    dea_axes_place(&scene, run);
+    scene.models[0] = file->scene->models[run / dea_scene_point_count(file->scene)];
+    memcpy(&summary, point + file->layout.rows * file->layout.row_size, sizeof summary);
+    const bool hidden = dea_measure_lives(&scene, &summary) && !dea_measure_shows(&scene, &summary);
+    const size_t count =
+        hidden ? 0 : dea_measure_edges(&scene, (const dea_sample *)(const void *)point, file->layout.rows, &summary, found);
+    for (size_t i = 0; i < count; i++) {
+        if (found[i].rising == (edge == 0)) {
+            return found[i];
+        }
+    }
+    return (dea_edge_answer){none, .change = none, .overshoot = none, .rise = {none, none}, .settling = {none, none}};
+}
+
+static void put_edges_of(grid *file, size_t first, const char *point, size_t count)
+{
+    const size_t place = file->lead + file->point_rank;
+    dea_edge_answer *answers = calloc(count, sizeof *answers);
+    if (!answers) {
+        grid_keep(file, NC_ENOMEM);
+        return;
+    }
+    file->edge[place] = 1;
+    for (size_t i = 0; i < DEA_EDGES; i++) {
+        file->start[place] = i;
+        for (size_t j = 0; j < count; j++) {
+            answers[j] = edge_of(file, first + j, point + j * file->layout.point_size, i);
+        }
+        put_figures(file, file->step_figures, edges, EDGE_FIGURES, answers, sizeof *answers, count);
+    }
+    free(answers);
+}
+
 /* What one row of @p count points tells at some radii, the points side by side at each. */
 static void put_entries(grid *file, const char *point, size_t count, const size_t *start, const size_t *edge)
 {
@@ -735,6 +822,9 @@ static void put_slab(grid *file, size_t first, const char *point, size_t count)
     }
     if (file->study->timed) {
         put_windows_of(file, first, point, count);
+    }
+    if (has_edges(file)) {
+        put_edges_of(file, first, point, count);
     }
 }
 

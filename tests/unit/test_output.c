@@ -22,6 +22,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "deaspice/deaspice.h"
 #include "deaspice/model.h"
 #include "deaspice/output.h"
 #include "deaspice/plot.h"
@@ -609,6 +610,53 @@ static void netcdf_of_a_sine_holds_extremes_and_harmonics(void **state)
         for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
             const double value = netcdf_value(library, path, names[i], (const size_t[]){run, 0});
             assert_true(fabs(value - (i == 5 ? sizes[i] : sizes[i] * a)) <= (i == 5 ? 1e-3 : 1e-5 * a)); /* not where NAN */
+        }
+    }
+    dlclose(library);
+    assert_int_equal(unlink(path), 0);
+}
+
+static dea_status points_take(void *user, size_t first, const void *points, size_t count, dea_error *error)
+{
+    return dea_writer_points(user, first, points, count, error);
+}
+
+/* A film without mass behind a damper of retardation tau follows an edge by u = 1 - exp(-t/tau), whatever its size, and relaxes back
+ * behind the other one, which the third run has not: tau ln 9 from 10 to 90 %, tau ln 50 until 2 % are left. The voltage softens `lame`,
+ * which is slower then. */
+static void netcdf_of_a_step_holds_rise_and_settling(void **state)
+{
+    static const char text[] = "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
+                               "material: {neo_hookean: {mu: 300 kPa}, permittivity: 2.8, retardation: 10 ms}\n"
+                               "drive: {waveform: {step: {on: 1 ms, off: 200 ms, voltage: 4 kV}}}\nmodel: [lame, lumped]\n"
+                               "study: {transient: {until: 400 ms, every: 0.1 ms}, over: {off: [200 ms, 250 ms, 500 ms]}}\n";
+    const char *path = in_folder("a.nc");
+    dea_scene scene;
+    dea_error error = {0};
+    dea_writer *writer;
+    (void)state;
+    if (dea_scene_parse(text, strlen(text), "test", ".", NULL, 0, NULL, &scene, &error) != DEA_OK ||
+        dea_writer_open(&scene, "ida", path, NULL, &writer, &error) != DEA_OK ||
+        dea_study_run(&scene, dea_engine_find("ida"), &(dea_run_options){.jobs = 1, .points = points_take, .user = writer}, &error) != DEA_OK ||
+        dea_writer_finish(writer, true, &error) != DEA_OK) {
+        fail_msg("%s", error.message);
+    }
+    dea_scene_free(&scene);
+    void *library = netcdf_library();
+    for (size_t i = 0; i < 12; i++) {
+        const size_t place[] = {i / 6, i / 2 % 3, i % 2};
+        const bool there = place[1] < 2 || place[2] == 0;
+        const double begin = place[2] == 0 ? 1e-3 : place[1] == 0 ? 0.2 : 0.25;
+        const double change = netcdf_value(library, path, "change_m", place), overshoot = netcdf_value(library, path, "overshoot", place);
+        const double rise[] = {netcdf_value(library, path, "rise_least_s", place), netcdf_value(library, path, "rise_most_s", place)};
+        const double settling = netcdf_value(library, path, "settling_most_s", place);
+        assert_true(there ? netcdf_value(library, path, "edge_time_s", place) == begin : isnan(change) && isnan(overshoot) && isnan(settling));
+        assert_true(!there || ((change > 0.0) == (place[2] == 0) && overshoot < 1e-5));
+        if (there && (place[0] == 1 || place[2] == 1)) {
+            assert_true(rise[0] < 0.01 * log(9.0) + 1e-6 && rise[1] > 0.01 * log(9.0) - 1e-6 && rise[1] - rise[0] < 1e-4);
+            assert_true(fabs(settling - 0.01 * log(50.0)) < 1e-5);
+        } else if (there) {
+            assert_true(rise[0] > 0.0103 * log(9.0) && settling > 0.0103 * log(50.0));
         }
     }
     dlclose(library);
@@ -1364,6 +1412,7 @@ int main(void)
         IN_FOLDER(targets_that_cannot_be_written_are_refused_at_once),
         IN_FOLDER(full_disk_is_an_error),
         IN_FOLDER(netcdf_holds_what_the_rows_held),
+        IN_FOLDER(netcdf_of_a_step_holds_rise_and_settling),
         IN_FOLDER(netcdf_of_a_transient_holds_time_samples_and_summaries),
         IN_FOLDER(netcdf_of_a_sine_holds_extremes_and_harmonics),
         IN_FOLDER(what_rows_tell_over_the_radius_keeps_its_places),

@@ -101,7 +101,9 @@ typedef struct dea_run_options {
     /** Points handed over so far, of those that are wanted. */
     void (*progress)(void *user, size_t done, size_t total);
     void (*log)(void *user, const char *line); /**< what engines say about points that failed */
-    bool (*stop)(void *user);                  /**< polled at least 10 times a second: true ends the run as interrupted */
+    /** Polled, true ends the run as interrupted: between points in this process, at least 10 times a second where workers solve. */
+    bool (*stop)(void *user);
+    bool apart; /**< workers for one job too where a point takes long (a transient), so that stop() is heard at once */
     void *user;
 } dea_run_options;
 

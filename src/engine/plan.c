@@ -50,7 +50,8 @@ dea_status dea_plan_make(const dea_scene *scene, const dea_engine *engine, const
 
 bool dea_plan_here(const dea_plan *plan)
 {
-    return !plan->cut.isolated && (plan->options->jobs == 1 || plan->blocks == 1);
+    const bool apart = plan->options->apart && dea_study_of(plan->scene)->timed;
+    return !plan->cut.isolated && !apart && (plan->options->jobs == 1 || plan->blocks == 1);
 }
 
 dea_span dea_plan_next(const dea_plan *plan, size_t *block)

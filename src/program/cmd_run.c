@@ -18,6 +18,7 @@ static dea_exit run_scene(const dea_arguments *arguments, const dea_scene *scene
                                      .progress = dea_audience_progress,
                                      .log = dea_audience_log,
                                      .stop = dea_signals_stop,
+                                     .apart = true,
                                      .user = &audience};
     const double start = dea_clock();
     if (status == DEA_OK) {

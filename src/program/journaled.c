@@ -181,6 +181,7 @@ static dea_status compute(recorder *run, dea_error *error)
                                      .progress = recorder_progress,
                                      .log = recorder_log,
                                      .stop = recorder_stop,
+                                     .apart = true,
                                      .user = run};
     return dea_study_run(run->study.scene, NULL, &options, error);
 }

@@ -18,6 +18,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "deaspice/model.h"
 #include "engine/plan.h"
 
 enum { POINTS = 500, BAD = 17 };
@@ -624,6 +625,39 @@ static void stop_ends_the_run_soon(void **state)
     }
 }
 
+static dea_status move_for_long(void *session, const dea_scene *scene, const dea_model *model, dea_sample *samples, dea_summary *summary,
+                                dea_error *error)
+{
+    (void)session, (void)scene, (void)model, (void)samples, (void)summary, (void)error;
+    sleep(10);
+    return DEA_OK;
+}
+
+static bool wants_stop_at_once(void *user)
+{
+    size_t *polls = user;
+    return ++*polls > 1;
+}
+
+static dea_status take_nothing(void *user, size_t first, const void *points, size_t count, dea_error *error)
+{
+    (void)user, (void)first, (void)points, (void)count, (void)error;
+    return DEA_OK;
+}
+
+/* One run of an engine that solves here: nobody could end it. */
+static void stop_ends_a_long_run_of_a_worker(void **state)
+{
+    (void)state;
+    dea_scene scene = {.study = DEA_STUDY_TRANSIENT, .transient = {.until = 1.0, .every = 0.5}, .model_count = 1, .models = {dea_model_find("lumped")}};
+    dea_engine engine = engine_of(solve, false);
+    engine.transient = move_for_long;
+    size_t polls = 0;
+    dea_run_options options = {.jobs = 1, .points = take_nothing, .stop = wants_stop_at_once, .apart = true, .user = &polls};
+    assert_int_equal(dea_study_run(&scene, &engine, &options, NULL), DEA_ERROR_INTERRUPTED);
+    check_no_child_left();
+}
+
 static const char *refuse_second(const dea_scene *scene, const dea_model *model)
 {
     (void)scene;
@@ -761,6 +795,7 @@ int main(void)
         cmocka_unit_test(one_worker_that_cannot_begin_is_done_without),
         cmocka_unit_test(failing_listener_ends_the_run_with_its_status),
         cmocka_unit_test(stop_ends_the_run_soon),
+        cmocka_unit_test(stop_ends_a_long_run_of_a_worker),
         cmocka_unit_test(refused_model_runs_nothing),
         cmocka_unit_test(single_point_needs_one_worker),
         cmocka_unit_test(memory_does_not_grow_with_the_study),

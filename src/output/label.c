@@ -1,5 +1,7 @@
 #include "output/label.h"
 
+#include "deaspice/model.h"
+#include "scene/line.h"
 #include "support/number.h"
 
 #include <ctype.h>
@@ -161,7 +163,7 @@ dea_scale dea_scale_column(const dea_column *column, double largest)
     return strain ? (dea_scale){.factor = 100.0, .unit = "%"} : dea_scale_choose(largest, column->unit);
 }
 
-void dea_label_column(const dea_column *column, const dea_scale *scale, bool absolute, char label[DEA_LABEL_LENGTH])
+void dea_label_column(const dea_column *column, const dea_scale *scale, char label[DEA_LABEL_LENGTH])
 {
     static const struct {
         size_t offset;
@@ -182,6 +184,23 @@ void dea_label_column(const dea_column *column, const dea_scale *scale, bool abs
     while (i + 1 < sizeof known / sizeof *known && known[i].offset != column->offset) {
         i++;
     }
-    const char *bar = absolute ? "|" : "";
-    snprintf(label, DEA_LABEL_LENGTH, "%s %s%s%s [%s]", known[i].words, bar, known[i].symbol, bar, scale->unit);
+    snprintf(label, DEA_LABEL_LENGTH, "%s %s [%s]", known[i].words, known[i].symbol, scale->unit);
+}
+
+void dea_label_run(const dea_scene *scene, size_t number, size_t along, char *label, size_t size)
+{
+    size_t used = 0;
+    *label = '\0';
+    if (scene->model_count > 1) {
+        used = (size_t)snprintf(label, size, "%s", scene->models[number / dea_scene_point_count(scene)]->name);
+    }
+    for (size_t i = 0; i < scene->axis_count && used < size; i++) {
+        const dea_axis *axis = &scene->axes[i];
+        if (i != along && axis->count > 1) {
+            char part[DEA_LABEL_LENGTH];
+            const dea_scale scale = dea_scale_axis(axis);
+            dea_label_value(axis, &scale, dea_axis_index(scene, i, number), part);
+            used += (size_t)snprintf(label + used, size - used, "%s%s", used > 0 ? ", " : "", part);
+        }
+    }
 }

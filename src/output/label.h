@@ -23,7 +23,9 @@ void dea_label_axis(const dea_axis *axis, const dea_scale *scale, char label[DEA
 void dea_label_value(const dea_axis *axis, const dea_scale *scale, size_t index, char label[DEA_LABEL_LENGTH]);
 /* Scale of a column of a sweep, strains in percent. */
 dea_scale dea_scale_column(const dea_column *column, double largest);
-/* Label of a column of a sweep: "Capacitance C [pF]", @p absolute without its sign: "Strain |s| [%]". */
-void dea_label_column(const dea_column *column, const dea_scale *scale, bool absolute, char label[DEA_LABEL_LENGTH]);
+/* Label of a column of a sweep: "Capacitance C [pF]". */
+void dea_label_column(const dea_column *column, const dea_scale *scale, char label[DEA_LABEL_LENGTH]);
+/* Model and values of the axes but number @p along (SIZE_MAX: of all) of point number @p number: models slowest, last axis fastest. */
+void dea_label_run(const dea_scene *scene, size_t number, size_t along, char *label, size_t size);
 
 #endif

@@ -149,6 +149,14 @@ void dea_span_pad(dea_span *span, bool floats)
     span->high += span->high != 0.0 || floats || !(width > 0.0) ? pad : 0.0;
 }
 
+double dea_span_share(const dea_span *span, double value)
+{
+    if (!(span->high > span->low) || (span->logarithmic && !(value > 0.0))) {
+        return 0.0;
+    }
+    return span->logarithmic ? log(value / span->low) / log(span->high / span->low) : (value - span->low) / (span->high - span->low);
+}
+
 void dea_span_limit(dea_span *span)
 {
     span->low = span->logarithmic ? fmax(span->low, 1e-8 * span->high) : span->low;
@@ -203,7 +211,8 @@ static bool is_named(int number, int decade, int step, double room, double decad
     return room >= 12.0 || (room >= 3.0 && (number == 2 || number == 5));
 }
 
-double dea_step_choose(double least)
+/* Smallest of 1, 2, 5 times a power of ten that is not below @p least > 0. */
+static double step_choose(double least)
 {
     const double power = pow(10.0, floor(log10(least)));
     const double rest = least / power;
@@ -212,7 +221,7 @@ double dea_step_choose(double least)
 
 void dea_span_steps(FILE *script, const char *axis, const dea_span *span, double count)
 {
-    double step = dea_step_choose((span->high - span->low) / fmax(1.0, count));
+    double step = step_choose((span->high - span->low) / fmax(1.0, count));
     while (floor(span->high / step) - ceil(span->low / step) < 1.0) {
         const double digit = step / pow(10.0, floor(log10(step) + 1e-9));
         step *= digit > 4.5 ? 0.8 : 0.5;

@@ -48,6 +48,8 @@ dea_status dea_plot_cramped(dea_canvas canvas, dea_error *error);
 
 /* Widens a span by a number; those that are none, or have no logarithm, are passed over. */
 void dea_span_take(dea_span *span, double value);
+/* Share of the way along a span at which a number stands; 0 where it has no place. */
+double dea_span_share(const dea_span *span, double value);
 /* Leaves room beyond the numbers, so that none lies on the frame: below zero only where @p floats. A single number gets a range. */
 void dea_span_pad(dea_span *span, bool floats);
 /* Sets range and kind of the axis named @p axis ("x", "y", "y2", "cb") that is @p length units long, and the tics of a logarithmic
@@ -57,8 +59,6 @@ void dea_span_write(FILE *script, const char *axis, const dea_span *span, double
 void dea_span_tics(FILE *script, const char *axis, const dea_span *span, double length, dea_name *name, bool placed);
 /* Sets tics of a linear axis in steps of 1, 2 or 5 times a power of ten, @p count steps at most and two tics at least. */
 void dea_span_steps(FILE *script, const char *axis, const dea_span *span, double count);
-/* Smallest of 1, 2, 5 times a power of ten that is not below @p least > 0. */
-double dea_step_choose(double least);
 /* Drops what lies more than eight decades below the top of a logarithmic span: rounding has numbers there too. */
 void dea_span_limit(dea_span *span);
 /* Names of tics: none, "10⁻²", "0.01", and with a prefix, "2k". */

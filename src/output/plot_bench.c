@@ -148,11 +148,6 @@ static void percent_text(double value, char text[DEA_LABEL_LENGTH])
 
 /* ---- labels at marks */
 
-static double place_in(const dea_span *span, double value)
-{
-    return log(value / span->low) / log(span->high / span->low);
-}
-
 static bool overlap(const dea_box *a, const dea_box *b)
 {
     return fabs(a->left - b->left) < 0.5 * (a->width + b->width) && fabs(a->top - b->top) < 0.5 * (a->height + b->height);
@@ -163,18 +158,18 @@ static void take_mark(sheet *page, const panel *part, double x, double y)
 {
     enum { MARK = 10 };
     if (page->word_count < WORDS) {
-        page->words[page->word_count++] = (dea_box){part->box.left + place_in(&part->x, x) * part->box.width,
-                                                    part->box.top + (1.0 - place_in(&part->y, y)) * part->box.height, MARK, MARK};
+        page->words[page->word_count++] = (dea_box){part->box.left + dea_span_share(&part->x, x) * part->box.width,
+                                                    part->box.top + (1.0 - dea_span_share(&part->y, y)) * part->box.height, MARK, MARK};
     }
 }
 
 /* Writes a label beside a mark, where nothing stands. */
 static void write_word(sheet *page, FILE *script, const panel *part, double x, double y, const char *text, const char *colour)
 {
-    const double width = letter * (double)dea_text_letters(text), across = place_in(&part->x, x) * part->box.width;
+    const double width = letter * (double)dea_text_letters(text), across = dea_span_share(&part->x, x) * part->box.width;
     const double side = across + width + 14.0 < part->box.width ? 1.0 : -1.0;
     const dea_box box = {part->box.left + across + side * (8.0 + 0.5 * width),
-                         part->box.top + (1.0 - place_in(&part->y, y)) * part->box.height, width, line_height};
+                         part->box.top + (1.0 - dea_span_share(&part->y, y)) * part->box.height, width, line_height};
     for (size_t i = 0; i < page->word_count; i++) {
         if (overlap(&box, &page->words[i])) {
             return;

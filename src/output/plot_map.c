@@ -242,7 +242,7 @@ static void write_chart(chart *map, FILE *script)
     dea_plot_palette(script, 1.0);
     write_side(script, &map->x, "x", map->box.width);
     write_side(script, &map->y, "y", map->box.height);
-    dea_label_column(&map->plot->drawn[0], &map->colour, false, label);
+    dea_label_column(&map->plot->drawn[0], &map->colour, label);
     dea_gnuplot_put(script,
                     "set cblabel offset 1,0 textcolor '#202020' %q\n"
                     "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillstyle solid 1.0 noborder fillcolor '#d4d4d4'\n",

@@ -1,10 +1,12 @@
 /* Modes: frequency, damping ratio and share of the edge over the longest axis, a colour for each mode and a dash for each value of the
  * other axes and each model; of runs without an axis their shapes over the radius. */
-#include "output/strips.h"
+#include "output/figure.h"
 
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
+
+enum { TALL = 250, SMALL = 150 }; /* heights of the first panel and of others */
 
 static const double last_colour = 0.85; /* of the gradient: beyond it is too pale for a line */
 
@@ -51,19 +53,23 @@ static dea_status modes_open(dea_plot *plot, dea_error *error)
     return dea_plot_keep(plot, error);
 }
 
-/* Point number @p place along x of a group: models slowest, the last of the other axes fastest. */
-static char *point_at(const sheet *page, size_t group, size_t place)
+/* Number of point @p place along x of a group: models slowest, the last of the other axes fastest. */
+static size_t number_at(const sheet *page, size_t group, size_t place)
 {
     const dea_scene *scene = page->plot->scene;
-    size_t number = group;
-    if (page->axis != SIZE_MAX) {
-        size_t inner = 1;
-        for (size_t i = page->axis + 1; i < scene->axis_count; i++) {
-            inner *= scene->axes[i].count;
-        }
-        number = (group / inner * scene->axes[page->axis].count + place) * inner + group % inner;
+    size_t inner = 1;
+    if (page->axis == SIZE_MAX) {
+        return group;
     }
-    return page->plot->kept + number * page->layout.point_size;
+    for (size_t i = page->axis + 1; i < scene->axis_count; i++) {
+        inner *= scene->axes[i].count;
+    }
+    return (group / inner * scene->axes[page->axis].count + place) * inner + group % inner;
+}
+
+static char *point_at(const sheet *page, size_t group, size_t place)
+{
+    return page->plot->kept + number_at(page, group, place) * page->layout.point_size;
 }
 
 static double x_at(const sheet *page, size_t place)
@@ -79,16 +85,20 @@ static void mode_colour(const sheet *page, size_t mode, char colour[8])
     dea_plot_gradient(rows > 1 ? last_colour * (double)mode / (double)(rows - 1) : 0.25, colour);
 }
 
-/* A strip of a column of the rows, times a factor; without an axis of the shapes. */
-static void add_strip(const sheet *page, dea_strips *strips, const char *label, size_t offset, double factor)
+/* A panel of a column of the rows, times a factor; without an axis of the shapes. */
+static void add_panel(const sheet *page, dea_figure *figure, const char *label, size_t offset, double factor)
 {
-    const size_t strip = strips->count++;
-    snprintf(strips->strips[strip].label, DEA_LABEL_LENGTH, "%s", label);
+    const size_t number = figure->count;
+    dea_panel *panel = dea_figure_panel(figure, number == 0 ? TALL : SMALL, label);
+    panel->factor = factor;
+    panel->floats = number == 0;
+    panel->zero = number > 0;
+    panel->span.logarithmic = number == 0 && page->axis != SIZE_MAX && page->plot->picture.log_y;
     for (size_t i = 0; i < page->groups * page->layout.rows; i++) {
         const size_t group = i / page->layout.rows, mode = i % page->layout.rows;
-        char colour[8];
-        mode_colour(page, mode, colour);
-        dea_strip_curve *curve = dea_strips_add(strips, strip, colour, group + 1);
+        dea_look look = {.dash = group + 1};
+        mode_colour(page, mode, look.colour);
+        dea_figure_curve(figure, number, look, 1.8);
         for (size_t k = 0; k < page->places; k++) {
             double y;
             if (page->axis == SIZE_MAX) {
@@ -96,13 +106,15 @@ static void add_strip(const sheet *page, dea_strips *strips, const char *label, 
             } else {
                 memcpy(&y, point_at(page, group, k) + mode * page->layout.row_size + offset, sizeof y);
             }
-            dea_strip_point(strips, curve, x_at(page, k), factor * y);
+            dea_figure_point(figure, x_at(page, k), y, 0);
         }
     }
+    dea_figure_prune(figure);
 }
 
-static void list(const sheet *page, dea_legend *legend, size_t kinds[3])
+static int list(const sheet *page, dea_legend *legend)
 {
+    size_t kinds[3] = {0};
     for (size_t i = 0; i < page->layout.rows; i++) {
         dea_legend_entry *entry = dea_legend_add(legend);
         double frequency;
@@ -119,34 +131,28 @@ static void list(const sheet *page, dea_legend *legend, size_t kinds[3])
         dea_legend_entry *entry = dea_legend_add(legend);
         entry->dash = group + 1;
         snprintf(entry->colour, sizeof entry->colour, "#505050");
-        dea_strips_name(page->plot->scene, page->axis, group, entry->label, sizeof entry->label);
+        dea_label_run(page->plot->scene, number_at(page, group, 0), page->axis, entry->label, sizeof entry->label);
     }
     kinds[2] = legend->count;
+    return dea_legend_lay(legend, kinds, 2, page->plot->picture.canvas.width);
 }
 
 static dea_status modes_draw(dea_plot *plot, dea_error *error)
 {
     const sheet page = sheet_of(plot);
     const dea_axis *axis = page.axis == SIZE_MAX ? NULL : &plot->scene->axes[page.axis];
-    dea_strips strips;
-    dea_status status = dea_strips_open(&strips, 3 * page.groups * page.layout.rows, page.places, error);
-    if (status == DEA_OK) {
-        strips.logarithmic = plot->picture.log_x || (axis && dea_axis_logarithmic(axis));
-        strips.strips[0] = (dea_strip){.floats = true, .logarithmic = axis && plot->picture.log_y};
-        if (axis) {
-            dea_label_axis(axis, &page.scale, strips.label);
-            add_strip(&page, &strips, "Frequency [Hz]", offsetof(dea_mode, frequency), 1.0);
-            add_strip(&page, &strips, "Damping ratio", offsetof(dea_mode, damping_ratio), 1.0);
-            add_strip(&page, &strips, "Share of edge [%]", offsetof(dea_mode, edge_share), 100.0);
-        } else {
-            snprintf(strips.label, sizeof strips.label, "Radius at 0 V [%s]", page.scale.unit);
-            add_strip(&page, &strips, "Shape [g⁻½]", 0, sqrt(1e-3));
-        }
-        list(&page, &strips.legend, strips.kinds);
-        status = dea_strips_draw(&strips, plot, error);
+    dea_figure figure = dea_figure_begin(plot, plot->picture.log_x || (axis && dea_axis_logarithmic(axis)));
+    if (axis) {
+        dea_label_axis(axis, &page.scale, figure.label);
+        add_panel(&page, &figure, "Frequency [Hz]", offsetof(dea_mode, frequency), 1.0);
+        add_panel(&page, &figure, "Damping ratio", offsetof(dea_mode, damping_ratio), 1.0);
+        add_panel(&page, &figure, "Share of edge [%]", offsetof(dea_mode, edge_share), 100.0);
+    } else {
+        snprintf(figure.label, sizeof figure.label, "Radius at 0 V [%s]", page.scale.unit);
+        add_panel(&page, &figure, "Shape [g⁻½]", 0, sqrt(1e-3));
     }
-    dea_strips_close(&strips);
-    return status;
+    figure.foot = list(&page, &figure.legend);
+    return dea_figure_end(&figure, dea_figure_stack(&figure, SIZE_MAX, error), error);
 }
 
 const dea_drawer dea_drawer_modes = {modes_open, dea_plot_take, modes_draw};

@@ -264,18 +264,6 @@ size_t dea_runs_find(const dea_runs *runs, size_t offset)
     return SIZE_MAX;
 }
 
-double dea_runs_largest(const dea_runs *runs, size_t quantity)
-{
-    double largest = 0.0;
-    for (size_t i = 0; i < runs->count; i++) {
-        const dea_plot_trace *trace = &runs->runs[i].traces[quantity];
-        for (size_t k = 0; k < trace->count; k++) {
-            largest = isfinite(trace->y[k]) ? fmax(largest, fabs(trace->y[k])) : largest;
-        }
-    }
-    return largest;
-}
-
 void dea_runs_close(dea_runs *runs)
 {
     free(runs->runs);

@@ -44,8 +44,6 @@ dea_status dea_runs_open(const dea_scene *scene, bool loops, dea_runs *runs, dea
 void dea_runs_take(dea_runs *runs, size_t number, const void *point);
 /* Number of the quantity whose column lies at @p offset of a row, SIZE_MAX where the study has none. */
 size_t dea_runs_find(const dea_runs *runs, size_t offset);
-/* Largest magnitude of a quantity over all runs, 0 where it has no number at all. */
-double dea_runs_largest(const dea_runs *runs, size_t quantity);
 /* Frees what the runs own; zeroed ones are fine. */
 void dea_runs_close(dea_runs *runs);
 

@@ -1174,8 +1174,8 @@ static void curves_are_told_apart_in_grey(void **state)
                          DEA_OK);
         const char *script = file_text(in_folder("a.gp"));
         for (size_t i = 0; i < 2 * GROUPS; i++) {
-            snprintf(block, sizeof block, k == 0 ? "$curve%zu using 1:2" : "$run%zu_0 using 1:2", i);
-            snprintf(marks, sizeof marks, k == 0 ? "$curve%zu using 1:10" : "$marks%zu_0 using 1:2", i);
+            snprintf(block, sizeof block, "$curve%zu using 1:2", i);
+            snprintf(marks, sizeof marks, "$curve%zu using 1:3", i);
             assert_true(drawn_read(script, block, marks, &looks[i]));
             for (size_t before = 0; before < i; before++) {
                 assert_true(told_apart_in_grey(&looks[i], &looks[before]));
@@ -1196,7 +1196,7 @@ static void a_model_has_its_colour_and_dash_in_every_picture(void **state)
             scene.models[k == 0] = dea_model_at(i); /* first or second among others */
             scene.models[k != 0] = dea_model_at((i + 1) % dea_model_count());
             assert_int_equal(k == 0 ? study_draw(&scene, in_folder("a.gp"), &error) : points_draw(&scene, in_folder("a.gp"), &error), DEA_OK);
-            assert_true(drawn_read(file_text(in_folder("a.gp")), k == 0 ? "$curve1 using 1:2" : "$run0_0 using 1:2", "none", &looks[k]));
+            assert_true(drawn_read(file_text(in_folder("a.gp")), k == 0 ? "$curve1 using 1:2" : "$curve0 using 1:2", "none", &looks[k]));
             assert_string_equal(looks[k].colour, looks[0].colour);
             assert_string_equal(looks[k].dash, looks[0].dash);
         }

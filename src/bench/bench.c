@@ -152,12 +152,8 @@ static dea_status measure(dea_bench_work *work, dea_error *error)
     for (size_t i = 0; i < work->bench->model_count && status == DEA_OK; i++) {
         status = dea_bench_walk(work, i, error);
     }
-    if (status == DEA_OK) {
-        status = dea_bench_repeat(work, error);
-    }
-    if (status == DEA_OK) {
-        status = dea_bench_judge_models(work, error);
-    }
+    status = status ? status : dea_bench_repeat(work, error);
+    status = status ? status : dea_bench_judge_models(work, error);
     if (status == DEA_OK) {
         dea_bench_conclude(work->bench);
     }
@@ -171,9 +167,7 @@ dea_status dea_bench_run(const dea_scene *scene, const dea_bench_options *option
         return dea_fail(error, DEA_ERROR_USAGE, "a bench needs a model, at least one job and one run, and a budget above 0 s");
     }
     dea_status status = work_open(&work, bench, scene, options, error);
-    if (status == DEA_OK) {
-        status = measure(&work, error);
-    }
+    status = status ? status : measure(&work, error);
     work_close(&work);
     if (status != DEA_OK) {
         dea_bench_free(bench);

@@ -48,9 +48,7 @@ static dea_status fill(dea_bench_work *work, dea_bench_truth *truth, uint64_t di
 {
     dea_comparison_close(&truth->comparison);
     dea_status status = dea_comparison_open(&truth->comparison, &truth->scene, error);
-    if (status == DEA_OK) {
-        status = dea_comparison_take(&truth->comparison, 0, work->buffer, work->points, error);
-    }
+    status = status ? status : dea_comparison_take(&truth->comparison, 0, work->buffer, work->points, error);
     truth->comparison.filling = false;
     truth->digest = digest;
     truth->known = status == DEA_OK;

@@ -167,15 +167,11 @@ dea_status dea_export_transient(dea_export *export, dea_error *error)
     const dea_cards_form form = {.dialect = export->dialect, .analogy = export->analogy};
     dea_status status =
         dea_mobility_prepare(export->scene, export->scene->models[0], export->analogy, &w.dynamics, &w.mobility, error);
-    if (status == DEA_OK) {
-        status = dea_export_drive_open(export, &w.drive, error);
-    }
+    status = status ? status : dea_export_drive_open(export, &w.drive, error);
     if (status == DEA_OK && !dea_cards_open(&w.mobility, &form, w.out, &w.cards)) {
         status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while a netlist is written");
     }
-    if (status == DEA_OK) {
-        status = write_transient(&w, error);
-    }
+    status = status ? status : write_transient(&w, error);
     dea_cards_close(&w.cards);
     dea_export_drive_close(&w.drive);
     dea_mobility_close(&w.mobility);

@@ -299,9 +299,7 @@ static dea_status write_lines(writer *w, dea_error *error)
     dea_memory_text names;
     dea_status status = dea_memory_text_begin(&names, error);
     w->names = names.out;
-    if (status == DEA_OK) {
-        status = dea_lines_visit(scene, 0, dea_scene_point_count(scene), visit_line, w, error);
-    }
+    status = status ? status : dea_lines_visit(scene, 0, dea_scene_point_count(scene), visit_line, w, error);
     status = dea_memory_text_end(&names, status, error);
     if (status == DEA_OK && w->written == 0) {
         status = dea_fail(error, DEA_ERROR_UNSUPPORTED, "no point of the sweep has an equilibrium");

@@ -35,9 +35,7 @@ static dea_status put_file(const char *folder, const char *tool, const char *nam
         return dea_fail(error, DEA_ERROR_IO, "the name of the folder is too long");
     }
     status = dea_atomic_open(&file, path, error);
-    if (status == DEA_OK) {
-        status = dea_atomic_write(&file, text, length, error);
-    }
+    status = status ? status : dea_atomic_write(&file, text, length, error);
     const dea_status closed = dea_atomic_close(&file, status == DEA_OK, status == DEA_OK ? error : NULL);
     return status == DEA_OK ? closed : status;
 }
@@ -47,9 +45,7 @@ static dea_status close_memory(dea_memory_text *file, dea_status status, const c
                                dea_error *error)
 {
     status = dea_memory_text_end(file, status, error);
-    if (status == DEA_OK) {
-        status = put_file(folder, tool, name, file->text, file->length, error);
-    }
+    status = status ? status : put_file(folder, tool, name, file->text, file->length, error);
     free(file->text);
     return status;
 }
@@ -122,8 +118,6 @@ dea_status dea_library_write(const char *folder, dea_error *error)
     if (status == DEA_OK) {
         status = write_parts(folder, "kicad", dea_dialect_find("ngspice"), error); /* KiCad simulates with ngspice */
     }
-    if (status == DEA_OK) {
-        status = write_kicad(folder, error);
-    }
+    status = status ? status : write_kicad(folder, error);
     return status == DEA_OK ? write_ltspice(folder, error) : status;
 }

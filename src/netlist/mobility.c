@@ -67,9 +67,7 @@ dea_status dea_mobility_open(const dea_scene *scene, const dea_dynamics *dynamic
     *mobility = (dea_mobility){.dynamics = dynamics, .stiffness = (double)NAN};
     dea_status status =
         dea_network_build_named(&film, dynamics->model, NULL, &mobility->quantities, &mobility->network, error);
-    if (status == DEA_OK) {
-        status = take_gathered(mobility, error);
-    }
+    status = status ? status : take_gathered(mobility, error);
     if (status == DEA_OK) {
         mobility->rest = dea_point_capacitance(&dynamics->point);
         mobility->stiffness = dynamics->linear ? dea_dynamics_linear(dynamics).stiffness : (double)NAN;

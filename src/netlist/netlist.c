@@ -208,9 +208,7 @@ dea_status dea_netlist_write(const dea_netlist_study *study, char **text, dea_er
     dea_still_cards cards = {0};
     dea_memory_text memory;
     dea_status status = dea_memory_text_begin(&memory, error);
-    if (status == DEA_OK) {
-        status = dea_still_cards_open(&line, true, dea_dialect_find("ngspice"), memory.out, &cards, error);
-    }
+    status = status ? status : dea_still_cards_open(&line, true, dea_dialect_find("ngspice"), memory.out, &cards, error);
     if (status == DEA_OK) {
         write_all(&cards, study);
     }

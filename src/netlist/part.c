@@ -186,9 +186,7 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
     if (model->membrane && !pool->exhausted) {
         status = derive_rings(p, &symbols, error);
     }
-    if (status == DEA_OK) {
-        status = derive_tensions(p, of, error);
-    }
+    status = status ? status : derive_tensions(p, of, error);
     return status == DEA_OK && pool->exhausted ? tell_memory(error) : status;
 }
 
@@ -682,9 +680,7 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
                                 .retardation = 1.0,
                                 .limit = (double)INFINITY};
     p.film = (dea_mobility){.dynamics = &p.elements, .stiffness = p.linear ? 1.0 : (double)NAN};
-    if (status == DEA_OK) {
-        status = write_part(&p, defaults, model, name, error);
-    }
+    status = status ? status : write_part(&p, defaults, model, name, error);
     status = dea_memory_text_end(&text, status, error);
     if (status == DEA_OK) {
         dea_dialect_wrap(out, text.text);

@@ -325,9 +325,7 @@ static dea_status gnuplot_draw(dea_gnuplot *picture, dea_error *error)
     char *bytes = NULL;
     size_t size = 0;
     dea_status status = gnuplot_make(picture, &bytes, &size, error);
-    if (status == DEA_OK) {
-        status = dea_atomic_write(&picture->file, bytes, size, error);
-    }
+    status = status ? status : dea_atomic_write(&picture->file, bytes, size, error);
     free(bytes);
     return status;
 }

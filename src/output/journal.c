@@ -593,15 +593,9 @@ dea_status dea_journal_open(const dea_journal_study *study, dea_shard shard, con
     opened->named = true;
     opened->shard = shard;
     dea_status status = lock(opened, error);
-    if (status == DEA_OK) {
-        status = journal_start(opened, error);
-    }
-    if (status == DEA_OK) {
-        status = journal_index(opened, error);
-    }
-    if (status == DEA_OK) {
-        status = records_find(opened, false, error);
-    }
+    status = status ? status : journal_start(opened, error);
+    status = status ? status : journal_index(opened, error);
+    status = status ? status : records_find(opened, false, error);
     opened->open = status == DEA_OK;
     return journal_hand(opened, status, journal);
 }
@@ -620,12 +614,8 @@ dea_status dea_journal_create(const dea_journal_study *study, dea_shard shard, c
         status = dea_fail(error, DEA_ERROR_USAGE, "%s: a part of a study needs a regular file", target);
     }
     opened->fd = opened->file.fd;
-    if (status == DEA_OK) {
-        status = journal_index(opened, error);
-    }
-    if (status == DEA_OK) {
-        status = head_write(opened, error);
-    }
+    status = status ? status : journal_index(opened, error);
+    status = status ? status : head_write(opened, error);
     return journal_hand(opened, status, journal);
 }
 
@@ -646,15 +636,9 @@ dea_status dea_journal_read(const dea_journal_study *study, const char *path, de
     if (status == DEA_OK && !S_ISREG(about.st_mode)) {
         status = dea_fail(error, DEA_ERROR_USAGE, "%s is no regular file", path);
     }
-    if (status == DEA_OK) {
-        status = head_read(opened, error);
-    }
-    if (status == DEA_OK) {
-        status = journal_index(opened, error);
-    }
-    if (status == DEA_OK) {
-        status = records_find(opened, true, error);
-    }
+    status = status ? status : head_read(opened, error);
+    status = status ? status : journal_index(opened, error);
+    status = status ? status : records_find(opened, true, error);
     return journal_hand(opened, status, journal);
 }
 
@@ -780,9 +764,7 @@ dea_status dea_journal_replay(dea_journal *journal, const dea_run_options *optio
         } else {
             status = block_read(journal, journal->blocks.first + i, points, error);
         }
-        if (status == DEA_OK) {
-            status = options->points(options->user, range.place, points, range.count, error);
-        }
+        status = status ? status : options->points(options->user, range.place, points, range.count, error);
     }
     free(points);
     return status;

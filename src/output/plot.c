@@ -187,9 +187,7 @@ dea_status dea_plot_begin(const dea_scene *scene, const char *path, const dea_pl
     const dea_study *study = dea_study_of(scene);
     begun->drawer = study->spread_drawer && dea_layout_of(scene).spread_count > 0 ? study->spread_drawer : study->drawer;
     dea_status status = begun->drawer->open(begun, error);
-    if (status == DEA_OK) {
-        status = dea_gnuplot_begin(&begun->picture, path, options, error);
-    }
+    status = status ? status : dea_gnuplot_begin(&begun->picture, path, options, error);
     if (status != DEA_OK) {
         dea_plot_finish(begun, false, NULL);
         return status;

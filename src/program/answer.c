@@ -257,7 +257,7 @@ static void print_nearness(const dea_scene *scene, const dea_model *model)
         (near.compared + near.unlike == 0 && isnan(near.slow))) {
         return;
     }
-    fprintf(stderr, "  against the membrane (field)%s:", dea_study_of(scene)->at);
+    fprintf(stderr, "  against the membrane (field)%s:", dea_study_of(scene)->at ? dea_study_of(scene)->at : "");
     if (near.compared > 0) {
         print_deviation("strain", near.low, near.high, false);
     }

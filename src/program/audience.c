@@ -101,9 +101,7 @@ dea_status dea_audience_close(dea_audience *audience, dea_status status, dea_err
 {
     dea_progress_end(audience->progress);
     const dea_status written = dea_writer_finish(audience->writer, status == DEA_OK, status == DEA_OK ? error : NULL);
-    if (status == DEA_OK) {
-        status = written;
-    }
+    status = status ? status : written;
     const dea_status plotted = dea_plot_finish(audience->plot, status == DEA_OK, status == DEA_OK ? error : NULL);
     return status != DEA_OK ? status : plotted;
 }

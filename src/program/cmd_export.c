@@ -93,13 +93,9 @@ static dea_status fill_sheet(sheet *s, dea_status (*write)(dea_export *, const c
 {
     dea_status status = dea_memory_text_begin(&s->memory, error);
     export->out = s->memory.out;
-    if (status == DEA_OK) {
-        status = write(export, library, error);
-    }
+    status = status ? status : write(export, library, error);
     status = dea_memory_text_end(&s->memory, status, error);
-    if (status == DEA_OK) {
-        status = dea_atomic_open(&s->file, path, error);
-    }
+    status = status ? status : dea_atomic_open(&s->file, path, error);
     return status == DEA_OK ? dea_atomic_write(&s->file, s->memory.text, s->memory.length, error) : status;
 }
 
@@ -138,9 +134,7 @@ static dea_status write_symbol(const kind *as, dea_export *export, const char *p
     sheet symbol = {.memory = {.text = NULL}};
     sheet part = {.memory = {.text = NULL}};
     dea_status status = library_path(as, path, library, error);
-    if (status == DEA_OK) {
-        status = dea_files_target(export->scene->files, library, force, error);
-    }
+    status = status ? status : dea_files_target(export->scene->files, library, force, error);
     if (status != DEA_OK) {
         return status;
     }

@@ -125,13 +125,9 @@ static dea_status write_fit(const work *w, const dea_arguments *arguments, const
     film.breakdown = arguments->breakdown;
     dea_memory_text text;
     dea_status status = dea_memory_text_begin(&text, error);
-    if (status == DEA_OK) {
-        status = dea_fit_print(w->law_given, w->prony_given, &film, text.out, error);
-    }
+    status = status ? status : dea_fit_print(w->law_given, w->prony_given, &film, text.out, error);
     status = dea_memory_text_end(&text, status, error);
-    if (status == DEA_OK) {
-        status = dea_atomic_put(path, text.text, text.length, error);
-    }
+    status = status ? status : dea_atomic_put(path, text.text, text.length, error);
     free(text.text);
     return status;
 }

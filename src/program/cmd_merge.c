@@ -54,9 +54,7 @@ static dea_exit merge_scene(const dea_arguments *arguments, const dea_scene *sce
     dea_signals_catch();
     const double start = dea_clock();
     dea_status status = dea_journal_study_make(scene, NULL, &study, &error);
-    if (status == DEA_OK) {
-        status = dea_audience_open(arguments, scene, &merge.audience, &error);
-    }
+    status = status ? status : dea_audience_open(arguments, scene, &merge.audience, &error);
     if (status == DEA_OK) {
         merge.audience.progress = arguments->quiet ? NULL : dea_progress_begin();
         merge.total = study.cut.total;

@@ -21,9 +21,7 @@ static dea_exit run_scene(const dea_arguments *arguments, const dea_scene *scene
                                      .apart = true,
                                      .user = &audience};
     const double start = dea_clock();
-    if (status == DEA_OK) {
-        status = dea_study_run(scene, NULL, &options, &error);
-    }
+    status = status ? status : dea_study_run(scene, NULL, &options, &error);
     const double seconds = dea_clock() - start;
     if (status != DEA_OK && dea_signals_caught()) {
         dea_audience_interrupted(&audience, arguments);

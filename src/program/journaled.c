@@ -258,15 +258,9 @@ dea_exit dea_run_journaled(const dea_arguments *arguments, const dea_scene *scen
     if (status == DEA_OK && arguments->shard == 0) {
         status = dea_audience_try(arguments, scene, &error);
     }
-    if (status == DEA_OK) {
-        status = open_journal(&run, &error);
-    }
-    if (status == DEA_OK) {
-        status = compute(&run, &error);
-    }
-    if (status == DEA_OK) {
-        status = replay(&run, &error);
-    }
+    status = status ? status : open_journal(&run, &error);
+    status = status ? status : compute(&run, &error);
+    status = status ? status : replay(&run, &error);
     status = dea_audience_close(&run.audience, status, &error);
     if (status != DEA_OK) {
         tell_interrupted(&run);

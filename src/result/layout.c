@@ -12,9 +12,18 @@ void dea_layout_add(dea_layout *layout, dea_column column)
 
 dea_layout dea_layout_of(const dea_scene *scene)
 {
-    dea_layout layout = {
-        .rows = 1, .row_size = sizeof(dea_row), .state_offset = offsetof(dea_row, state), .point_size = sizeof(dea_row)};
-    dea_study_of(scene)->lay(scene, &layout);
+    const dea_study *study = dea_study_of(scene);
+    dea_layout layout = {.rows = 1, .row_size = sizeof(dea_row), .state_offset = offsetof(dea_row, state)};
+    if (study->row_size > 0) {
+        layout.row_size = study->row_size;
+        layout.state_offset = study->state_offset;
+    }
+    for (size_t i = 0; i < study->column_count; i++) {
+        dea_layout_add(&layout, study->columns[i]);
+    }
+    study->lay(scene, &layout);
+    layout.spread_offset = layout.rows * layout.row_size + study->behind;
+    layout.point_size = layout.spread_offset + layout.rows * layout.spread_points * layout.spread_count * sizeof(double);
     return layout;
 }
 
@@ -48,8 +57,6 @@ void dea_layout_spread(dea_layout *layout, const dea_column *columns, size_t cou
         layout->spread[layout->spread_count].offset = layout->spread_count * sizeof(double);
     }
     layout->spread_points = points;
-    layout->spread_offset = layout->point_size;
-    layout->point_size += layout->rows * points * count * sizeof(double);
 }
 
 dea_state dea_layout_state(const dea_layout *layout, const void *row)

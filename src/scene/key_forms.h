@@ -28,9 +28,18 @@
         .path = name, .read = reader, .offset = DEA_KEY_NOWHERE, .kinds = DEA_KEY_BOTH, .accepted = help                         \
     }
 
-#define OTHER_IN(mapping, name, reader, help)                                                                                    \
+/* A count from @p least to @p most. */
+#define AMOUNT(name, member, least, most, mapping, help)                                                                         \
     {                                                                                                                            \
-        .path = name, .read = reader, .offset = DEA_KEY_NOWHERE, .kinds = DEA_KEY_BOTH, .within = mapping, .accepted = help      \
+        .path = name, .read = dea_read_count, .offset = DEA_KEY_NOWHERE, .place = AT(member), .low = least, .high = most,        \
+        .kinds = DEA_KEY_BOTH, .within = mapping, .accepted = help                                                               \
+    }
+
+/* One of two words, of which the second sets a bool. */
+#define CHOICE(name, member, plain, set)                                                                                         \
+    {                                                                                                                            \
+        .path = name, .read = dea_read_choice, .offset = DEA_KEY_NOWHERE, .place = AT(member),                                   \
+        .choice = (const char *const[]){plain, set, NULL}, .kinds = DEA_KEY_BOTH, .accepted = plain ", " set                     \
     }
 
 /* The axes over which a study repeats, in its own mapping. */

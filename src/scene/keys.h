@@ -17,9 +17,12 @@ enum { DEA_KEY_DOT = 1, DEA_KEY_LENS = 2, DEA_KEY_BOTH = 3, DEA_KEY_ROOM = 512 }
 /* Not a scalar: no place in the scene. */
 #define DEA_KEY_NOWHERE ((size_t)-1)
 
+/* Reads the value of a key. */
+typedef dea_status dea_read(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+
 struct dea_key {
     char path[DEA_NAME_LENGTH]; /* dotted; a component "#" stands for an index */
-    dea_status (*read)(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+    dea_read *read;
     size_t offset;        /* of the double in dea_scene, DEA_KEY_NOWHERE for what is no scalar */
     size_t stride;        /* from one index to the next, 0 without "#" */
     const char *unit;     /* "1" without dimension */
@@ -27,6 +30,8 @@ struct dea_key {
     double low, high;     /* range */
     bool open;            /* the range is without its ends */
     bool whole;           /* only whole numbers are in it */
+    size_t place;         /* in dea_scene of a count, or of the bool of a choice */
+    const char *const *choice; /* the word that leaves that bool false, the one that sets it, NULL */
     unsigned kinds;       /* of actuator that have it */
     size_t words;         /* components of the path that its result column shows at least, 0: cannot be a sweep axis */
     const char *within;   /* key that the scene must give for this one to have a place (the inner `over`: itself), NULL: none */

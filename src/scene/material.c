@@ -315,15 +315,6 @@ dea_status dea_read_permittivity(dea_reader *reader, const dea_ref *ref, const d
     return status;
 }
 
-dea_status dea_read_follows(dea_reader *reader, const dea_ref *ref, const dea_node *node)
-{
-    static const char *const words[] = {"prestretch", "strain", NULL};
-    size_t index = 0;
-    const dea_status status = dea_reader_word(reader, ref, node, words, &index);
-    reader->scene->material.permittivity_follows = !status && index == 1;
-    return status;
-}
-
 /* One number of a row of the table of shift factors. */
 static dea_status shift_number(dea_reader *reader, const dea_node *node, bool factor, double *value)
 {
@@ -407,13 +398,4 @@ dea_status dea_read_prony(dea_reader *reader, const dea_ref *ref, const dea_node
         }
     }
     return DEA_OK;
-}
-
-dea_status dea_read_moduli(dea_reader *reader, const dea_ref *ref, const dea_node *node)
-{
-    static const char *const words[] = {"long-term", "instantaneous", NULL};
-    size_t index = 0;
-    const dea_status status = dea_reader_word(reader, ref, node, words, &index);
-    reader->scene->material.instantaneous = status ? false : index == 1;
-    return status;
 }

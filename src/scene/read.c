@@ -197,9 +197,7 @@ dea_status dea_read_scalar(dea_reader *reader, const dea_ref *ref, const dea_nod
 {
     double value = NAN;
     dea_status status = dea_reader_number(reader, ref, node, &value);
-    if (!status) {
-        status = dea_reader_claim(reader, ref, node, false);
-    }
+    status = status ? status : dea_reader_claim(reader, ref, node, false);
     if (!status) {
         memcpy((char *)reader->scene + dea_ref_offset(ref), &value, sizeof value);
     }
@@ -223,6 +221,21 @@ dea_status dea_reader_word(dea_reader *reader, const dea_ref *ref, const dea_nod
         }
     }
     return dea_reader_refuse(reader, ref, node, node->text[0] ? what : "has no value");
+}
+
+dea_status dea_read_count(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    size_t *count = (size_t *)(void *)((char *)reader->scene + ref->key.place);
+    const bool read = node->kind == DEA_NODE_SCALAR && dea_count_read(node->text, (size_t)ref->key.high, count);
+    return read && *count >= (size_t)ref->key.low ? DEA_OK : dea_reader_refuse(reader, ref, node, "out of range");
+}
+
+dea_status dea_read_choice(dea_reader *reader, const dea_ref *ref, const dea_node *node)
+{
+    size_t index = 0;
+    const dea_status status = dea_reader_word(reader, ref, node, ref->key.choice, &index);
+    *((bool *)reader->scene + ref->key.place) = !status && index == 1;
+    return status;
 }
 
 dea_status dea_reader_kind(dea_reader *reader, const dea_ref *ref, const dea_node *node, dea_kind *kind)

@@ -79,31 +79,10 @@ dea_status dea_reader_kind(dea_reader *reader, const dea_ref *ref, const dea_nod
 dea_status dea_antagonist_finish(dea_reader *reader);
 
 /* Kinds of keys, for the table. */
-dea_status dea_read_scalar(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_mapping(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_kind(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_antagonist(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_antagonist_kind(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_antagonist_material(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_title(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_model(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_engine(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_later(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_material(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_law(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_electrode(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_source(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_stretches(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_permittivity(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_shift(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_follows(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_prony(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_moduli(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_waveform(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_wave_word(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_sines(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_points(dea_reader *reader, const dea_ref *ref, const dea_node *node);
-dea_status dea_read_wave_file(dea_reader *reader, const dea_ref *ref, const dea_node *node);
+dea_read dea_read_scalar, dea_read_count, dea_read_choice, dea_read_mapping, dea_read_kind, dea_read_antagonist,
+    dea_read_antagonist_kind, dea_read_antagonist_material, dea_read_title, dea_read_model, dea_read_engine, dea_read_later,
+    dea_read_material, dea_read_law, dea_read_electrode, dea_read_source, dea_read_stretches, dea_read_permittivity,
+    dea_read_shift, dea_read_prony, dea_read_waveform, dea_read_wave_word, dea_read_sines, dea_read_points, dea_read_wave_file;
 
 /* Refuses the value of a key that is a file's name where no file may be named, or it names none. */
 dea_status dea_reader_names_file(dea_reader *reader, const dea_ref *ref, const dea_node *node);
@@ -131,10 +110,6 @@ void dea_waveform_drop(dea_scene *scene);
 dea_status dea_waveform_finish(dea_reader *reader);
 /* Puts defaults into the study and checks it as a whole. */
 dea_status dea_study_finish(dea_reader *reader);
-/* Reads a number of radii, 2 ... DEA_RADII_MAX. */
-dea_status dea_reader_radii(dea_reader *reader, const dea_ref *ref, const dea_node *node, size_t *count);
-/* Reads a number of points per decade, 1 ... 10000. */
-dea_status dea_reader_per_decade(dea_reader *reader, const dea_ref *ref, const dea_node *node, size_t *count);
 /* Refuses a sweep of the frame radius beside the key @p path, whose radii are the same of all points. */
 dea_status dea_reader_frame(dea_reader *reader, const char *path);
 /* Gives a bias that the study's own key has not set the static voltage of the drive; fails where there is none. */

@@ -127,19 +127,6 @@ dea_status dea_reader_bias(dea_reader *reader, double *bias)
                         : DEA_OK;
 }
 
-dea_status dea_reader_radii(dea_reader *reader, const dea_ref *ref, const dea_node *node, size_t *count)
-{
-    const bool read = node->kind == DEA_NODE_SCALAR && dea_count_read(node->text, DEA_RADII_MAX, count) && *count > 1;
-    return read ? DEA_OK : dea_reader_refuse(reader, ref, node, "out of range");
-}
-
-dea_status dea_reader_per_decade(dea_reader *reader, const dea_ref *ref, const dea_node *node, size_t *count)
-{
-    enum { PER_DECADE_MAX = 10000 };
-    const bool read = node->kind == DEA_NODE_SCALAR && dea_count_read(node->text, PER_DECADE_MAX, count);
-    return read ? DEA_OK : dea_reader_refuse(reader, ref, node, "out of range");
-}
-
 dea_status dea_reader_frame(dea_reader *reader, const char *path)
 {
     const dea_given *frame = dea_reader_given(reader, offsetof(dea_scene, actuator.frame_radius));

@@ -207,9 +207,7 @@ static dea_status entry_read(parse *self, dea_node *parent, const dea_node *key,
     struct fy_event *event = NULL;
     dea_node *value = NULL;
     dea_status status = key_check(self, parent, key);
-    if (!status) {
-        status = event_next(self, &key->place, &event);
-    }
+    status = status ? status : event_next(self, &key->place, &event);
     if (!status) {
         status = value_read(self, event, &key->place, depth, &value);
         fy_parser_event_free(self->parser, event);
@@ -345,9 +343,7 @@ static dea_status parser_run(parse *self, const char *text, size_t length, dea_n
     if (!self->parser || fy_parser_set_string(self->parser, text, length)) {
         status = fail_memory(self->error);
     }
-    if (!status) {
-        status = document_read(self, root);
-    }
+    status = status ? status : document_read(self, root);
     fy_diag_set_collect_errors(diag, false); /* lets go of what they hold of the parser */
     if (self->parser) {
         fy_parser_destroy(self->parser);

@@ -9,16 +9,11 @@
 
 #define AC "study.ac"
 
-static dea_status read_points_per_decade(dea_reader *reader, const dea_ref *ref, const dea_node *node)
-{
-    return dea_reader_per_decade(reader, ref, node, &reader->scene->ac.points_per_decade);
-}
-
 static const dea_key keys[] = {
     OTHER(AC, dea_read_mapping, "a mapping with from, to, points_per_decade, bias and over, e.g. {from: 1 Hz, to: 10 kHz}"),
     PART(AC ".from", ac.from, "Hz", "_Hz", 0, INFINITY, true, 0, AC, "a frequency > 0, e.g. 1 Hz"),
     PART(AC ".to", ac.to, "Hz", "_Hz", 0, INFINITY, true, 0, AC, "a frequency >= from, e.g. 10 kHz"),
-    OTHER_IN(AC, AC ".points_per_decade", read_points_per_decade, "a whole number 1 ... 10000"),
+    AMOUNT(AC ".points_per_decade", ac.points_per_decade, 1, 10000, AC, "a whole number 1 ... 10000"),
     PART(AC ".bias", ac.bias, "V", "_V", -INFINITY, INFINITY, true, 1, AC, "a voltage, e.g. 4500 V"),
     OVER(AC ".over"),
 };
@@ -80,13 +75,7 @@ static const size_t drawn[] = {offsetof(dea_response, displacement), offsetof(de
 static void lay(const dea_scene *scene, dea_layout *layout)
 {
     const dea_ac *ac = &scene->ac;
-    for (size_t i = 0; i < sizeof columns / sizeof *columns; i++) {
-        dea_layout_add(layout, columns[i]);
-    }
     layout->rows = (size_t)ceil(log10(ac->to / ac->from) * (double)ac->points_per_decade * (1.0 - 1e-12)) + 1;
-    layout->row_size = sizeof(dea_response);
-    layout->state_offset = offsetof(dea_response, state);
-    layout->point_size = layout->rows * sizeof(dea_response) + sizeof(dea_band);
 }
 
 /* The last frequency is the end of the range, so that the steps of a decade fit only up to there. */
@@ -133,6 +122,11 @@ const dea_study dea_study_ac = {
     .unit_scale = 1e6,
     .keys = keys,
     .key_count = sizeof keys / sizeof *keys,
+    .columns = columns,
+    .column_count = sizeof columns / sizeof *columns,
+    .row_size = sizeof(dea_response),
+    .state_offset = offsetof(dea_response, state),
+    .behind = sizeof(dea_band),
     .compared = compared,
     .compared_count = sizeof compared / sizeof *compared,
     .figures = figures,

@@ -11,19 +11,12 @@
 #define FORCE "study.force"
 #define DISPLACEMENT FORCE ".displacement"
 
-static dea_status read_points(dea_reader *reader, const dea_ref *ref, const dea_node *node)
-{
-    size_t *count = &reader->scene->force.points;
-    const bool read = node->kind == DEA_NODE_SCALAR && dea_count_read(node->text, DEA_RADII_MAX, count) && *count > 1;
-    return read ? DEA_OK : dea_reader_refuse(reader, ref, node, "out of range");
-}
-
 static const dea_key keys[] = {
     OTHER(FORCE, dea_read_mapping, "a mapping with displacement and over, e.g. {displacement: {from: 0 mm, to: 0.6 mm, points: 61}}"),
     OTHER(DISPLACEMENT, dea_read_mapping, "a mapping with from, to and points, e.g. {from: 0 mm, to: 0.6 mm, points: 61}"),
     PART(DISPLACEMENT ".from", force.from, "m", "_m", -INFINITY, INFINITY, true, 0, DISPLACEMENT, "a displacement, outward positive, e.g. 0 mm"),
     PART(DISPLACEMENT ".to", force.to, "m", "_m", -INFINITY, INFINITY, true, 0, DISPLACEMENT, "a displacement other than from, e.g. 0.6 mm"),
-    OTHER(DISPLACEMENT ".points", read_points, "a whole number of displacements, 2 ... 10001, e.g. 61"),
+    AMOUNT(DISPLACEMENT ".points", force.points, 2, DEA_RADII_MAX, NULL, "a whole number of displacements, 2 ... 10001, e.g. 61"),
     OVER(FORCE ".over"),
 };
 
@@ -93,11 +86,7 @@ static const size_t drawn[] = {offsetof(dea_row, force)};
 
 static void lay(const dea_scene *scene, dea_layout *layout)
 {
-    for (size_t i = 0; i < sizeof columns / sizeof *columns; i++) {
-        dea_layout_add(layout, columns[i]);
-    }
     layout->rows = scene->force.points;
-    layout->point_size = layout->rows * sizeof(dea_row);
 }
 
 static double place(const dea_scene *scene, size_t index)
@@ -120,7 +109,6 @@ const dea_study dea_study_force = {
     .model_fails = "has no edge that something could hold",
     .model_lacks = "the model has no edge that something could hold",
     .engine_fails = "it holds no edge",
-    .at = "",
     .plot_name = "Force",
     .unit = "displacement",
     .unit_head = "us/place",
@@ -128,6 +116,8 @@ const dea_study dea_study_force = {
     .unit_scale = 1e6,
     .keys = keys,
     .key_count = sizeof keys / sizeof *keys,
+    .columns = columns,
+    .column_count = sizeof columns / sizeof *columns,
     .compared = compared,
     .compared_count = sizeof compared / sizeof *compared,
     .drawn = drawn,

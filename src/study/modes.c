@@ -8,23 +8,10 @@
 
 #define MODES "study.modes"
 
-static dea_status read_count(dea_reader *reader, const dea_ref *ref, const dea_node *node)
-{
-    if (node->kind != DEA_NODE_SCALAR || !dea_count_read(node->text, DEA_MODES_MOST, &reader->scene->modes.count)) {
-        return dea_reader_refuse(reader, ref, node, "out of range");
-    }
-    return DEA_OK;
-}
-
-static dea_status read_points(dea_reader *reader, const dea_ref *ref, const dea_node *node)
-{
-    return dea_reader_radii(reader, ref, node, &reader->scene->modes.points);
-}
-
 static const dea_key keys[] = {
     OTHER(MODES, dea_read_mapping, "a mapping with count, bias, points and over, e.g. {count: 3, bias: 3 kV}"),
-    OTHER(MODES ".count", read_count, "a whole number 1 ... 12"),
-    OTHER(MODES ".points", read_points, "a whole number of radii, 2 ... 10001, at which shapes are told, e.g. 51"),
+    AMOUNT(MODES ".count", modes.count, 1, DEA_MODES_MOST, NULL, "a whole number 1 ... 12"),
+    AMOUNT(MODES ".points", modes.points, 2, DEA_RADII_MAX, NULL, "a whole number of radii, 2 ... 10001, at which shapes are told, e.g. 51"),
     PART(MODES ".bias", modes.bias, "V", "_V", -INFINITY, INFINITY, true, 1, MODES, "a voltage, e.g. 3 kV"),
     OVER(MODES ".over"),
 };
@@ -102,13 +89,7 @@ static const dea_study_column compared[] = {
 
 static void lay(const dea_scene *scene, dea_layout *layout)
 {
-    for (size_t i = 0; i < sizeof columns / sizeof *columns; i++) {
-        dea_layout_add(layout, columns[i]);
-    }
     layout->rows = scene->modes.count;
-    layout->row_size = sizeof(dea_mode);
-    layout->state_offset = offsetof(dea_mode, state);
-    layout->point_size = layout->rows * sizeof(dea_mode);
     if (scene->modes.points > 0) {
         dea_layout_spread(layout, shape, 1, scene->modes.points);
     }
@@ -145,6 +126,10 @@ const dea_study dea_study_modes = {
     .unit_scale = 1e6,
     .keys = keys,
     .key_count = sizeof keys / sizeof *keys,
+    .columns = columns,
+    .column_count = sizeof columns / sizeof *columns,
+    .row_size = sizeof(dea_mode),
+    .state_offset = offsetof(dea_mode, state),
     .compared = compared,
     .compared_count = sizeof compared / sizeof *compared,
     .resonance = offsetof(dea_mode, frequency),

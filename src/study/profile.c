@@ -8,14 +8,9 @@
 
 #define PROFILE "study.profile"
 
-static dea_status read_points(dea_reader *reader, const dea_ref *ref, const dea_node *node)
-{
-    return dea_reader_radii(reader, ref, node, &reader->scene->profile.points);
-}
-
 static const dea_key keys[] = {
     OTHER(PROFILE, dea_read_mapping, "a mapping with points and over, e.g. {points: 101}"),
-    OTHER(PROFILE ".points", read_points, "a whole number of radii, 2 ... 10001, e.g. 101"),
+    AMOUNT(PROFILE ".points", profile.points, 2, DEA_RADII_MAX, NULL, "a whole number of radii, 2 ... 10001, e.g. 101"),
     OVER(PROFILE ".over"),
 };
 
@@ -68,13 +63,7 @@ static const size_t drawn[] = {offsetof(dea_station, displacement), offsetof(dea
 
 static void lay(const dea_scene *scene, dea_layout *layout)
 {
-    for (size_t i = 0; i < sizeof columns / sizeof *columns; i++) {
-        dea_layout_add(layout, columns[i]);
-    }
     layout->rows = scene->profile.points;
-    layout->row_size = sizeof(dea_station);
-    layout->state_offset = offsetof(dea_station, state);
-    layout->point_size = layout->rows * sizeof(dea_station) + sizeof(dea_weakest);
 }
 
 static double place(const dea_scene *scene, size_t index)
@@ -102,7 +91,6 @@ const dea_study dea_study_profile = {
     .model_fails = "has no profile, its annulus has not two stretches",
     .model_lacks = "the model has no profile",
     .engine_fails = "it has no profiles",
-    .at = "",
     .plot_name = "Profile",
     .unit = "radius",
     .unit_head = "us/radius",
@@ -110,6 +98,11 @@ const dea_study dea_study_profile = {
     .unit_scale = 1e6,
     .keys = keys,
     .key_count = sizeof keys / sizeof *keys,
+    .columns = columns,
+    .column_count = sizeof columns / sizeof *columns,
+    .row_size = sizeof(dea_station),
+    .state_offset = offsetof(dea_station, state),
+    .behind = sizeof(dea_weakest),
     .compared = compared,
     .compared_count = sizeof compared / sizeof *compared,
     .figures = figures,

@@ -46,7 +46,7 @@ typedef struct dea_study {
     const char *sign;      /* of the coordinate in messages, e.g. "t"; NULL: places are not told */
     const char *model_fails, *model_lacks; /* why a model cannot do it, in a sentence that begins with its name, and alone */
     const char *engine_fails;              /* why an engine cannot */
-    const char *at;        /* where a model is held against the membrane, e.g. " at the bias" */
+    const char *at;        /* where a model is held against the membrane, e.g. " at the bias"; NULL: that goes without saying */
     const char *plot_name; /* of a SPICE raw file */
 
     /* How a bench counts: the unit of work, head and factor of its time in the table, and what that is called. */
@@ -57,6 +57,10 @@ typedef struct dea_study {
     const struct dea_key *keys;
     size_t key_count;
 
+    const dea_column *columns; /* of its rows, column_count of them; what lay() adds stands behind them */
+    size_t column_count;
+    size_t row_size, state_offset; /* 0: those of a dea_row */
+    size_t behind;                 /* bytes behind the rows */
     const dea_study_column *compared; /* by the engines' agreement, compared_count of them */
     size_t compared_count;
     const dea_column *figures; /* numbers of a point, which stand behind its rows: variables over the axes, figure_count of them */
@@ -76,7 +80,7 @@ typedef struct dea_study {
     dea_status (*rest)(dea_scene *scene, dea_error *error);
     /* Writes what decides its numbers and is no scalar of the table of keys; NULL: nothing. */
     void (*identify)(FILE *out, const dea_scene *scene);
-    /* Columns, rows and sizes of a layout that is zeroed but for what a static point has. */
+    /* Further columns, the number of rows (1) and what they tell over the radius; NULL: nothing of that. */
     void (*lay)(const dea_scene *scene, dea_layout *layout);
     /* Coordinate of row @p index; NULL where rows do not lie along one. */
     double (*place)(const dea_scene *scene, size_t index);

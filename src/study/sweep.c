@@ -48,7 +48,6 @@ const dea_study dea_study_sweep = {
     .title = "static study",
     .points = {"point", "points"},
     .rows = {"point", "points"},
-    .at = "",
     .plot_name = "DC transfer characteristic",
     .unit = "point",
     .unit_head = "us/point",

@@ -57,38 +57,10 @@ static dea_status read_average(dea_reader *reader, const dea_ref *ref, const dea
     return status;
 }
 
-static dea_status read_start(dea_reader *reader, const dea_ref *ref, const dea_node *node)
-{
-    static const char *const words[] = {"rest", "bias", NULL};
-    size_t index = 0;
-    const dea_status status = dea_reader_word(reader, ref, node, words, &index);
-    reader->scene->transient.from_bias = !status && index == 1;
-    return status;
-}
-
 static dea_status read_profile(dea_reader *reader, const dea_ref *ref, const dea_node *node)
 {
     reader->scene->transient.points = 101;
     return dea_read_mapping(reader, ref, node);
-}
-
-static dea_status read_points(dea_reader *reader, const dea_ref *ref, const dea_node *node)
-{
-    return dea_reader_radii(reader, ref, node, &reader->scene->transient.points);
-}
-
-static dea_status read_samples(dea_reader *reader, const dea_ref *ref, const dea_node *node)
-{
-    static const char *const words[] = {"even", "log", NULL};
-    size_t index = 0;
-    const dea_status status = dea_reader_word(reader, ref, node, words, &index);
-    reader->scene->transient.logarithmic = !status && index == 1;
-    return status;
-}
-
-static dea_status read_points_per_decade(dea_reader *reader, const dea_ref *ref, const dea_node *node)
-{
-    return dea_reader_per_decade(reader, ref, node, &reader->scene->transient.points_per_decade);
 }
 
 static const dea_key keys[] = {
@@ -96,18 +68,18 @@ static const dea_key keys[] = {
           "a mapping with until, every, samples, from, points_per_decade, average, start, profile and over, e.g. {until: 25 s, every: 10 ms}"),
     PART(TRANSIENT ".until", transient.until, "s", "_s", 0, INFINITY, true, 0, TRANSIENT, "a time > 0, e.g. 25 s"),
     PART(TRANSIENT ".every", transient.every, "s", "_s", 0, INFINITY, true, 0, TRANSIENT, "a time > 0, e.g. 10 ms"),
-    OTHER(SAMPLES, read_samples, "even, log"),
+    CHOICE(SAMPLES, transient.logarithmic, "even", "log"),
     PART(TRANSIENT ".from", transient.first, "s", "_s", 0, INFINITY, true, 0, SAMPLES, "a time > 0, e.g. 1 us"),
-    OTHER_IN(SAMPLES, TRANSIENT ".points_per_decade", read_points_per_decade, "a whole number 1 ... 10000"),
+    AMOUNT(TRANSIENT ".points_per_decade", transient.points_per_decade, 1, 10000, SAMPLES, "a whole number 1 ... 10000"),
     OTHER(AVERAGE, read_average, "a window of time, e.g. {from: 6 s, to: 8 s}, or a list of at most 8"),
     PART(AVERAGE ".from", transient.averages[0].from, "s", "_s", 0, INFINITY, false, 0, AVERAGE, "a time >= 0, e.g. 6 s"),
     PART(AVERAGE ".to", transient.averages[0].to, "s", "_s", 0, INFINITY, true, 0, AVERAGE, "a time > from, e.g. 8 s"),
     OTHER(AVERAGE ".#", dea_read_mapping, "a window of time, e.g. {from: 6 s, to: 8 s}"),
     ENTRY(AVERAGE ".#.from", transient.averages, from, "s", "_s", 0, INFINITY, false, 0, "a time >= 0, e.g. 6 s"),
     ENTRY(AVERAGE ".#.to", transient.averages, to, "s", "_s", 0, INFINITY, true, 0, "a time > from, e.g. 8 s"),
-    OTHER(TRANSIENT ".start", read_start, "rest, bias"),
+    CHOICE(TRANSIENT ".start", transient.from_bias, "rest", "bias"),
     OTHER(PROFILE, read_profile, "a mapping with points, e.g. {points: 51}"),
-    OTHER(PROFILE ".points", read_points, "a whole number of radii, 2 ... 10001, at which each sample tells the film, e.g. 51"),
+    AMOUNT(PROFILE ".points", transient.points, 2, DEA_RADII_MAX, NULL, "a whole number of radii, 2 ... 10001, at which each sample tells the film, e.g. 51"),
     OVER(TRANSIENT ".over"),
 };
 
@@ -288,15 +260,18 @@ static const dea_column weakest[] = {
     {"least_tension_radius_m", "radius of the smallest stress, at rest and 0 V", "m", offsetof(dea_sample, weakest.tension_radius)},
 };
 
+static const dea_column columns[] = {
+    {"time_s", "time", "s", offsetof(dea_sample, time)},
+    {"voltage_V", "voltage of the source", "V", offsetof(dea_sample, voltage)},
+    {"displacement_m", "radial displacement of the disc edge", "m", offsetof(dea_sample, displacement)},
+    {"strain", "radial strain of the disc edge", "1", offsetof(dea_sample, strain)},
+    {"velocity_m_per_s", "velocity of the disc edge", "m/s", offsetof(dea_sample, velocity)},
+    {"force_N", "electrostatic force over the full circumference", "N", offsetof(dea_sample, force)},
+};
+
 static void lay(const dea_scene *scene, dea_layout *layout)
 {
     const bool series = !isnan(dea_series_resistance(scene));
-    dea_layout_add(layout, (dea_column){"time_s", "time", "s", offsetof(dea_sample, time)});
-    dea_layout_add(layout, (dea_column){"voltage_V", "voltage of the source", "V", offsetof(dea_sample, voltage)});
-    dea_layout_add(layout, (dea_column){"displacement_m", "radial displacement of the disc edge", "m", offsetof(dea_sample, displacement)});
-    dea_layout_add(layout, (dea_column){"strain", "radial strain of the disc edge", "1", offsetof(dea_sample, strain)});
-    dea_layout_add(layout, (dea_column){"velocity_m_per_s", "velocity of the disc edge", "m/s", offsetof(dea_sample, velocity)});
-    dea_layout_add(layout, (dea_column){"force_N", "electrostatic force over the full circumference", "N", offsetof(dea_sample, force)});
     const bool port = series || !isnan(scene->drive.leakage_resistance);
     if (port) {
         dea_layout_add(layout, (dea_column){"current_A", "current of the source", "A", offsetof(dea_sample, current)});
@@ -312,9 +287,6 @@ static void lay(const dea_scene *scene, dea_layout *layout)
         dea_layout_add(layout, (dea_column){"capacitance_F", "capacitance of the deformed film", "F", offsetof(dea_sample, capacitance)});
     }
     layout->rows = (size_t)rows_of(&scene->transient);
-    layout->row_size = sizeof(dea_sample);
-    layout->state_offset = offsetof(dea_sample, state);
-    layout->point_size = layout->rows * sizeof(dea_sample) + sizeof(dea_summary);
     if (scene->transient.points > 0) {
         for (size_t i = 0; i < sizeof weakest / sizeof *weakest; i++) {
             dea_layout_add(layout, weakest[i]);
@@ -483,6 +455,11 @@ const dea_study dea_study_transient = {
     .unit_scale = 1e3,
     .keys = keys,
     .key_count = sizeof keys / sizeof *keys,
+    .columns = columns,
+    .column_count = sizeof columns / sizeof *columns,
+    .row_size = sizeof(dea_sample),
+    .state_offset = offsetof(dea_sample, state),
+    .behind = sizeof(dea_summary),
     .compared = compared,
     .compared_count = sizeof compared / sizeof *compared,
     .figures = figures,

@@ -349,9 +349,7 @@ static dea_status growth_find(const dea_relaxation_data *data, bool relative, bo
         status = dea_relaxation_add(&mirror, point, error);
     }
     dea_held held = {.rows = 0};
-    if (status == DEA_OK) {
-        status = dea_held_begin(&held, &mirror, relative, error);
-    }
+    status = status ? status : dea_held_begin(&held, &mirror, relative, error);
     if (status == DEA_OK) {
         search_run(&held, 0, &fit);
         *grows = fit.trial_count > 1 && !(fit.trials[1].p > growth_chance);

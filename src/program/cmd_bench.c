@@ -267,30 +267,12 @@ const dea_command dea_command_bench = {
             "another setting of the model is at least as fast and as accurate, and better in\n"
             "one. The error of the model is that of its strain against field, over time that of\n"
             "its displacement over the peak, over frequency that of its displacement per volt.\n"
-            "\n"
-            "  -o, --output FILE     write a row a setting to FILE as CSV, - is standard output\n"
-            "      --plot FILE       draw error over time, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)\n"
-            "      --size WxH        of the picture, for example 17x9cm (mm, cm, in, pt)\n"
-            "      --engine E        measure only this engine\n"
-            "      --model M         only these models, with commas between; default: all that fit\n"
-            "      --set KEY=VALUE   change a value of the scene; may be repeated\n"
-            "  -j, --jobs N          worker processes, auto: one per core; default 1, so that\n"
-            "                        the times of the engines compare\n"
-            "      --runs N          timed runs of a setting, default 5; more where they are\n"
-            "                        short, fewer where the budget ends\n"
-            "      --budget SECONDS  time that all may take, roughly; default 60. What it does\n"
-            "                        not reach is listed as skipped\n"
-            "      --force           a target may overwrite a file that was read\n"
-            "      --no-files        refuse a scene that names other files (material, waveform)\n"
-            "  -q, --quiet           no table and no progress\n"
-            "  -h, --help            this text\n"
-            "  -V, --version         the version\n"
-            "\n"
-            "Exit status: 0 done, 1 nothing measured or a file not written, 2 usage or a bad\n"
-            "scene, 3 a promise was broken.\n"
-            "\n"
-            "Example:\n"
-            "  deaspice bench examples/figure10.yaml -o bench.csv --plot bench.svg\n",
+            "\n",
+    .further = "Exit status: 0 done, 1 nothing measured or a file not written, 2 usage or a bad\n"
+               "scene, 3 a promise was broken.\n"
+               "\n"
+               "Example:\n"
+               "  deaspice bench examples/figure10.yaml -o bench.csv --plot bench.svg\n",
     .takes = DEA_TAKES_ENGINE | DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_PLOT | DEA_TAKES_JOBS | DEA_TAKES_QUIET |
              DEA_TAKES_BENCH,
     .least = 1,

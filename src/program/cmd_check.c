@@ -261,26 +261,12 @@ const dea_command dea_command_check = {
             "Of a transient that leaves out parts of the network, each omission is measured\n"
             "against its bound, by runs at two accuracies: where their difference hides\n"
             "the bound it is not judged. Of a model that `auto` chose, its model error.\n"
-            "\n"
-            "      --full            leave out nothing\n"
-            "      --tolerance T     difference that still agrees; default: the scene's accuracy,\n"
-            "                        in a transient twice that, as both engines may be off by it\n"
-            "      --engine E        compare only this engine with the first\n"
-            "      --model M         model instead of the scene's; several with commas between\n"
-            "      --set KEY=VALUE   change a value of the scene; may be repeated\n"
-            "  -j, --jobs N          worker processes, auto: one per core; default 1, so that\n"
-            "                        the times of the engines compare\n"
-            "      --force           a target may overwrite a file that was read\n"
-            "      --no-files        refuse a scene that names other files (material, waveform)\n"
-            "  -q, --quiet           no table\n"
-            "  -h, --help            this text\n"
-            "  -V, --version         the version\n"
-            "\n"
-            "Exit status: 0 all agree, 1 an engine failed, 2 usage or a bad scene, 3 they\n"
-            "disagree or a bound is broken.\n"
-            "\n"
-            "Example:\n"
-            "  deaspice check examples/*.yaml\n",
+            "\n",
+    .further = "Exit status: 0 all agree, 1 an engine failed, 2 usage or a bad scene, 3 they\n"
+               "disagree or a bound is broken.\n"
+               "\n"
+               "Example:\n"
+               "  deaspice check examples/*.yaml\n",
     .takes = DEA_TAKES_ENGINE | DEA_TAKES_SCENE | DEA_TAKES_JOBS | DEA_TAKES_QUIET | DEA_TAKES_TOLERANCE | DEA_TAKES_FULL,
     .least = 1,
     .most = SIZE_MAX,

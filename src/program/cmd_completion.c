@@ -296,13 +296,10 @@ const dea_command dea_command_completion = {
             "\n"
             "Writes the completion for bash, zsh or fish to standard output. make install puts\n"
             "them where the shells look.\n"
-            "\n"
-            "  -h, --help            this text\n"
-            "  -V, --version         the version\n"
-            "\n"
-            "Examples:\n"
-            "  source <(deaspice completion bash)     in ~/.bashrc; the same with zsh in ~/.zshrc\n"
-            "  deaspice completion fish | source      in ~/.config/fish/config.fish\n",
+            "\n",
+    .further = "Examples:\n"
+               "  source <(deaspice completion bash)     in ~/.bashrc; the same with zsh in ~/.zshrc\n"
+               "  deaspice completion fish | source      in ~/.config/fish/config.fish\n",
     .takes = 0,
     .least = 1,
     .most = 1,

@@ -194,15 +194,9 @@ const dea_command dea_command_init = {
             "\n"
             "Writes a commented scene that runs as it is: dot, lens, transient, ac, modes,\n"
             "profile, force or sweep. Without KIND, lists them.\n"
-            "\n"
-            "  -o, --output FILE     write it to FILE, - is standard output (default)\n"
-            "      --force           overwrite FILE where it is there\n"
-            "  -q, --quiet           say nothing\n"
-            "  -h, --help            this text\n"
-            "  -V, --version         the version\n"
-            "\n"
-            "Example:\n"
-            "  deaspice init dot -o dot.yaml && deaspice run dot.yaml\n",
+            "\n",
+    .further = "Example:\n"
+               "  deaspice init dot -o dot.yaml && deaspice run dot.yaml\n",
     .takes = DEA_TAKES_OUTPUT | DEA_TAKES_QUIET,
     .least = 0,
     .most = 1,

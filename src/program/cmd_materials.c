@@ -223,20 +223,11 @@ const dea_command dea_command_materials = {
             "Lists the built-in materials, or shows the constants of one, or of a material\n"
             "file, and what follows from them at usual pre-stretches: nominal stress, operating\n"
             "modulus Y, tangent moduli.\n"
-            "\n"
-            "  -o, --output FILE     write stress and modulus over stretch as CSV, - is standard\n"
-            "                        output\n"
-            "      --plot FILE       draw them, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)\n"
-            "      --size WxH        of the picture, for example 17x8cm (mm, cm, in, pt)\n"
-            "      --to STRETCH      largest stretch of table and curves, default 2\n"
-            "      --force           a target may overwrite a file that was read\n"
-            "  -h, --help            this text\n"
-            "  -V, --version         the version\n"
-            "\n"
-            "Examples:\n"
-            "  deaspice materials\n"
-            "  deaspice materials elastosil-2030 --plot elastosil.svg\n"
-            "  deaspice materials film.yaml --to 4 -o film.csv\n",
+            "\n",
+    .further = "Examples:\n"
+               "  deaspice materials\n"
+               "  deaspice materials elastosil-2030 --plot elastosil.svg\n"
+               "  deaspice materials film.yaml --to 4 -o film.csv\n",
     .takes = DEA_TAKES_OUTPUT | DEA_TAKES_PLOT | DEA_TAKES_CURVES,
     .least = 0,
     .most = 1,

@@ -76,7 +76,7 @@ static dea_exit command_run(const dea_command *command, int argc, char **argv)
         outcome = command->run(&arguments);
         break;
     case DEA_PARSED_HELP:
-        fputs(command->help, stdout);
+        dea_help_print(command);
         outcome = DEA_EXIT_DONE;
         break;
     case DEA_PARSED_VERSION:
@@ -97,7 +97,7 @@ static dea_exit help(const char *name)
     if (name && !command)
         return DEA_EXIT_USAGE;
     if (command)
-        fputs(command->help, stdout);
+        dea_help_print(command);
     else
         print_usage(stdout);
     return DEA_EXIT_DONE;

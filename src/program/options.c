@@ -243,15 +243,22 @@ WORDS_OF(axes, "x", "y", "xy")
     }
 
 static const dea_option entries[] = {
-    TEXT("engine", 0, "ENGINE", dea_engine_word, DEA_TAKES_ENGINE, take_text, engine, "engine that solves"),
-    TEXT("model", 0, "MODEL", dea_model_word, DEA_TAKES_SCENE, take_text, model, "model instead of that of the scene"),
-    TEXT("set", 0, "KEY=VALUE", key_word, DEA_TAKES_SCENE, take_setting, settings, "change a value of the scene"),
-    FLAG("no-files", 0, DEA_TAKES_SCENE, no_files, "refuse a scene that names other files"),
-    TEXT("output", 'o', "FILE", NULL, DEA_TAKES_OUTPUT, take_text, output, "write the result to a file"),
-    TEXT("format", 0, "FORMAT", format_word, DEA_TAKES_FORMAT, take_text, format, "format of the result"),
-    TEXT("plot", 0, "FILE", NULL, DEA_TAKES_PLOT, take_text, plot, "draw the result"),
+    TEXT("engine", 0, "ENGINE", dea_engine_word, DEA_TAKES_ENGINE, take_text, engine,
+         "engine that solves: auto, direct, ngspice, ida, or several with commas between, in the order in which they are asked; "
+         "of check and bench the one that takes part"),
+    TEXT("model", 0, "MODEL", dea_model_word, DEA_TAKES_SCENE, take_text, model,
+         "model instead of the scene's; several with commas between; auto: the cheapest that is within the model error of the "
+         "finest"),
+    TEXT("set", 0, "KEY=VALUE", key_word, DEA_TAKES_SCENE, take_setting, settings,
+         "change a value of the scene, e.g. actuator.prestretch=1.3; may be repeated"),
+    FLAG("no-files", 0, DEA_TAKES_SCENE, no_files, "refuse a scene that names other files (material, waveform)"),
+    TEXT("output", 'o', "FILE", NULL, DEA_TAKES_OUTPUT, take_text, output, "write the result to FILE, - is standard output"),
+    TEXT("format", 0, "FORMAT", format_word, DEA_TAKES_FORMAT, take_text, format, "csv, nc or raw; default: from the ending of FILE"),
+    TEXT("plot", 0, "FILE", NULL, DEA_TAKES_PLOT, take_text, plot,
+         "draw the result, FILE ends in .svg, .png, .pdf, .eps or .gp (script and data)"),
     COUNT("size", 0, "WxH", DEA_TAKES_PLOT, take_size, picture, 0,
-          "width x height in mm, cm, in or pt, each from 4 cm to 2 m, for example 8.5x6cm", "size of the picture"),
+          "width x height in mm, cm, in or pt, each from 4 cm to 2 m, for example 8.5x6cm",
+         "of the picture, e.g. 8.5x6cm (mm, cm, in, pt)"),
     {.name = "log",
      .value = "AXES",
      .words = axes_word,
@@ -259,52 +266,77 @@ static const dea_option entries[] = {
      .take = take_log,
      .offset = offsetof(dea_arguments, picture),
      .needs = "x, y or xy",
-     .about = "logarithmic axes"},
-    FLAG("loops", 0, DEA_TAKES_LOG, picture.loops, "draw a transient over its voltage"),
-    TEXT("columns", 0, "C[,C]", NULL, DEA_TAKES_LOG, take_text, picture.columns, "draw these columns of a sweep"),
-    FLAG("force", 0, DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_PLOT, force, "overwrite also what is kept otherwise"),
-    COUNT("jobs", 'j', "N", DEA_TAKES_JOBS, take_jobs, jobs, 1024, "a whole number up to 1024, or auto", "worker processes"),
-    FLAG("quiet", 'q', DEA_TAKES_QUIET, quiet, "no summary and no progress"),
-    FLAG("full", 0, DEA_TAKES_FULL, full, "leave out nothing"),
-    FLAG("no-truth", 0, DEA_TAKES_LOG, no_truth, "do not hold models against the membrane"),
+     .about = "draw these axes logarithmic: x, y or xy"},
+    FLAG("loops", 0, DEA_TAKES_LOG, picture.loops, "draw a transient over its voltage: hysteresis loops"),
+    TEXT("columns", 0, "C[,C]", NULL, DEA_TAKES_LOG, take_text, picture.columns,
+         "draw these columns of a sweep, e.g. capacitance_F,force_N"),
+    FLAG("force", 0, DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_PLOT, force, "overwrite also a file that was read or that is there"),
+    COUNT("jobs", 'j', "N", DEA_TAKES_JOBS, take_jobs, jobs, 1024, "a whole number up to 1024, or auto",
+         "worker processes, auto: one per core, as run has it; check and bench have 1, so that the times of the engines compare"),
+    FLAG("quiet", 'q', DEA_TAKES_QUIET, quiet, "no table, no notes, no summary and no progress"),
+    FLAG("full", 0, DEA_TAKES_FULL, full, "a transient leaves out nothing, whatever its accuracy"),
+    FLAG("no-truth", 0, DEA_TAKES_LOG, no_truth, "do not hold the models against the membrane (field)"),
     NUMBER("tolerance", "T", DEA_TAKES_TOLERANCE, tolerance, "1", 0, false, 1, "a number between 0 and 1, for example 1e-6",
-           "difference that still agrees"),
-    TEXT("uniaxial", 0, "FILE", NULL, DEA_TAKES_FIT, take_uniaxial, operands, "data of a uniaxial test"),
-    TEXT("equibiaxial", 0, "FILE", NULL, DEA_TAKES_FIT, take_equibiaxial, operands, "data of an equi-biaxial test"),
-    TEXT("law", 0, "LAW", dea_law_word, DEA_TAKES_FIT, take_text, law, "law that is fitted"),
-    COUNT("terms", 0, "N", DEA_TAKES_FIT, take_count, terms, DEA_LAW_TERMS, "1, 2, 3 or 4", "Yeoh constants or terms of Ogden"),
-    TEXT("relaxation", 0, "FILE", NULL, DEA_TAKES_FIT, take_text, tests[DEA_TEST_RELAXATION], "data of a relaxation test"),
-    TEXT("dma", 0, "FILE", NULL, DEA_TAKES_FIT, take_text, tests[DEA_TEST_DYNAMIC], "storage and loss modulus over frequency"),
-    TEXT("creep", 0, "FILE", NULL, DEA_TAKES_FIT, take_text, tests[DEA_TEST_CREEP], "data of a creep test"),
+         "difference that still agrees; default: the scene's accuracy, in a transient twice that, as both engines may be off by "
+         "it"),
+    TEXT("uniaxial", 0, "FILE", NULL, DEA_TAKES_FIT, take_uniaxial, operands, "data of a uniaxial test; may be repeated"),
+    TEXT("equibiaxial", 0, "FILE", NULL, DEA_TAKES_FIT, take_equibiaxial, operands, "data of an equi-biaxial test; may be repeated"),
+    TEXT("law", 0, "LAW", dea_law_word, DEA_TAKES_FIT, take_text, law,
+         "yeoh (default), neo_hookean, mooney_rivlin, gent, ogden, arruda_boyce, or auto: the one with the least AICc"),
+    COUNT("terms", 0, "N", DEA_TAKES_FIT, take_count, terms, DEA_LAW_TERMS, "1, 2, 3 or 4",
+         "of Yeoh 1, 2 or 3 constants; default: as many as an F test finds significant at 5 %. Of Ogden 1 to 4 terms; default: "
+         "as many as have the least AICc"),
+    TEXT("relaxation", 0, "FILE", NULL, DEA_TAKES_FIT, take_text, tests[DEA_TEST_RELAXATION],
+         "data of a relaxation test: time (since the end of the ramp, or with a displacement that shows the ramp) and stress or "
+         "force"),
+    TEXT("dma", 0, "FILE", NULL, DEA_TAKES_FIT, take_text, tests[DEA_TEST_DYNAMIC],
+         "data of a dynamic test: frequency (Hz) or angular frequency (rad/s), storage modulus, and loss modulus or tan delta"),
+    TEXT("creep", 0, "FILE", NULL, DEA_TAKES_FIT, take_text, tests[DEA_TEST_CREEP],
+         "data of a creep test: time (since the end of the ramp) and strain, stretch, displacement or compliance, small enough "
+         "to go with the stress; turned into branches of the modulus"),
     NUMBER("ramp", "TIME", DEA_TAKES_FIT, ramp, "s", 0, true, INFINITY,
-           "a time, for example \"2 s\", or \"0 s\" for an ideal step", "duration of the ramp before the hold"),
+           "a time, for example \"2 s\", or \"0 s\" for an ideal step",
+         "duration of the ramp before the hold, e.g. \"2 s\"; default: what the displacement shows, else an ideal step"),
     NUMBER("length", "LENGTH", DEA_TAKES_FIT, specimen.length, "m", 0, false, INFINITY,
-           "the length of the specimen at rest, for example \"80 mm\"", "length of the specimen, for a displacement"),
+           "the length of the specimen at rest, for example \"80 mm\"",
+         "length of the specimen at rest, for a displacement, e.g. \"80 mm\""),
     NUMBER("area", "AREA", DEA_TAKES_FIT, specimen.area, "m^2", 0, false, INFINITY,
-           "the cross-section of the specimen at rest, for example \"22 mm^2\"", "cross-section of the specimen, for a force"),
+           "the cross-section of the specimen at rest, for example \"22 mm^2\"",
+         "its cross-section at rest, for a force, e.g. \"22 mm^2\""),
     COUNT("branches", 0, "N", DEA_TAKES_FIT, take_count, branches, DEA_RELAXATION_MOST, "a whole number from 1 to 10",
-          "Prony branches"),
-    FLAG("relative", 0, DEA_TAKES_FIT, relative, "relative errors count"),
+         "Prony branches, 1 to 10; default: as many as an F test finds significant at 5 %"),
+    FLAG("relative", 0, DEA_TAKES_FIT, relative, "relative instead of absolute errors count"),
     NUMBER("permittivity", "NUMBER", DEA_TAKES_FIT, permittivity, "1", 0, false, INFINITY,
-           "a relative permittivity above 0, for example 2.8", "relative permittivity of the film"),
+           "a relative permittivity above 0, for example 2.8",
+         "relative permittivity of the film, written beside the fit, so that a scene can name the file as it is"),
     NUMBER("density", "DENSITY", DEA_TAKES_FIT, density, "kg/m^3", 0, false, INFINITY,
-           "a density above 0, for example \"1080 kg/m^3\"", "density of the film"),
+           "a density above 0, for example \"1080 kg/m^3\"",
+         "density of the film, the same, e.g. \"1080 kg/m^3\""),
     NUMBER("breakdown", "FIELD", DEA_TAKES_FIT, breakdown, "V/m", 0, false, INFINITY, "a field above 0, for example \"80 V/um\"",
-           "breakdown strength of the film"),
-    TEXT("as", 0, "KIND", dea_export_word, DEA_TAKES_EXPORT, take_text, as, "kind of export"),
-    TEXT("dialect", 0, "DIALECT", dea_dialect_word, DEA_TAKES_EXPORT, take_text, dialect, "simulator that reads it"),
-    TEXT("analogy", 0, "ANALOGY", dea_analogy_word, DEA_TAKES_EXPORT, take_text, analogy, "what voltage and current stand for"),
-    TEXT("name", 0, "NAME", NULL, DEA_TAKES_EXPORT, take_text, name, "name of the part"),
-    COUNT("runs", 0, "N", DEA_TAKES_BENCH, take_count, runs, 1000, "a whole number from 1 to 1000", "timed runs of a setting"),
+         "breakdown strength of the film, the same, e.g. \"80 V/um\""),
+    TEXT("as", 0, "KIND", dea_export_word, DEA_TAKES_EXPORT, take_text, as,
+         "netlist: the whole study, one model and one run, as a file that the simulator runs as it is (ngspice -b FILE); subckt: "
+         "the actuator as a part with electrical pins p, n and a mechanical pin edge; kicad, ltspice: its symbol, -o "
+         "NAME.kicad_sym or NAME.asy, and the library NAME.lib"),
+    TEXT("dialect", 0, "DIALECT", dea_dialect_word, DEA_TAKES_EXPORT, take_text, dialect, "ngspice (default), ltspice, xyce or pspice"),
+    TEXT("analogy", 0, "ANALOGY", dea_analogy_word, DEA_TAKES_EXPORT, take_text, analogy,
+         "mobility (default): velocity is a voltage, force a current; impedance: force is a voltage, velocity a current"),
+    TEXT("name", 0, "NAME", NULL, DEA_TAKES_EXPORT, take_text, name,
+         "name of the part and of its helpers, NAME_spring and NAME_lever; else that of FILE, or of SCENE, without its ending: "
+         "several parts in one circuit need different names"),
+    COUNT("runs", 0, "N", DEA_TAKES_BENCH, take_count, runs, 1000, "a whole number from 1 to 1000",
+         "timed runs of a setting, default 5; more where they are short, fewer where the budget ends"),
     NUMBER("budget", "SECONDS", DEA_TAKES_BENCH, budget, "1", 0, false, INFINITY, "a number of seconds above 0, for example 60",
-           "time that all may take"),
+         "time that all may take, roughly; default 60. What it does not reach is listed as skipped"),
     COUNT("shard", 0, "I/N", DEA_TAKES_JOURNAL, take_shard, shard, 1000000,
-          "I/N with whole numbers 1 <= I <= N <= 1000000, for example 3/10", "solve only part I of N"),
-    FLAG("resume", 0, DEA_TAKES_JOURNAL, resume, "go on where a run stopped"),
+          "I/N with whole numbers 1 <= I <= N <= 1000000, for example 3/10",
+         "solve only part I of N and write it to FILE, which deaspice merge joins with the others"),
+    FLAG("resume", 0, DEA_TAKES_JOURNAL, resume,
+         "go on where a run with --resume stopped, however it ended; what is solved is kept in FILE.journal until FILE is there"),
     NUMBER("to", "STRETCH", DEA_TAKES_CURVES, to, "1", 1, false, 100, "a stretch above 1 and below 100, for example 4",
-           "largest stretch of curves"),
-    {.name = "help", .letter = 'h', .about = "tell what the command does"},
-    {.name = "version", .letter = 'V', .about = "tell the version"},
+         "largest stretch of table and curves, default 2"),
+    {.name = "help", .letter = 'h', .about = "this text"},
+    {.name = "version", .letter = 'V', .about = "the version"},
 };
 
 enum { ENTRIES = sizeof entries / sizeof entries[0], FIRST_CODE = 256 };
@@ -322,6 +354,36 @@ const dea_option *dea_option_at(const dea_command *command, size_t index)
         }
     }
     return NULL;
+}
+
+/* What an option is and, from a column on, what it does, its words broken before the last column. */
+static void print_option(const dea_option *option)
+{
+    enum { COLUMN = 24, WIDTH = 80 };
+    char letter[8] = "    ";
+    if (option->letter) {
+        snprintf(letter, sizeof letter, "-%c, ", option->letter);
+    }
+    int at = printf("  %s--%s%s%s", letter, option->name, option->value ? " " : "", option->value ? option->value : "");
+    for (const char *word = option->about; *word;) {
+        const int length = (int)strcspn(word, " ");
+        if (at + 1 + length > WIDTH) {
+            putchar('\n');
+            at = 0;
+        }
+        at += printf("%*s%.*s", at < COLUMN ? COLUMN - at : 1, "", length, word);
+        word += length + (word[length] == ' ');
+    }
+    putchar('\n');
+}
+
+void dea_help_print(const dea_command *command)
+{
+    fputs(command->help, stdout);
+    for (size_t i = 0; dea_option_at(command, i); i++) {
+        print_option(dea_option_at(command, i));
+    }
+    printf("%s%s", command->further ? "\n" : "", command->further ? command->further : "");
 }
 
 static void complain_option(const dea_command *command, const char *given)

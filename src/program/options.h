@@ -14,7 +14,7 @@ struct dea_option {
     char letter;       /**< 0: none */
     const char *value; /**< what its value is called, FILE: a file; NULL: takes none */
     dea_word *words;   /**< values that it accepts, NULL: others too */
-    const char *about; /**< a few words */
+    const char *about; /**< what it does, for help and completion */
     unsigned group;    /**< dea_takes; 0: every command */
     bool (*take)(const dea_option *option, const char *value, dea_arguments *arguments); /**< false, with a complaint */
     size_t offset;                                                                       /**< of its place in dea_arguments */

@@ -93,7 +93,8 @@ typedef const char *dea_word(size_t index, char room[DEA_NAME_LENGTH]);
 typedef struct dea_command {
     const char *name;
     const char *summary; /**< one line */
-    const char *help;    /**< text of --help */
+    const char *help;    /**< text of --help up to the options, which follow from their table */
+    const char *further; /**< behind them, NULL: nothing */
     unsigned takes;      /**< dea_takes */
     size_t least, most;  /**< operands */
     dea_word *words;     /**< that an operand may be, NULL: none */
@@ -121,6 +122,8 @@ typedef enum dea_parsed { DEA_PARSED_FINE, DEA_PARSED_HELP, DEA_PARSED_VERSION, 
 
 /** Parses what follows the command's name (argv[0]); tells what is wrong. The caller frees with dea_arguments_free(). */
 dea_parsed dea_arguments_parse(const dea_command *command, int argc, char **argv, dea_arguments *arguments);
+/** Prints the text of --help. */
+void dea_help_print(const dea_command *command);
 /** Frees the arrays. */
 void dea_arguments_free(dea_arguments *arguments);
 /** Cores that this process may use, at least 1. */

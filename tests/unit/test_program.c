@@ -196,7 +196,7 @@ static void help_of_a_command_is_its_own_help(void **state)
     check_wrong("did you mean \"fit\"");
 }
 
-/* The options of every command as its completion knows them. */
+/* The options of every command as its completion knows them, on lines that a terminal holds. */
 static void every_option_stands_in_its_help(void **state)
 {
     static char script[TEXT_LENGTH];
@@ -212,6 +212,9 @@ static void every_option_stands_in_its_help(void **state)
         *at = '\0';
         RUN(name, "--help");
         assert_int_equal(last.status, 0);
+        for (const char *line = last.out; *line; line += strcspn(line, "\n") + (line[strcspn(line, "\n")] == '\n')) {
+            assert_true(strncmp(line, "      ", 6) != 0 || strcspn(line, "\n") <= 80);
+        }
         char *end = strchr(at + strlen(" options='") + 1, '\'');
         assert_non_null(end);
         *end = '\0';

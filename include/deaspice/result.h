@@ -183,6 +183,8 @@ DEA_API double dea_layout_index(const dea_scene *scene, double time);
 DEA_API double dea_layout_radius(const dea_scene *scene, const dea_layout *layout, size_t index);
 /** Entry of a row at a radius. */
 DEA_API double *dea_layout_entry(const dea_layout *layout, const void *point, size_t row, size_t index);
+/** Number at an offset of a row, or of anything else that columns tell of. */
+DEA_API double dea_layout_number(const void *row, size_t offset);
 /** State of a row. */
 DEA_API dea_state dea_layout_state(const dea_layout *layout, const void *row);
 /** Makes every row of a point `failed`. */
@@ -190,11 +192,11 @@ DEA_API void dea_layout_fail(const dea_scene *scene, const dea_layout *layout, v
 /** A summary without numbers. */
 DEA_API dea_summary dea_summary_failed(void);
 /** Summary of a transient's point. */
-DEA_API dea_summary *dea_layout_summary(const dea_layout *layout, void *point);
+DEA_API dea_summary *dea_layout_summary(const dea_layout *layout, const void *point);
 /** What a point of profiles is nearest to its limits by. */
-DEA_API dea_weakest *dea_layout_weakest(const dea_layout *layout, void *point);
+DEA_API dea_weakest *dea_layout_weakest(const dea_layout *layout, const void *point);
 /** Band of a frequency response's point. */
-DEA_API dea_band *dea_layout_band(const dea_layout *layout, void *point);
+DEA_API dea_band *dea_layout_band(const dea_layout *layout, const void *point);
 
 #ifdef __cplusplus
 }

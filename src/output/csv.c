@@ -87,9 +87,7 @@ static void csv_row(csv *sheet, size_t lead, const char *row, double radius, con
     char *const start = sheet->buffer + sheet->used;
     char *out = start;
     for (size_t i = 0; i < layout->column_count; i++) {
-        double value;
-        memcpy(&value, row + layout->columns[i].offset, sizeof value);
-        out += dea_number_write(out, value);
+        out += dea_number_write(out, dea_layout_number(row, layout->columns[i].offset));
         *out++ = ',';
     }
     for (size_t i = 0; entry && i <= layout->spread_count; i++) {

@@ -77,9 +77,7 @@ static void put_scalars(FILE *out, const dea_scene *scene)
     dea_key key;
     for (size_t i = 0; dea_key_at(i, &key); i++) {
         if (stands_for_its_place(scene, &key, i)) {
-            double value;
-            memcpy(&value, (const char *)scene + key.offset, sizeof value);
-            put_number(out, key.path, value);
+            put_number(out, key.path, dea_layout_number(scene, key.offset));
         }
     }
 }

@@ -207,9 +207,8 @@ static bool is_first_of_its_place(const dea_scene *scene, const dea_key *key, si
 static void put_scalar(grid *file, const dea_key *key)
 {
     char name[DEA_NAME_LENGTH];
-    double value;
+    const double value = dea_layout_number(file->scene, key->offset);
     dea_ref ref;
-    memcpy(&value, (const char *)file->scene + key->offset, sizeof value);
     if (isnan(value) || !dea_key_find(key->path, &ref)) {
         return;
     }
@@ -708,9 +707,8 @@ static void put_window(grid *file, size_t window, size_t first, const char *poin
         dea_scene placed = *file->scene;
         dea_axes_place(&placed, first + j);
         const char *samples = point + j * layout->point_size;
-        dea_summary summary;
-        memcpy(&summary, samples + layout->rows * layout->row_size, sizeof summary);
-        figures[j] = dea_measure_window(&placed, (const dea_sample *)(const void *)samples, layout->rows, &summary, window);
+        figures[j] = dea_measure_window(&placed, (const dea_sample *)(const void *)samples, layout->rows,
+                                        dea_layout_summary(layout, samples), window);
     }
     put_figures(file, file->window_figures, columns, told, figures, sizeof *figures, count);
     free(figures);
@@ -734,13 +732,12 @@ static dea_edge_answer edge_of(const grid *file, size_t run, const char *point, 
     const double none = (double)NAN;
     dea_scene scene = *file->scene;
     dea_edge_answer found[DEA_EDGES];
-    dea_summary summary;
+    const dea_summary *summary = dea_layout_summary(&file->layout, point);
     dea_axes_place(&scene, run);
     scene.models[0] = file->scene->models[run / dea_scene_point_count(file->scene)];
-    memcpy(&summary, point + file->layout.rows * file->layout.row_size, sizeof summary);
-    const bool hidden = dea_measure_lives(&scene, &summary) && !dea_measure_shows(&scene, &summary);
+    const bool hidden = dea_measure_lives(&scene, summary) && !dea_measure_shows(&scene, summary);
     const size_t count =
-        hidden ? 0 : dea_measure_edges(&scene, (const dea_sample *)(const void *)point, file->layout.rows, &summary, found);
+        hidden ? 0 : dea_measure_edges(&scene, (const dea_sample *)(const void *)point, file->layout.rows, summary, found);
     for (size_t i = 0; i < count; i++) {
         if (found[i].rising == (edge == 0)) {
             return found[i];

@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <stdint.h>
-#include <string.h>
 
 enum { TALL = 250, SMALL = 150 }; /* heights of the first panel and of others */
 
@@ -100,12 +99,8 @@ static void add_panel(const sheet *page, dea_figure *figure, const char *label, 
         mode_colour(page, mode, look.colour);
         dea_figure_curve(figure, number, look, 1.8);
         for (size_t k = 0; k < page->places; k++) {
-            double y;
-            if (page->axis == SIZE_MAX) {
-                y = *dea_layout_entry(&page->layout, point_at(page, group, 0), mode, k);
-            } else {
-                memcpy(&y, point_at(page, group, k) + mode * page->layout.row_size + offset, sizeof y);
-            }
+            const double y = page->axis == SIZE_MAX ? *dea_layout_entry(&page->layout, point_at(page, group, 0), mode, k)
+                                                    : dea_layout_number(point_at(page, group, k) + mode * page->layout.row_size, offset);
             dea_figure_point(figure, x_at(page, k), y, 0);
         }
     }
@@ -117,8 +112,7 @@ static int list(const sheet *page, dea_legend *legend)
     size_t kinds[3] = {0};
     for (size_t i = 0; i < page->layout.rows; i++) {
         dea_legend_entry *entry = dea_legend_add(legend);
-        double frequency;
-        memcpy(&frequency, point_at(page, 0, 0) + i * page->layout.row_size + offsetof(dea_mode, frequency), sizeof frequency);
+        const double frequency = dea_layout_number(point_at(page, 0, 0) + i * page->layout.row_size, offsetof(dea_mode, frequency));
         entry->dash = 1;
         mode_colour(page, i, entry->colour);
         const int used = snprintf(entry->label, sizeof entry->label, "mode %zu", i + 1);

@@ -6,7 +6,6 @@
 
 #include <math.h>
 #include <stdint.h>
-#include <string.h>
 
 enum { RADIAL = 1, HOOP = 2, TALL = 250, SMALL = 150 /* heights of the first panel and of others */ };
 
@@ -45,13 +44,11 @@ static void add_curve(const dea_plot *plot, dea_figure *figure, size_t run, size
     dea_plot_gradient(run_count(plot) > 1 ? last_colour * (double)run / (double)(run_count(plot) - 1) : 0.25, look.colour);
     dea_figure_curve(figure, figure->count - 1, look, 1.8);
     for (size_t i = 0; i < layout.rows; i++) {
-        double y;
         const double x = dea_layout_place(plot->scene, i);
-        memcpy(&y, plot->kept + run * layout.point_size + i * layout.row_size + offset, sizeof y);
         if (i > 0 && dea_layout_place(plot->scene, i - 1) <= edge && x > edge && jumps) {
             dea_figure_point(figure, factor * x, (double)NAN, 0);
         }
-        dea_figure_point(figure, factor * x, y, 0);
+        dea_figure_point(figure, factor * x, dea_layout_number(plot->kept + run * layout.point_size + i * layout.row_size, offset), 0);
     }
 }
 
@@ -61,8 +58,7 @@ static dea_scale scale_of(const dea_plot *plot, size_t offset, const char *unit)
     const dea_layout layout = dea_layout_of(plot->scene);
     double largest = 0.0;
     for (size_t i = 0; i < run_count(plot) * layout.rows; i++) {
-        double y;
-        memcpy(&y, plot->kept + i / layout.rows * layout.point_size + i % layout.rows * layout.row_size + offset, sizeof y);
+        const double y = dea_layout_number(plot->kept + i / layout.rows * layout.point_size + i % layout.rows * layout.row_size, offset);
         largest = isfinite(y) ? fmax(largest, fabs(y)) : largest;
     }
     return dea_scale_choose(largest, unit);

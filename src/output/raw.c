@@ -207,13 +207,6 @@ static void header_write(raw *out, size_t points)
     raw_print(out, "Binary:\n");
 }
 
-static double number_at(const char *row, size_t offset)
-{
-    double value;
-    memcpy(&value, row + offset, sizeof value);
-    return value;
-}
-
 /* Appends row @p index of a run. */
 static void row_write(raw *out, size_t index, const char *row)
 {
@@ -226,10 +219,10 @@ static void row_write(raw *out, size_t index, const char *row)
         } else if (vector->kind == TRACE_STATE) {
             value[0] = (double)dea_layout_state(&out->layout, row);
         } else if (vector->kind == TRACE_COLUMN) {
-            value[0] = number_at(row, vector->offset);
+            value[0] = dea_layout_number(row, vector->offset);
         } else {
-            const double magnitude = number_at(row, vector->offset);
-            const double phase = number_at(row, vector->phase) * (3.14159265358979323846 / 180.0);
+            const double magnitude = dea_layout_number(row, vector->offset);
+            const double phase = dea_layout_number(row, vector->phase) * (3.14159265358979323846 / 180.0);
             value[0] = magnitude * cos(phase);
             value[1] = magnitude * sin(phase);
         }

@@ -13,9 +13,7 @@ static const double degree = 0.017453292519943295; /* [rad] */
 
 static double value_at(const dea_runs *runs, const void *point, size_t row, size_t column)
 {
-    double value;
-    memcpy(&value, (const char *)point + row * runs->layout.row_size + runs->layout.columns[column].offset, sizeof value);
-    return value;
+    return dea_layout_number((const char *)point + row * runs->layout.row_size, runs->layout.columns[column].offset);
 }
 
 /* Number of the column at an offset, SIZE_MAX where the layout has none. */

@@ -22,16 +22,14 @@ dea_answer dea_answer_begin(void)
     return answer;
 }
 
-/* NAN where the study has no such column. */
-static double column_of(const dea_layout *layout, const void *row, const char *name)
+double dea_answer_column(const dea_layout *layout, const void *row, const char *name)
 {
-    double value = (double)NAN;
     for (size_t i = 0; i < layout->column_count; i++) {
         if (strcmp(layout->columns[i].name, name) == 0) {
-            memcpy(&value, (const char *)row + layout->columns[i].offset, sizeof value);
+            return dea_layout_number(row, layout->columns[i].offset);
         }
     }
-    return value;
+    return (double)NAN;
 }
 
 /* Keeps the larger one; of two rows one that is `ok`, where @p sound is asked for. */
@@ -53,15 +51,15 @@ static void take_row(dea_answer *answer, const dea_layout *layout, dea_spot here
         here.value = 0.0;
         answer->firsts[here.state] = here;
     }
-    here.value = column_of(layout, row, "strain");
+    here.value = dea_answer_column(layout, row, "strain");
     keep_larger(&answer->strain, here, true);
-    here.value = column_of(layout, row, "displacement_m");
+    here.value = dea_answer_column(layout, row, "displacement_m");
     keep_larger(&answer->displacement, here, true);
-    here.value = column_of(layout, row, "field_V_per_m");
+    here.value = dea_answer_column(layout, row, "field_V_per_m");
     keep_larger(&answer->field, here, false);
-    here.value = column_of(layout, row, "charge_C");
+    here.value = dea_answer_column(layout, row, "charge_C");
     if (keep_larger(&answer->charge, here, false)) {
-        answer->capacitance = column_of(layout, row, "capacitance_F");
+        answer->capacitance = dea_answer_column(layout, row, "capacitance_F");
     }
 }
 
@@ -79,16 +77,14 @@ static int digits_of(double error)
     return error < 5e-5 ? 4 : error < 5e-4 ? 3 : 2;
 }
 
-/* @p before, "coverage = 0.5, voltage = 4.5 kV"; what is to stand before a further number, @p before itself where there is no
- * axis. */
-static const char *print_axes(const dea_scene *scene, const dea_spot *spot, const char *before)
+const char *dea_answer_place(const dea_scene *scene, size_t number, const char *before)
 {
     for (size_t i = 0; i < scene->axis_count; i++) {
         const dea_axis *axis = &scene->axes[i];
         const char *dot = strrchr(axis->key, '.');
         const char *whose = strncmp(axis->key, "antagonist.", 11) == 0 ? "antagonist " : "";
         fprintf(stderr, "%s%s%s = %s", before, whose, dot ? dot + 1 : axis->key,
-                DEA_QUANTITY(axis->values[dea_axis_index(scene, i, spot->number)], axis->unit, 6));
+                DEA_QUANTITY(axis->values[dea_axis_index(scene, i, number)], axis->unit, 6));
         before = ", ";
     }
     return before;
@@ -97,7 +93,7 @@ static const char *print_axes(const dea_scene *scene, const dea_spot *spot, cons
 /* " at coverage = 0.5, voltage = 4.5 kV, t = 2 s", nothing where there is one row only. */
 static void print_place(const dea_scene *scene, const dea_spot *spot)
 {
-    const char *before = print_axes(scene, spot, " at ");
+    const char *before = dea_answer_place(scene, spot->number, " at ");
     const char *sign = dea_study_of(scene)->sign;
     if (sign) {
         fprintf(stderr, "%s%s = %s", before, sign,
@@ -200,7 +196,7 @@ static void print_rest(const dea_answer *answer, const dea_scene *scene, const d
     const dea_swing swing = dea_swing_free(&here, model);
     fputs("  ", stderr);
     if (scene->axis_count > 0 && isnan(answer->displacement.value)) { /* no line before has named a place */
-        print_axes(scene, &answer->displacement, "at ");
+        dea_answer_place(scene, answer->displacement.number, "at ");
         fputs(", ", stderr);
     } else if (scene->axis_count > 0) {
         fputs("there, ", stderr);

@@ -31,6 +31,11 @@ typedef struct dea_answer {
 dea_answer dea_answer_begin(void);
 /** Takes the rows of point number @p number, counted within its model. */
 void dea_answer_take(dea_answer *answer, const dea_layout *layout, size_t number, const void *point);
+/** Number of the column of that name in a row, NAN where the study has no such column. */
+double dea_answer_column(const dea_layout *layout, const void *row, const char *name);
+/** Prints @p before, "coverage = 0.5, voltage = 4.5 kV"; what is to stand before a further number, @p before itself where there is no
+ * axis. */
+const char *dea_answer_place(const dea_scene *scene, size_t number, const char *before);
 /** Prints what model number @p model has shown on standard error, of a frequency response its electrical side only, and with
  * @p truth how far the model is from the membrane. */
 void dea_answer_print(const dea_answer *answer, const dea_scene *scene, size_t model, bool truth);

@@ -81,9 +81,7 @@ static void print_averages(const dea_findings *findings, size_t number, const de
             fputc(',', findings->averages);
         }
         for (size_t k = 0; k < told; k++) {
-            double value;
-            memcpy(&value, (const char *)&f + columns[k].offset, sizeof value);
-            print_number(findings->averages, value);
+            print_number(findings->averages, dea_layout_number(&f, columns[k].offset));
             fputc(k + 1 < told ? ',' : '\n', findings->averages);
         }
     }
@@ -113,7 +111,7 @@ static void take_transient(dea_findings *findings, size_t number, const void *po
 {
     const dea_layout *layout = &findings->layout;
     const dea_sample *samples = point;
-    memcpy(&findings->summary, (const char *)point + layout->rows * layout->row_size, sizeof findings->summary);
+    findings->summary = *dea_layout_summary(layout, point);
     findings->error = fmax(findings->error, findings->summary.error);
     findings->velocity_error = fmax(findings->velocity_error, findings->summary.velocity_error);
     findings->current_error = fmax(findings->current_error, findings->summary.current_error);
@@ -137,19 +135,16 @@ static void take_transient(dea_findings *findings, size_t number, const void *po
     print_averages(findings, number, &placed, samples);
 }
 
-static void take_resonance(dea_findings *findings, const void *frequency)
+static void take_resonance(dea_findings *findings, double resonance)
 {
-    double resonance;
-    memcpy(&resonance, frequency, sizeof resonance);
     findings->resonance[0] = fmin(findings->resonance[0], resonance);
     findings->resonance[1] = fmax(findings->resonance[1], resonance);
 }
 
 static void take_response(dea_findings *findings, const void *point)
 {
-    const dea_layout *layout = &findings->layout;
-    memcpy(&findings->band, (const char *)point + layout->rows * layout->row_size, sizeof findings->band);
-    take_resonance(findings, &findings->band.resonance);
+    findings->band = *dea_layout_band(&findings->layout, point);
+    take_resonance(findings, findings->band.resonance);
 }
 
 void dea_findings_take(dea_findings *findings, size_t first, const void *points, size_t count)
@@ -169,9 +164,9 @@ void dea_findings_take(dea_findings *findings, size_t first, const void *points,
         } else if (study->phasors) {
             take_response(findings, point);
         } else if (study->resonance > 0) {
-            take_resonance(findings, (const char *)point + study->resonance);
+            take_resonance(findings, dea_layout_number(point, study->resonance));
         } else if (study->stations) {
-            memcpy(&findings->weakest, point + layout->rows * layout->row_size, sizeof findings->weakest);
+            findings->weakest = *dea_layout_weakest(layout, point);
         }
     }
     findings->points += count;

@@ -42,9 +42,7 @@ static void choose_columns(dea_comparison *comparison)
 
 static double value_of(const dea_comparison *comparison, const char *row, size_t number)
 {
-    double value;
-    memcpy(&value, row + comparison->layout.columns[comparison->columns[number].column].offset, sizeof value);
-    return value;
+    return dea_layout_number(row, comparison->layout.columns[comparison->columns[number].column].offset);
 }
 
 /* In frequency: what 1 V would do to the film at rest. Without a bias there is no response at all, whatever its rounding. */
@@ -242,18 +240,16 @@ static double swing_gap(const dea_summary *a, const dea_summary *b)
 static void compare_summaries(dea_comparison *comparison, const char *point, const char *reference, double peak)
 {
     const dea_layout *layout = &comparison->layout;
-    dea_summary a, b;
-    memcpy(&a, point + layout->rows * layout->row_size, sizeof a);
-    memcpy(&b, reference + layout->rows * layout->row_size, sizeof b);
+    const dea_summary *a = dea_layout_summary(layout, point), *b = dea_layout_summary(layout, reference);
     if (is_failed(comparison, point + (layout->rows - 1) * layout->row_size) ||
         is_failed(comparison, reference + (layout->rows - 1) * layout->row_size)) {
         return;
     }
     for (size_t i = 0; i < comparison->scene->transient.average_count; i++) {
-        const double found = a.averages[i].displacement, wanted = b.averages[i].displacement;
+        const double found = a->averages[i].displacement, wanted = b->averages[i].displacement;
         comparison->mean = fmax(comparison->mean, difference(DEA_OVER_PEAK, found, wanted, 0.0, fmax(peak, fabs(wanted))));
     }
-    comparison->swing = fmax(comparison->swing, swing_gap(&a, &b));
+    comparison->swing = fmax(comparison->swing, swing_gap(a, b));
 }
 
 static dea_status take_point(dea_comparison *comparison, size_t number, const char *point)
@@ -264,10 +260,9 @@ static dea_status take_point(dea_comparison *comparison, size_t number, const ch
         comparison->failed += is_failed(comparison, point + i * layout->row_size) ? 1 : 0;
     }
     if (dea_study_of(comparison->scene)->timed) {
-        dea_summary summary;
-        memcpy(&summary, point + layout->rows * layout->row_size, sizeof summary);
-        comparison->error = fmax(comparison->error, summary.error);
-        comparison->residual = fmax(comparison->residual, summary.residual);
+        const dea_summary *summary = dea_layout_summary(layout, point);
+        comparison->error = fmax(comparison->error, summary->error);
+        comparison->residual = fmax(comparison->residual, summary->residual);
     }
     double peaks[DEA_COMPARED_COLUMNS];
     if (comparison->filling) {

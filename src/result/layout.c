@@ -59,6 +59,13 @@ void dea_layout_spread(dea_layout *layout, const dea_column *columns, size_t cou
     layout->spread_points = points;
 }
 
+double dea_layout_number(const void *row, size_t offset)
+{
+    double value;
+    memcpy(&value, (const char *)row + offset, sizeof value);
+    return value;
+}
+
 dea_state dea_layout_state(const dea_layout *layout, const void *row)
 {
     dea_state state;
@@ -66,19 +73,19 @@ dea_state dea_layout_state(const dea_layout *layout, const void *row)
     return state;
 }
 
-dea_summary *dea_layout_summary(const dea_layout *layout, void *point)
+dea_summary *dea_layout_summary(const dea_layout *layout, const void *point)
 {
-    return (dea_summary *)(void *)((char *)point + layout->rows * layout->row_size);
+    return (dea_summary *)(void *)((const char *)point + layout->rows * layout->row_size);
 }
 
-dea_weakest *dea_layout_weakest(const dea_layout *layout, void *point)
+dea_weakest *dea_layout_weakest(const dea_layout *layout, const void *point)
 {
-    return (dea_weakest *)(void *)((char *)point + layout->rows * layout->row_size);
+    return (dea_weakest *)(void *)((const char *)point + layout->rows * layout->row_size);
 }
 
-dea_band *dea_layout_band(const dea_layout *layout, void *point)
+dea_band *dea_layout_band(const dea_layout *layout, const void *point)
 {
-    return (dea_band *)(void *)((char *)point + layout->rows * layout->row_size);
+    return (dea_band *)(void *)((const char *)point + layout->rows * layout->row_size);
 }
 
 dea_summary dea_summary_failed(void)

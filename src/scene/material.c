@@ -229,20 +229,19 @@ static dea_status file_read(dea_reader *reader, const dea_ref *ref, const dea_no
     return status;
 }
 
+static const char *material_name(size_t index)
+{
+    return index < dea_material_count() ? dea_material_builtin(index)->name : NULL;
+}
+
 static dea_status fail_name(dea_reader *reader, const dea_ref *ref, const dea_node *node)
 {
     char shown[DEA_TEXT_ROOM];
-    char names[DEA_KEY_ROOM] = "";
-    char meant[DEA_KEY_ROOM] = "";
-    for (size_t i = 0, used = 0; i < dea_material_count() && used < sizeof names; i++) {
-        const char *name = dea_material_builtin(i)->name;
-        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", name);
-        if (dea_text_likely(name, dea_text_distance(name, node->text)) && !meant[0]) {
-            snprintf(meant, sizeof meant, "did you mean %s? ", name);
-        }
-    }
+    char names[DEA_KEY_ROOM];
+    char meant[DEA_KEY_ROOM];
+    dea_reader_names(node, material_name, names, meant);
     return dea_place_fail(&node->place, reader->error, ref->path,
-                          "unknown material (%s); %saccepted: %s, a file name with \".\" or \"/\", or a mapping",
+                          "unknown material (%s); %saccepted: %sa file name with \".\" or \"/\", or a mapping",
                           dea_reader_show(node, shown), meant, names);
 }
 

@@ -1,5 +1,6 @@
 /* Reading of keys that need no more than their own value. */
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,6 +25,20 @@ dea_status dea_reader_refuse(dea_reader *reader, const dea_ref *ref, const dea_n
     dea_reader_show(node, shown);
     return dea_place_fail(&node->place, reader->error, ref->path, "%s%s%s%s; accepted: %s", what, shown[0] ? " (" : "", shown,
                           shown[0] ? ")" : "", ref->key.accepted);
+}
+
+void dea_reader_names(const dea_node *node, dea_names *name, char names[DEA_KEY_ROOM], char meant[DEA_KEY_ROOM])
+{
+    size_t least = SIZE_MAX;
+    names[0] = meant[0] = '\0';
+    for (size_t i = 0, used = 0; name(i) && used < DEA_KEY_ROOM; i++) {
+        const size_t distance = node->kind == DEA_NODE_SCALAR ? dea_text_distance(name(i), node->text) : 0;
+        used += (size_t)snprintf(names + used, DEA_KEY_ROOM - used, "%s, ", name(i));
+        if (distance > 0 && distance < least && dea_text_likely(name(i), distance)) {
+            least = distance;
+            snprintf(meant, DEA_KEY_ROOM, "did you mean %s? ", name(i));
+        }
+    }
 }
 
 dea_status dea_reader_memory(dea_reader *reader)
@@ -322,26 +337,27 @@ static void model_split(const dea_node *node, char out[DEA_KEY_ROOM])
     out[count > 1 ? used : 0] = '\0';
 }
 
+static const char *model_name(size_t index)
+{
+    return index < dea_model_count() ? dea_model_at(index)->name : NULL;
+}
+
 static dea_status model_fail(dea_reader *reader, const dea_node *node, const char *what, ability wanted)
 {
     char shown[DEA_TEXT_ROOM];
     char names[DEA_KEY_ROOM];
     char meant[DEA_KEY_ROOM] = "";
-    model_list(wanted, names, sizeof names);
     const bool any = !wanted.lens && !wanted.study && !wanted.edge;
-    if (node->kind == DEA_NODE_SCALAR && any) {
+    if (any) {
+        dea_reader_names(node, model_name, names, meant);
+    }
+    model_list(wanted, names, sizeof names);
+    if (node->kind == DEA_NODE_SCALAR && any && !meant[0]) {
         char several[DEA_KEY_ROOM];
         model_split(node, several);
         if (several[0]) {
             const bool option = node->place.origin->setting;
             snprintf(meant, sizeof meant, "several are written %s%.400s%s; ", option ? "" : "[", several, option ? "" : "]");
-        }
-    }
-    for (size_t i = 0; node->kind == DEA_NODE_SCALAR && any && i < dea_model_count(); i++) {
-        const char *name = dea_model_at(i)->name;
-        const size_t distance = dea_text_distance(name, node->text);
-        if (distance > 0 && dea_text_likely(name, distance)) {
-            snprintf(meant, sizeof meant, "did you mean %s? ", name);
         }
     }
     return dea_place_fail(&node->place, reader->error, "model", "%s (%s); %saccepted: %s", what, dea_reader_show(node, shown),
@@ -431,20 +447,17 @@ dea_status dea_read_model(dea_reader *reader, const dea_ref *ref, const dea_node
     return DEA_OK;
 }
 
+static const char *engine_name(size_t index)
+{
+    return index < dea_engine_count() ? dea_engine_at(index)->name : NULL;
+}
+
 static dea_status engine_fail(dea_reader *reader, const dea_node *node, const char *what)
 {
     char shown[DEA_TEXT_ROOM];
-    char names[DEA_KEY_ROOM] = "";
-    char meant[DEA_KEY_ROOM] = "";
-    size_t used = 0;
-    for (size_t i = 0; i < dea_engine_count() && used < sizeof names; i++) {
-        const char *name = dea_engine_at(i)->name;
-        const size_t distance = node->kind == DEA_NODE_SCALAR ? dea_text_distance(name, node->text) : 0;
-        used += (size_t)snprintf(names + used, sizeof names - used, "%s, ", name);
-        if (distance > 0 && dea_text_likely(name, distance)) {
-            snprintf(meant, sizeof meant, "did you mean %s? ", name);
-        }
-    }
+    char names[DEA_KEY_ROOM];
+    char meant[DEA_KEY_ROOM];
+    dea_reader_names(node, engine_name, names, meant);
     return dea_place_fail(&node->place, reader->error, "engine", "%s (%s); %saccepted: %s%s", what, dea_reader_show(node, shown),
                           meant, names, automatic);
 }

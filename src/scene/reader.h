@@ -54,6 +54,11 @@ dea_given *dea_reader_given(dea_reader *reader, size_t offset);
 /* Text of a scalar fit for a message. */
 char *dea_reader_show(const dea_node *node, char out[DEA_TEXT_ROOM]);
 
+/* A table of names: that of row @p index, NULL past the end. */
+typedef const char *dea_names(size_t index);
+/* Lists the names, each with ", " behind it, and says which of them a scalar is most likely a slip of ("did you mean gent? "; "": none). */
+void dea_reader_names(const dea_node *node, dea_names *name, char names[DEA_KEY_ROOM], char meant[DEA_KEY_ROOM]);
+
 /* Reads every key below a mapping whose path is @p path ("" for the scene itself). */
 dea_status dea_reader_children(dea_reader *reader, const char *path, const dea_node *node);
 /* Number of a scalar, checked against unit, range and kind of actuator; stored nowhere. */

@@ -97,31 +97,49 @@ static dea_status reader_run(dea_reader *reader, const char *text, size_t length
     return status ? status : dea_reader_finish(reader);
 }
 
+/* What one reading holds. */
+typedef struct session {
+    dea_reader *reader;
+    dea_units *units;
+} session;
+
+/* Begins a reading of a scene, which it clears; the caller ends it also after a failure. */
+static dea_status session_begin(session *s, dea_scene *scene, const char *what, dea_error *error)
+{
+    *s = (session){calloc(1, sizeof *s->reader), dea_units_open()};
+    if (scene_clear(scene) != DEA_OK || !s->reader || !s->units) {
+        return dea_fail(error, DEA_ERROR_MEMORY, "out of memory while reading the %s", what);
+    }
+    s->reader->scene = scene;
+    s->reader->error = error;
+    s->reader->units = s->units;
+    return DEA_OK;
+}
+
+static void session_end(session *s)
+{
+    if (s->reader) {
+        dea_arena_free(&s->reader->arena);
+    }
+    free(s->reader);
+    dea_units_close(s->units);
+}
+
 static dea_status scene_parse(const char *text, size_t length, const char *name, const char *folder, const dea_reading *how,
                               dea_scene *scene, dea_error *error)
 {
     char shown[10 * 256 + 8];
     const dea_origin origin = {
         .name = dea_text_clip(name, 256, shown, sizeof shown), .folder = folder, .text = text, .length = length};
-    dea_reader *reader = calloc(1, sizeof *reader);
-    dea_units *units = dea_units_open();
-    dea_status status = scene_clear(scene);
-    if (!reader || !units || status) {
-        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while reading the scene");
-    } else {
-        reader->scene = scene;
-        reader->error = error;
-        reader->units = units;
-        reader->model = how->model;
-        reader->engine = how->engine;
-        reader->no_files = how->no_files;
-        status = reader_run(reader, text, length, &origin, how->settings, how->setting_count);
+    session s;
+    dea_status status = session_begin(&s, scene, "scene", error);
+    if (status == DEA_OK) {
+        s.reader->model = how->model;
+        s.reader->engine = how->engine;
+        s.reader->no_files = how->no_files;
+        status = reader_run(s.reader, text, length, &origin, how->settings, how->setting_count);
     }
-    if (reader) {
-        dea_arena_free(&reader->arena);
-    }
-    free(reader);
-    dea_units_close(units);
+    session_end(&s);
     if (status) {
         dea_scene_free(scene);
     }
@@ -200,26 +218,19 @@ dea_status dea_material_read(const char *path, dea_material *material, dea_error
     dea_files files = {0};
     dea_scene scene = {.files = &files};
     const dea_origin origin = {.name = dea_text_clip(path, 256, shown, sizeof shown), .folder = "", .setting = true};
-    dea_reader *reader = calloc(1, sizeof *reader);
-    dea_units *units = dea_units_open();
-    dea_status status = scene_clear(&scene);
-    if (!reader || !units || status || asprintf(&named, "%s%s", strchr(path, '/') ? "" : "./", path) < 0) {
+    session s;
+    dea_status status = session_begin(&s, &scene, "material", error);
+    if (status == DEA_OK && asprintf(&named, "%s%s", strchr(path, '/') ? "" : "./", path) < 0) {
         named = NULL;
-        status = dea_fail(error, DEA_ERROR_MEMORY, "out of memory while reading the material");
-    } else {
-        reader->scene = &scene;
-        reader->error = error;
-        reader->units = units;
-        status = material_run(reader, named, &origin);
+        status = dea_reader_memory(s.reader);
+    }
+    if (status == DEA_OK) {
+        status = material_run(s.reader, named, &origin);
         *material = scene.material;
     }
-    if (reader) {
-        dea_arena_free(&reader->arena);
-    }
-    free(reader);
+    session_end(&s);
     free(named);
     free(scene.title);
-    dea_units_close(units);
     dea_files_free(&files);
     return status;
 }

@@ -313,7 +313,8 @@ static double capacitance(const dea_still *still, const double *u)
     return dea_point_capacitance(point) + point->film.permittivity * sum * square * square / (point->film_thickness * point->film_thickness);
 }
 
-void dea_still_fill(const dea_still *still, const double *u, dea_row *row)
+/* Fills the row; returns the largest loss of tension over the film [Pa]. */
+static double fill(const dea_still *still, const double *u, dea_row *row)
 {
     const dea_point *point = still->point;
     const dea_film *film = &point->film;
@@ -339,6 +340,12 @@ void dea_still_fill(const dea_still *still, const double *u, dea_row *row)
                              .stretch = point->kind == DEA_DOT ? area[0] : dea_rings_largest(rings, false, area, NULL),
                              .capacitance = capacitance(still, u),
                              .taut = film->tension > slack}); /* the disc is uniform */
+    return slack;
+}
+
+void dea_still_fill(const dea_still *still, const double *u, dea_row *row)
+{
+    (void)fill(still, u, row);
 }
 
 static double relative(double a, double b)
@@ -356,10 +363,10 @@ double dea_still_apart(const dea_still *coarse, const double *u, const dea_still
     for (size_t n = 0; n < fine->rings.node_count; n++) {
         better[n] += v[n];
     }
-    dea_still_fill(coarse, u, row);
-    dea_still_fill(fine, better, &other);
-    return fmax(fmax(relative(row->strain, other.strain), relative(row->force, other.force)),
-                fmax(relative(row->field, other.field), relative(row->capacitance, other.capacitance)));
+    const double lost = fill(coarse, u, row), finer = fill(fine, better, &other);
+    const double worst = fmax(fmax(relative(row->strain, other.strain), relative(row->force, other.force)),
+                              fmax(relative(row->field, other.field), relative(row->capacitance, other.capacitance)));
+    return row->state == other.state ? worst : fmax(worst, relative(lost, finer)); /* of two states the stress must tell */
 }
 
 /* A row may be off by several times what the strain is: the mesh is chosen by the strain, and by this share of the row. */

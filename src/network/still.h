@@ -19,7 +19,7 @@ void dea_still_open(const dea_point *point, dea_rings_mesh mesh, dea_still *stil
 bool dea_still_step(const dea_still *still, double share, const double *u, double *step);
 
 /* Fills the row of a mesh at u; returns how far it is, relative, from that of a finer mesh behind Newton's step from @p v, the same
- * place on it; inf where that has no step. */
+ * place on it, with the stress that tells slack where their states differ; inf where that has no step. */
 double dea_still_apart(const dea_still *coarse, const double *u, const dea_still *fine, const double *v, dea_row *row);
 /* Follows the equilibrium from rest as the load grows; on DEA_STATE_OK @p u holds it under the full load, good to rounding.
  * DEA_STATE_PULL_IN: it folds, or the film ends, before that. */

@@ -444,15 +444,27 @@ static dea_state verdict(const runner *r)
 /* How near to its end a film is still asked for its force, relative: with an exponent of two a lens has stopped 1e-8 before the centre. */
 static const double nearest = 1e-12;
 
-/* True where the film turns back before the frame or the centre that @p n lies behind: the stress of what gets narrow there grows
- * beyond all bounds, against the motion unless the material has lost its stiffness. */
+/* What moves the film where it stands still [N]; not finite past the end of its material. */
+static double push_at(dea_dynamics *d, double u, double voltage)
+{
+    const dea_edge e = dea_dynamics_edge(d, u);
+    return e.push * voltage * voltage - dea_edge_held(d, &e, NULL);
+}
+
+/* True where the film turns back before the frame or the centre that @p n lies behind, or the end of its material before these: the
+ * stress of what gets narrow or straight there grows beyond all bounds, against the motion unless the material has lost its stiffness. */
 static bool turns_back(const runner *r, const node *n)
 {
     dea_dynamics *d = r->route->dynamics;
-    const double end = n->moment.u > 0.0 ? d->point.frame_radius - d->radius : -d->radius;
-    const dea_edge e = dea_dynamics_edge(d, (1.0 - nearest) * end);
-    const double force = e.push * n->moment.voltage * n->moment.voltage - dea_edge_held(d, &e, NULL);
-    return !d->linear && isfinite(n->moment.u) && force * end < 0.0;
+    const double voltage = n->moment.voltage;
+    double low = r->last.moment.u, high = (1.0 - nearest) * (n->moment.u > 0.0 ? d->point.frame_radius - d->radius : -d->radius);
+    double force = push_at(d, high, voltage);
+    while (!isfinite(force) && fabs(high - low) > nearest * fabs(high)) {
+        const double middle = 0.5 * (low + high);
+        *(isfinite(push_at(d, middle, voltage)) ? &low : &high) = middle;
+    }
+    force = isfinite(force) ? force : push_at(d, low, voltage);
+    return !d->linear && isfinite(n->moment.u) && force * high < 0.0;
 }
 
 /* Mass or damper carry the film out of its frame: pull_in. Where it would turn back the steps are too long. */

@@ -12,7 +12,7 @@ enum {
     RIGHT = 86,   /* behind a panel with a second axis */
     CLOSE = 24,   /* behind one without */
     GAP = 18,     /* between panels */
-    LABELS = 58,  /* below the last panel of a column */
+    LABELS = 64,  /* below the last panel of a column */
     LEAST = 24,   /* height of a panel that can be read */
     HALVES = 620, /* width that two columns need */
     DOT = 7       /* symbol that is drawn small */

@@ -100,7 +100,7 @@ static void compose_transient(sheet *page, bool logarithmic)
         bool zero, peaks;
     } further[] = {{offsetof(dea_sample, voltage), "U [%s]", "V", true, false},
                    {offsetof(dea_sample, current), "i [%s]", "A", true, true},
-                   {offsetof(dea_sample, film_voltage), "U_f [%s]", "V", true, false},
+                   {offsetof(dea_sample, film_voltage), "film U [%s]", "V", true, false},
                    {offsetof(dea_sample, focal_length), "f [%s]", "m", false, false}};
     const dea_scene *scene = page->plot->scene;
     compose_strain(page);

@@ -13,7 +13,7 @@ enum {
     RIGHT = 150, /* behind it: its colours */
     NATURAL = 170, /* height of a map, where no size is wanted */
     GAP = 18,    /* between two */
-    LABELS = 58, /* below the last */
+    LABELS = 64, /* below the last */
     LEAST = 50,  /* height of a map that can be read */
     COLUMNS = 400, /* most times and radii that are drawn */
     ROWS = 240

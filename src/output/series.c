@@ -127,6 +127,7 @@ dea_look dea_series_look(const dea_series *series, size_t model, size_t group)
     dea_look look = dea_model_look(series->scene->models[model]);
     look.symbol = mark_count(series) > 1 ? symbols[group_mark(series, group) % SYMBOLS] : 0;
     look.scaled = series->bar != SIZE_MAX;
+    look.dash = series->scene->model_count > 1 ? look.dash : 1; /* dots would hide a fast swing for nothing */
     if (look.scaled) {
         look.value = series->scene->axes[series->bar].values[group_index(series, group, series->bar)] * series->scale.factor;
     } else {

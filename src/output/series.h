@@ -1,5 +1,5 @@
 /* The curves of a picture: a group for each combination of values of the axes that do not lie along x, and in it a curve for each
- * model. A model has its colour and its dash in every picture. A group has a shade of that colour and a mark, so that curves are
+ * model. A model has its colour in every picture, and beside others its dash. A group has a shade of that colour and a mark, so that curves are
  * told apart in grey too; more groups than can be told so have the colour of a scale, and their models the dash alone. */
 #ifndef DEASPICE_OUTPUT_SERIES_H
 #define DEASPICE_OUTPUT_SERIES_H
@@ -43,7 +43,7 @@ typedef struct dea_look {
 dea_series dea_series_of(const dea_scene *scene, size_t along, size_t groups);
 /* Look of a curve. */
 dea_look dea_series_look(const dea_series *series, size_t model, size_t group);
-/* Colour and dash of a model in every picture. */
+/* Colour of a model in every picture, and its dash beside others. */
 dea_look dea_model_look(const dea_model *model);
 /* Writes "linecolor ..." of a look. */
 void dea_look_colour(FILE *script, const dea_look *look);

@@ -7,6 +7,9 @@
 enum { PLACES = 5 };
 static const double near = 0.8;
 
+/* A current whose places differ by no more than such a share has no top worth finding: that of a source at its limit. */
+static const double flat = 1e-9;
+
 /* Golden section: share of an interval that stays, and rounds that leave 1e-8 of it, where a smooth top no longer changes. */
 static const double golden = 0.61803398874989484820;
 enum { ROUNDS = 40 };
@@ -47,15 +50,19 @@ void dea_peak_search(dea_peak *peak, double from, double to, dea_current_at *at,
     if (fmax(sizes[0], sizes[PLACES - 1]) < near * peak->current) {
         return;
     }
-    int largest = 0;
+    int largest = 0, least = 0;
     for (int i = 1; i < PLACES; i++) {
         if (i < PLACES - 1) {
             times[i] = from + (to - from) * i / (PLACES - 1);
             sizes[i] = fabs(at(user, times[i]));
         }
         largest = sizes[i] > sizes[largest] ? i : largest;
+        least = sizes[i] < sizes[least] ? i : least;
     }
     see(peak, sizes[largest], times[largest]);
+    if (sizes[largest] - sizes[least] <= flat * sizes[largest]) {
+        return;
+    }
     if (largest > 0 && largest < PLACES - 1) {
         close_in(peak, times[largest - 1], times[largest + 1], at, user);
     } else { /* the top may lie next to an end */

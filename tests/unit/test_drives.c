@@ -1,4 +1,5 @@
 /* Sources, samples and figures of motion against closed forms. */
+#include "network/peak.h"
 #include "scenes.h"
 
 #include <complex.h>
@@ -183,6 +184,33 @@ static void a_source_at_its_limit_charges_a_stiff_film_evenly(void **state)
     }
 }
 
+typedef struct looked {
+    double slope, bend;
+    size_t times;
+} looked;
+
+static double look(void *user, double time)
+{
+    looked *of = user;
+    of->times++;
+    return 1.0 + of->slope * time - of->bend * (time - 0.3) * (time - 0.3);
+}
+
+/* A source at its limit would have each of its steps searched for a top; a current that has one must be. */
+static void a_constant_current_is_not_searched_for_its_top(void **state)
+{
+    (void)state;
+    looked held = {.times = 0}, bent = {.bend = 1e-6}, rising = {.slope = 1e-6};
+    dea_peak peak = {0};
+    dea_peak_search(&peak, 0.0, 1.0, look, &held);
+    assert_true(held.times <= 5 && peak.current == 1.0);
+    dea_peak_search(&peak, 0.0, 1.0, look, &bent);
+    assert_true(peak.current == 1.0 && bent.times > 5);
+    peak = (dea_peak){0};
+    dea_peak_search(&peak, 0.0, 1.0, look, &rising);
+    assert_true(fabs(peak.current - 1.0 - 1e-6) < 1e-12 && fabs(peak.time - 1.0) < 1e-6);
+}
+
 /* Charged and discharged at the limit, with mass and a film that gives way; a sine that the limit clips. */
 static void engines_agree_on_limited_films(void **state)
 {
@@ -321,6 +349,7 @@ int main(void)
         cmocka_unit_test(capacitance_over_time_is_that_of_the_stretched_disc),
         cmocka_unit_test(a_film_stretched_past_its_chains_names_them),
         cmocka_unit_test(a_source_at_its_limit_charges_a_stiff_film_evenly),
+        cmocka_unit_test(a_constant_current_is_not_searched_for_its_top),
         cmocka_unit_test(engines_agree_on_limited_films),
         cmocka_unit_test(loops_lie_over_the_voltage),
         cmocka_unit_test(windows_tell_extremes_and_harmonics_of_a_sine),

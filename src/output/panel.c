@@ -6,13 +6,6 @@
 
 enum {
     STOPS = 9,          /* of a palette */
-    NATURAL = 300,      /* height of a panel [units] */
-    LEFT = 82,          /* of a panel: its labels */
-    NARROW = 78,        /* the same where there is little room */
-    RIGHT = 24,         /* behind it */
-    LABELS = 58,        /* below it */
-    TAG = 26,           /* above it: (a) */
-    LEAST = 60,         /* panel that can be read */
     TITLE_LETTERS = 12, /* height */
     ACROSS = 40,        /* room of a tic with its label along x, and along others */
     UP = 17
@@ -95,31 +88,6 @@ dea_status dea_plot_cramped(dea_canvas canvas, dea_error *error)
 {
     return dea_fail(error, DEA_ERROR_USAGE, "%.3g cm x %.3g cm are too little for this picture: its panels would have no room",
                     2.54 * canvas.unit * canvas.width, 2.54 * canvas.unit * canvas.height);
-}
-
-/* Width or height of panels that share @p room, @p count of them with @p around each. */
-static double panel_side(double room, int count, double around)
-{
-    return (room - count * around) / count;
-}
-
-dea_status dea_plot_pair(dea_canvas canvas, const char *title, double beside, int legend, dea_pair *pair, dea_error *error)
-{
-    const double width = canvas.width - beside, first = dea_plot_top(title);
-    const double height = canvas.height > 0 ? canvas.height - legend - first + TAG : 0.0;
-    const double left = width < 620.0 ? NARROW : LEFT;
-    const double half = panel_side(width, 2, left + RIGHT), single = panel_side(width, 1, left + RIGHT);
-    const double one = canvas.height > 0 ? panel_side(height, 1, TAG + LABELS) : NATURAL;
-    const double two = canvas.height > 0 ? panel_side(height, 2, TAG + LABELS) : NATURAL;
-    const bool stacked = canvas.height > 0 && fmin(single, 1.2 * two) > fmin(half, 1.2 * one);
-    const double across = stacked ? single : half, up = stacked ? two : one;
-    if (across < LEAST || up < LEAST) {
-        return dea_plot_cramped(canvas, error);
-    }
-    pair->boxes[0] = (dea_box){left, first, across, up};
-    pair->boxes[1] = stacked ? (dea_box){left, first + up + LABELS + TAG, across, up} : (dea_box){0.5 * width + left, first, across, up};
-    pair->height = canvas.height > 0 ? canvas.height : (int)(first + up + LABELS) + legend;
-    return DEA_OK;
 }
 
 void dea_span_take(dea_span *span, double value)

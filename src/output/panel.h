@@ -20,12 +20,6 @@ typedef struct dea_span {
 /* Text of a tic. */
 typedef void dea_name(double value, char text[DEA_LABEL_LENGTH]);
 
-/* The two panels of a picture, (a) and (b): side by side, or one above the other where that leaves them more room. */
-typedef struct dea_pair {
-    dea_box boxes[2];
-    int height; /* of the picture */
-} dea_pair;
-
 /* Colours of a map and of many curves, dark to light, 0 <= share <= 1. */
 void dea_plot_gradient(double share, char colour[8]);
 /* "dashtype ..." of curves of one kind, from 1; number 1 is solid. */
@@ -40,9 +34,6 @@ void dea_plot_title(FILE *script, const char *title, int width, int height);
 double dea_plot_top(const char *title);
 /* Puts the next panel into a box of a canvas of that size. */
 void dea_plot_place(FILE *script, int width, int height, dea_box box);
-/* Places of two panels with @p beside units kept free at the right and @p legend below, in all of a canvas. DEA_ERROR_USAGE: it is
- * too small. */
-dea_status dea_plot_pair(dea_canvas canvas, const char *title, double beside, int legend, dea_pair *pair, dea_error *error);
 /* Fails for a canvas that leaves a panel no room. */
 dea_status dea_plot_cramped(dea_canvas canvas, dea_error *error);
 

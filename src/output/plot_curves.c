@@ -48,7 +48,7 @@ static double place_value(const sheet *page, size_t place)
 static bool has_symbol(const sheet *page, size_t curve, size_t place)
 {
     const size_t group = curve % page->series.groups;
-    const dea_span *along = &page->figure.along;
+    const dea_span *along = &page->figure.across[0].span;
     return page->plot->across.kept <= FEW_POINTS ||
            (place > 0 && dea_series_mark(&page->series, group, dea_span_share(along, place_value(page, place))) !=
                              dea_series_mark(&page->series, group, dea_span_share(along, place_value(page, place - 1))));
@@ -84,7 +84,10 @@ static void add_panel(sheet *page, size_t number, bool logarithmic)
     panel->absolute = negative && logarithmic;
     for (size_t curve = 0; curve < plot->curves; curve++) {
         dea_look look = dea_series_look(&page->series, curve / page->series.groups, curve % page->series.groups);
-        look.symbol = look.symbol || plot->across.kept > FEW_POINTS ? look.symbol : DOT;
+        if (!look.symbol && plot->across.kept <= FEW_POINTS) {
+            look.symbol = DOT;
+            look.size = 0.4;
+        }
         dea_figure_curve(&page->figure, number, look, 1.8);
         for (size_t place = 0; place < plot->across.kept; place++) {
             dea_figure_point(&page->figure, place_value(page, place), sheet_dot(page, curve, place)->values[number], marks_at(page, curve, place));
@@ -96,30 +99,14 @@ static void add_panel(sheet *page, size_t number, bool logarithmic)
 static dea_status sheet_lay(sheet *page, dea_error *error)
 {
     dea_figure *figure = &page->figure;
-    const dea_canvas canvas = figure->picture->canvas;
-    dea_pair pair;
     for (size_t i = 0; i <= figure->count; i++) {
-        const dea_span *span = i == 0 ? &figure->along : &figure->panels[i - 1].span;
+        const dea_span *span = i == 0 ? &figure->across[0].span : &figure->panels[i - 1].span;
         if (span->low > span->high) {
             return dea_fail(error, DEA_ERROR_USAGE, "nothing to draw: nothing is above zero along the logarithmic axis %c", i == 0 ? 'x' : 'y');
         }
     }
-    figure->foot = dea_series_legend(&page->series, figure->seen, canvas.width, &figure->legend);
-    const dea_status status = dea_plot_pair(canvas, figure->title, page->series.bar == SIZE_MAX ? 0.0 : DEA_BAR, figure->foot, &pair, error);
-    if (status != DEA_OK) {
-        return status;
-    }
-    if (figure->count == 1) { /* it has the room of both */
-        dea_box *first = &pair.boxes[0], *last = &pair.boxes[1];
-        first->width = last->left + last->width - first->left;
-        first->height = last->top + last->height - first->top;
-    }
-    for (size_t i = 0; i < figure->count; i++) {
-        figure->panels[i].box = pair.boxes[i];
-        figure->panels[i].tag = figure->count == 1 ? NULL : i == 0 ? "(a)" : "(b)";
-    }
-    figure->height = pair.height;
-    return DEA_OK;
+    figure->foot = dea_series_legend(&page->series, figure->seen, figure->picture->canvas.width, &figure->legend);
+    return dea_figure_pair(figure, 0.5, 300.0, error);
 }
 
 dea_status dea_plot_draw_curves(dea_plot *plot, dea_error *error)
@@ -134,11 +121,11 @@ dea_status dea_plot_draw_curves(dea_plot *plot, dea_error *error)
                   .order = order,
                   .across = dea_scale_axis(axis),
                   .series = dea_series_of(plot->scene, plot->x, plot->curves / plot->scene->model_count),
-                  .figure = dea_figure_begin(plot, plot->picture.log_x || dea_axis_logarithmic(axis))};
+                  .figure = dea_figure_begin(&plot->picture, plot->scene->title, plot->picture.log_x || dea_axis_logarithmic(axis))};
     page.figure.series = &page.series;
-    dea_label_axis(axis, &page.across, page.figure.label);
+    dea_label_axis(axis, &page.across, page.figure.across[0].label);
     for (size_t place = 0; place < plot->across.kept; place++) {
-        dea_span_take(&page.figure.along, place_value(&page, place));
+        dea_span_take(&page.figure.across[0].span, place_value(&page, place));
     }
     for (size_t i = 0; i < plot->drawn_count; i++) {
         add_panel(&page, i, plot->picture.log_y);

@@ -1,13 +1,14 @@
 /* Pictures of a material and of a fit: stress and modulus over stretch, stress over time. */
-#include "output/picture.h"
+#include "output/figure.h"
 
-#include "output/legend.h"
 #include "support/number.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { LEFT = 82, RIGHT = 24, TOP = 18, LABELS = 58, PANEL = 340, LEAST = 60, NATURAL = 640, CURVE_STEPS = 200, POINTS_MAX = 2000 };
+enum { PANEL = 340, LEFT = 96, CURVE_STEPS = 200, POINTS_MAX = 2000, NATURAL = 640 /* width of a panel of a fit */ };
+
+static const char *const stretch_label = "Stretch λ", *const stress_label = "Engineering stress P [kPa]";
 
 /* How the curve and the points of a load look: told apart in grey too. */
 static const struct {
@@ -16,8 +17,8 @@ static const struct {
     int symbol;
 } loads[DEA_LOAD_COUNT] = {{"uniaxial", "#404040", 1, 6}, {"equi-biaxial", "#b03060", 2, 8}};
 
-/* In the looks of a load. */
-static void add_entry(dea_legend *legend, dea_load load, const char *title, const char *what, bool line, bool point)
+/* An entry in the looks of a load. */
+static void add_entry(dea_legend *legend, size_t load, const char *title, const char *what, bool line, bool point)
 {
     dea_legend_entry *entry = dea_legend_add(legend);
     snprintf(entry->label, sizeof entry->label, "%s%s", title, what);
@@ -26,163 +27,91 @@ static void add_entry(dea_legend *legend, dea_load load, const char *title, cons
     entry->symbol = point ? loads[load].symbol : 0;
 }
 
-/* Puts a legend of one kind of entries at the foot of a canvas. */
-static int lay_legend(dea_legend *legend, int width)
+/* Begins the line of a load on a panel, or its points. */
+static void begin_curve(dea_figure *figure, size_t panel, size_t load, bool line)
 {
-    const size_t kinds[] = {0, legend->count};
-    return dea_legend_lay(legend, kinds, 1, width);
+    dea_look look = {.dash = loads[load].dash, .symbol = line ? 0 : loads[load].symbol, .size = 0.7};
+    snprintf(look.colour, sizeof look.colour, "%s", loads[load].colour);
+    dea_figure_curve(figure, panel, look, line ? 1.8 : 0.0);
 }
 
-static void write_line(FILE *script, const char *before, const char *block, int number, dea_load load)
+/* A panel from zero on; what is drawn of it is @p factor times its numbers. */
+static size_t add_panel(dea_figure *figure, const char *label, double factor, size_t across, const char *along)
 {
-    fprintf(script, "%s$%s%d with lines linewidth 1.8 linecolor '%s' %s", before, block, number, loads[load].colour,
-            dea_plot_dash(loads[load].dash));
+    dea_panel *panel = dea_figure_panel(figure, PANEL, label);
+    panel->factor = factor;
+    panel->zero = true;
+    panel->across = across;
+    snprintf(figure->across[across].label, DEA_LABEL_LENGTH, "%s", along);
+    return figure->count - 1;
 }
 
-static void write_measured(FILE *script, const char *before, const char *block, int number, dea_load load)
+/* Nominal stress over stretch. */
+static void add_stress(dea_figure *figure, size_t panel, const dea_law *law, const double *constants, size_t load, double from, double to)
 {
-    fprintf(script, "%s$%s%d with points pointtype %d pointsize 0.7*ps linewidth 1 linecolor '%s'", before, block, number,
-            loads[load].symbol, loads[load].colour);
-}
-
-/* Data block $fit<load> of nominal stress [kPa] over stretch. */
-static void write_stress(FILE *script, const dea_law *law, const double *constants, dea_load load, double from, double to)
-{
-    fprintf(script, "$fit%d << END\n", (int)load);
+    begin_curve(figure, panel, load, true);
     for (int i = 0; i <= CURVE_STEPS; i++) {
         const double stretch = from + (to - from) * i / CURVE_STEPS;
-        dea_gnuplot_put(script, "%g %g\n", stretch, 1e-3 * dea_fit_stress(law, constants, load, stretch));
+        dea_figure_point(figure, stretch, dea_fit_stress(law, constants, (dea_load)load, stretch), 0);
     }
-    fputs("END\n", script);
 }
 
-static void write_material_data(const dea_material *material, double to, FILE *script)
+/* Lays legend and panels, draws, and ends the picture. */
+static dea_status finish(dea_figure *figure, dea_error *error)
 {
-    double constants[DEA_LAW_CONSTANTS];
-    dea_material_long_term(material, constants);
-    for (int load = 0; load < DEA_LOAD_COUNT; load++) {
-        write_stress(script, material->law, constants, (dea_load)load, 1.0, to);
-    }
-    fputs("$modulus0 << END\n", script);
-    for (int i = 0; i <= CURVE_STEPS; i++) {
-        const double stretch = 1.0 + (to - 1.0) * i / CURVE_STEPS;
-        dea_gnuplot_put(script, "%g %g\n", stretch, 1e-6 * dea_law_modulus(material->law, constants, stretch));
-    }
-    fputs("END\n", script);
-}
-
-static void write_material(const dea_material *material, double to, const dea_gnuplot *picture, const dea_pair *pair,
-                           const dea_legend *legend)
-{
-    FILE *script = picture->script;
-    write_material_data(material, to, script);
-    dea_plot_style(script);
-    dea_plot_title(script, material->name, picture->canvas.width, pair->height);
-    dea_gnuplot_put(script,
-                    "set xrange [1:%g]\nset yrange [0:*]\nset offsets graph 0, graph 0, graph 0.06, graph 0\n"
-                    "set label 1 '(a)' at graph 0, graph 1 offset character 0, character 0.8\n"
-                    "set xlabel %q\nset ylabel %q\n",
-                    to, "Stretch λ", "Engineering stress P [kPa]");
-    dea_plot_place(script, picture->canvas.width, pair->height, pair->boxes[0]);
-    for (int load = 0; load < DEA_LOAD_COUNT; load++) {
-        write_line(script, load > 0 ? ", " : "plot ", "fit", load, (dea_load)load);
-    }
-    fputs("\nunset label 2\nset label 1 '(b)' at graph 0, graph 1 offset character 0, character 0.8\n", script);
-    dea_gnuplot_put(script, "set ylabel %q\n", "Operating modulus Y [MPa]");
-    dea_plot_place(script, picture->canvas.width, pair->height, pair->boxes[1]);
-    write_line(script, "plot ", "modulus", 0, DEA_LOAD_EQUIBIAXIAL);
-    fputs("\nunset offsets\n", script);
-    dea_legend_draw(legend, script, picture->canvas.width, pair->height);
+    dea_gnuplot *picture = figure->picture;
+    figure->left = LEFT;
+    const size_t kinds[] = {0, figure->legend.count};
+    figure->foot = dea_legend_lay(&figure->legend, kinds, 1, picture->canvas.width);
+    const dea_status status = dea_figure_end(figure, dea_figure_pair(figure, 0.5, PANEL, error), error);
+    const dea_status drawn = dea_gnuplot_finish(picture, status == DEA_OK, status == DEA_OK ? error : NULL);
+    return status != DEA_OK ? status : drawn;
 }
 
 dea_status dea_plot_material(const dea_material *material, double to, const char *path, const dea_plot_options *options,
                              dea_error *error)
 {
     dea_gnuplot picture;
-    dea_pair pair;
-    dea_legend legend = {.count = 0};
-    dea_status status = dea_gnuplot_begin(&picture, path, options, error);
+    double constants[DEA_LAW_CONSTANTS];
+    const dea_status status = dea_gnuplot_begin(&picture, path, options, error);
     if (status != DEA_OK) {
         return status;
     }
-    for (int load = 0; load < DEA_LOAD_COUNT; load++) {
-        add_entry(&legend, (dea_load)load, loads[load].title, "", true, false);
+    dea_figure figure = dea_figure_begin(&picture, material->name, false);
+    dea_material_long_term(material, constants);
+    const size_t stress = add_panel(&figure, stress_label, 1e-3, 0, stretch_label);
+    for (size_t load = 0; load < DEA_LOAD_COUNT; load++) {
+        add_stress(&figure, stress, material->law, constants, load, 1.0, to);
+        add_entry(&figure.legend, load, loads[load].title, "", true, false);
     }
-    status = dea_plot_pair(picture.canvas, material->name, 0.0, lay_legend(&legend, picture.canvas.width), &pair, error);
-    if (status == DEA_OK) {
-        dea_gnuplot_size(&picture, pair.height);
-        write_material(material, to, &picture, &pair, &legend);
+    begin_curve(&figure, add_panel(&figure, "Operating modulus Y [MPa]", 1e-6, 0, stretch_label), DEA_LOAD_EQUIBIAXIAL, true);
+    for (int i = 0; i <= CURVE_STEPS; i++) {
+        const double stretch = 1.0 + (to - 1.0) * i / CURVE_STEPS;
+        dea_figure_point(&figure, stretch, dea_law_modulus(material->law, constants, stretch), 0);
     }
-    const dea_status drawn = dea_gnuplot_finish(&picture, status == DEA_OK, status == DEA_OK ? error : NULL);
-    return status != DEA_OK ? status : drawn;
+    return finish(&figure, error);
 }
 
-/* Data block $data<load> of the measured points, evenly thinned where there are very many. */
-static void write_points(FILE *script, const dea_fit_data *data, const dea_fit *fit, dea_load load)
+/* Stress over stretch: the measured points, evenly thinned where there are very many, and the fit. */
+static void add_fit(dea_figure *figure, const dea_fit *fit, const dea_fit_data *data)
 {
-    const size_t step = fit->count[load] / POINTS_MAX + 1;
-    size_t seen = 0;
-    fprintf(script, "$data%d << END\n", (int)load);
-    for (size_t i = 0; i < data->count; i++) {
-        if (data->points[i].load == load && seen++ % step == 0) {
-            dea_gnuplot_put(script, "%g %g\n", data->points[i].stretch, 1e-3 * data->points[i].stress);
+    const size_t panel = add_panel(figure, stress_label, 1e-3, 0, stretch_label);
+    for (size_t load = 0; load < DEA_LOAD_COUNT; load++) {
+        const size_t step = fit->count[load] / POINTS_MAX + 1;
+        size_t seen = 0;
+        if (fit->count[load] == 0) {
+            continue;
         }
-    }
-    fputs("END\n", script);
-}
-
-/* Where axes stand. */
-typedef struct panel {
-    const dea_gnuplot *picture;
-    dea_box box;
-    int height; /* of the picture */
-} panel;
-
-/* Opens axes with their titles. */
-static void write_panel(FILE *script, const panel *at, double from, double to, const char *across, const char *up)
-{
-    dea_gnuplot_put(script, "set xrange [%g:%g]\nset xlabel %q\nset ylabel %q\n", from, to, across, up);
-    dea_plot_place(script, at->picture->canvas.width, at->height, at->box);
-}
-
-static void write_fit(const dea_fit *fit, const dea_fit_data *data, const panel *at)
-{
-    FILE *script = at->picture->script;
-    const double from = fmin(fit->stretch_min, 1.0), to = fmax(fit->stretch_max, 1.0);
-    write_panel(script, at, from, to, "Stretch λ", "Engineering stress P [kPa]");
-    for (int load = 0; load < DEA_LOAD_COUNT; load++) {
-        if (fit->count[load] > 0) {
-            write_stress(script, fit->law, fit->constants, (dea_load)load, from, to);
-            write_points(script, data, fit, (dea_load)load);
+        begin_curve(figure, panel, load, false);
+        for (size_t i = 0; i < data->count; i++) {
+            if (data->points[i].load == (dea_load)load && seen++ % step == 0) {
+                dea_figure_point(figure, data->points[i].stretch, data->points[i].stress, 0);
+            }
         }
+        add_stress(figure, panel, fit->law, fit->constants, load, fmin(fit->stretch_min, 1.0), fmax(fit->stretch_max, 1.0));
+        add_entry(&figure->legend, load, loads[load].title, ", measured", false, true);
+        add_entry(&figure->legend, load, loads[load].title, ", fit", true, false);
     }
-    const char *before = "plot ";
-    for (int load = 0; load < DEA_LOAD_COUNT; load++) {
-        if (fit->count[load] > 0) {
-            write_measured(script, before, "data", load, (dea_load)load);
-            write_line(script, ", ", "fit", load, (dea_load)load);
-            before = ", ";
-        }
-    }
-    fputc('\n', script);
-}
-
-/* The time axis is log10(1 + t/t_1), t_1 the first time after 0: logarithmic, and yet with a place for t = 0. */
-static double time_place(double time, double first)
-{
-    return log10(1.0 + time / first);
-}
-
-static void write_time_tics(FILE *script, double first, double last)
-{
-    fputs("set xtics (\"0\" 0", script);
-    for (double tic = pow(10.0, floor(log10(first))); tic <= last; tic *= 10.0) {
-        if (tic >= 0.99 * first) {
-            char label[DEA_NUMBER_LENGTH];
-            dea_gnuplot_put(script, ", \"%s\" %g", dea_number_text(label, tic, 3), time_place(tic, first));
-        }
-    }
-    fputs(")\n", script);
 }
 
 /* How a test is drawn: its axes, the factor to their unit, the curves and their names. */
@@ -199,46 +128,26 @@ static const drawn_test drawn_tests[DEA_TESTS] = {
     [DEA_TEST_CREEP] = {"Time since the end of the ramp t [s]", "Strain over the largest one", 1.0, 1, {"creep", NULL}},
 };
 
-/* Where a time or an angular frequency stands on the axis. */
+/* Where a time or an angular frequency stands on the axis: log10 of the frequency; or log10(1 + t/t_1), t_1 the first time after 0,
+ * which is logarithmic and yet has a place for t = 0. */
 static double test_place(const dea_relaxation *fit, double at, double first)
 {
-    return fit->kind == DEA_TEST_DYNAMIC ? log10(0.5 * at / DEA_PI) : time_place(at, first);
+    return log10(fit->kind == DEA_TEST_DYNAMIC ? 0.5 * at / DEA_PI : 1.0 + at / first);
 }
 
-/* Data blocks $held<curve> and $relaxed<curve>; @p scale: of their numbers. */
-static void write_test_data(FILE *script, const dea_relaxation *fit, const dea_relaxation_data *data, double first, double scale)
+/* Whole decades of the frequency, or of the time, and 0. */
+static void write_tics(const dea_relaxation *fit, double first, dea_across *across)
 {
-    const dea_relaxation_point *points = data->points;
     const bool swings = fit->kind == DEA_TEST_DYNAMIC;
-    const size_t step = data->count / POINTS_MAX + 1;
-    const double from = swings ? test_place(fit, points[0].time, first) : 0.0;
-    const double to = test_place(fit, points[data->count - 1].time, first);
-    for (size_t curve = 0; curve < drawn_tests[fit->kind].curves; curve++) {
-        fprintf(script, "$held%zu << END\n", curve);
-        for (size_t i = 0; i < data->count; i += step) {
-            dea_gnuplot_put(script, "%g %g\n", test_place(fit, points[i].time, first), scale * (curve == 0 ? points[i].stress : points[i].loss));
-        }
-        fprintf(script, "END\n$relaxed%zu << END\n", curve);
-        for (int i = 0; i <= CURVE_STEPS; i++) {
-            const double place = from + (to - from) * i / CURVE_STEPS, power = pow(10.0, place);
-            const double at = swings ? 2.0 * DEA_PI * power : first * (power - 1.0);
-            dea_gnuplot_put(script, "%g %g\n", place, scale * (curve == 0 ? dea_relaxation_stress(fit, at) : dea_relaxation_loss(fit, at)));
-        }
-        fputs("END\n", script);
+    const double turn = swings ? 2.0 * DEA_PI : 1.0, from = swings ? across->span.low : log10(0.99 * first);
+    const double to = swings ? across->span.high : log10(fit->time_max);
+    int used = snprintf(across->tics, DEA_TICS, swings ? "" : "\"0\" 0");
+    for (double power = ceil(from - 1e-9); power <= to + 1e-9 && used < DEA_TICS; power += 1.0) {
+        char label[DEA_NUMBER_LENGTH], place[DEA_NUMBER_LENGTH];
+        dea_number_text(label, pow(10.0, power), 3);
+        dea_number_text(place, test_place(fit, turn * pow(10.0, power), first), 9);
+        used += snprintf(across->tics + used, (size_t)(DEA_TICS - used), "%s\"%s\" %s", used > 0 ? ", " : "", label, place);
     }
-}
-
-/* Whole decades of the frequency. */
-static void write_frequency_tics(FILE *script, double from, double to)
-{
-    const char *before = "";
-    fputs("set xtics (", script);
-    for (double power = ceil(from - 1e-9); power <= to + 1e-9; power += 1.0) {
-        char label[DEA_NUMBER_LENGTH];
-        dea_gnuplot_put(script, "%s\"%s\" %g", before, dea_number_text(label, pow(10.0, power), 3), power);
-        before = ", ";
-    }
-    fputs(")\n", script);
 }
 
 static double largest_of(const dea_relaxation_data *data)
@@ -250,84 +159,58 @@ static double largest_of(const dea_relaxation_data *data)
     return largest;
 }
 
-static void write_relaxation(const dea_relaxation *fit, const dea_relaxation_data *data, const panel *at)
+/* A test of relaxation, of dynamic moduli or of creep: what was measured, and the fit. */
+static void add_test(dea_figure *figure, const dea_relaxation *fit, const dea_relaxation_data *data)
 {
-    FILE *script = at->picture->script;
     const drawn_test *drawn = &drawn_tests[fit->kind];
-    const bool swings = fit->kind == DEA_TEST_DYNAMIC, creeps = fit->kind == DEA_TEST_CREEP;
-    const double first = data->points[0].time > 0.0 ? data->points[0].time : data->points[1].time;
-    const double from = swings ? test_place(fit, first, first) : 0.0, to = test_place(fit, data->points[data->count - 1].time, first);
-    write_panel(script, at, from, to, drawn->across, drawn->up);
-    fputs("set yrange [0:*]\n", script);
-    if (swings) {
-        write_frequency_tics(script, from, to);
-    } else {
-        write_time_tics(script, first, fit->time_max);
-    }
-    write_test_data(script, fit, data, first, creeps ? 1.0 / largest_of(data) : drawn->factor);
+    const dea_relaxation_point *points = data->points;
+    const bool swings = fit->kind == DEA_TEST_DYNAMIC;
+    const double first = points[0].time > 0.0 ? points[0].time : points[1].time;
+    const double from = swings ? test_place(fit, first, first) : 0.0, to = test_place(fit, points[data->count - 1].time, first);
+    const size_t panel = add_panel(figure, drawn->up, fit->kind == DEA_TEST_CREEP ? 1.0 / largest_of(data) : drawn->factor, 1, drawn->across);
     for (size_t curve = 0; curve < drawn->curves; curve++) {
-        write_measured(script, curve == 0 ? "plot " : ", ", "held", (int)curve, (dea_load)curve);
-        write_line(script, ", ", "relaxed", (int)curve, (dea_load)curve);
-    }
-    fputc('\n', script);
-}
-
-/* What curves and points are, for the loads and the curves of a test that were measured; a test of relaxation is uniaxial. */
-static void list_fit(const dea_fit *fit, const dea_relaxation *test, dea_legend *legend)
-{
-    const bool relaxes = test && test->kind == DEA_TEST_RELAXATION;
-    for (int load = 0; load < DEA_LOAD_COUNT; load++) {
-        if ((fit && fit->count[load] > 0) || (relaxes && load == DEA_LOAD_UNIAXIAL)) {
-            add_entry(legend, (dea_load)load, loads[load].title, ", measured", false, true);
-            add_entry(legend, (dea_load)load, loads[load].title, ", fit", true, false);
+        begin_curve(figure, panel, curve, false);
+        for (size_t i = 0; i < data->count; i += data->count / POINTS_MAX + 1) {
+            dea_figure_point(figure, test_place(fit, points[i].time, first), curve == 0 ? points[i].stress : points[i].loss, 0);
+        }
+        begin_curve(figure, panel, curve, true);
+        for (int i = 0; i <= CURVE_STEPS; i++) {
+            const double place = from + (to - from) * i / CURVE_STEPS, power = pow(10.0, place);
+            const double at = swings ? 2.0 * DEA_PI * power : first * (power - 1.0);
+            dea_figure_point(figure, place, curve == 0 ? dea_relaxation_stress(fit, at) : dea_relaxation_loss(fit, at), 0);
         }
     }
-    for (size_t curve = 0; test && !relaxes && curve < drawn_tests[test->kind].curves; curve++) {
-        add_entry(legend, (dea_load)curve, drawn_tests[test->kind].titles[curve], ", measured", false, true);
-        add_entry(legend, (dea_load)curve, drawn_tests[test->kind].titles[curve], ", fit", true, false);
-    }
+    write_tics(fit, first, &figure->across[1]);
 }
 
-/* Panels of stress over stretch and over time, side by side where there are both. */
-static dea_status place_fit(dea_gnuplot *picture, bool both, int legend, panel panels[2], dea_error *error)
+/* What curves and points of a test are; those of a relaxation are of the uniaxial load, and listed once. */
+static void list_test(const dea_fit *fit, const dea_relaxation *test, dea_legend *legend)
 {
-    const dea_canvas *canvas = &picture->canvas;
-    const int height = canvas->height > 0 ? canvas->height : TOP + PANEL + LABELS + legend;
-    const double cell = canvas->width / (both ? 2.0 : 1.0);
-    for (int i = 0; i < 2; i++) {
-        const dea_box box = {LEFT + (both ? i * cell : 0.0), TOP, cell - LEFT - RIGHT, height - TOP - LABELS - legend};
-        panels[i] = (panel){picture, box, height};
+    const bool listed = test->kind == DEA_TEST_RELAXATION && fit && fit->count[DEA_LOAD_UNIAXIAL] > 0;
+    for (size_t curve = 0; !listed && curve < drawn_tests[test->kind].curves; curve++) {
+        add_entry(legend, curve, drawn_tests[test->kind].titles[curve], ", measured", false, true);
+        add_entry(legend, curve, drawn_tests[test->kind].titles[curve], ", fit", true, false);
     }
-    return panels[0].box.width < LEAST || panels[0].box.height < LEAST ? dea_plot_cramped(*canvas, error) : DEA_OK;
 }
 
 dea_status dea_plot_fit(const dea_fit *fit, const dea_fit_data *data, const dea_relaxation *relaxation,
                         const dea_relaxation_data *held, const char *path, const dea_plot_options *options, dea_error *error)
 {
     dea_gnuplot picture;
-    panel panels[2];
-    dea_legend legend = {.count = 0};
-    dea_status status = dea_gnuplot_begin(&picture, path, options, error);
+    const dea_status status = dea_gnuplot_begin(&picture, path, options, error);
     if (status != DEA_OK) {
         return status;
     }
     if (picture.canvas.height == 0) {
         picture.canvas.width = fit && relaxation ? 2 * NATURAL : NATURAL;
     }
-    list_fit(fit, relaxation, &legend);
-    status = place_fit(&picture, fit && relaxation, lay_legend(&legend, picture.canvas.width), panels, error);
-    if (status == DEA_OK) {
-        dea_gnuplot_size(&picture, panels[0].height);
-        dea_plot_style(picture.script);
-        fputs("unset key\nset multiplot\n", picture.script);
-        if (fit) {
-            write_fit(fit, data, &panels[0]);
-        }
-        if (relaxation) {
-            write_relaxation(relaxation, held, &panels[1]);
-        }
-        dea_legend_draw(&legend, picture.script, picture.canvas.width, panels[0].height);
+    dea_figure figure = dea_figure_begin(&picture, "", false);
+    if (fit) {
+        add_fit(&figure, fit, data);
     }
-    const dea_status drawn = dea_gnuplot_finish(&picture, status == DEA_OK, status == DEA_OK ? error : NULL);
-    return status != DEA_OK ? status : drawn;
+    if (relaxation) {
+        add_test(&figure, relaxation, held);
+        list_test(fit, relaxation, &figure.legend);
+    }
+    return finish(&figure, error);
 }

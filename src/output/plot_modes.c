@@ -135,14 +135,14 @@ static dea_status modes_draw(dea_plot *plot, dea_error *error)
 {
     const sheet page = sheet_of(plot);
     const dea_axis *axis = page.axis == SIZE_MAX ? NULL : &plot->scene->axes[page.axis];
-    dea_figure figure = dea_figure_begin(plot, plot->picture.log_x || (axis && dea_axis_logarithmic(axis)));
+    dea_figure figure = dea_figure_begin(&plot->picture, plot->scene->title, plot->picture.log_x || (axis && dea_axis_logarithmic(axis)));
     if (axis) {
-        dea_label_axis(axis, &page.scale, figure.label);
+        dea_label_axis(axis, &page.scale, figure.across[0].label);
         add_panel(&page, &figure, "Frequency [Hz]", offsetof(dea_mode, frequency), 1.0);
         add_panel(&page, &figure, "Damping ratio", offsetof(dea_mode, damping_ratio), 1.0);
         add_panel(&page, &figure, "Share of edge [%]", offsetof(dea_mode, edge_share), 100.0);
     } else {
-        snprintf(figure.label, sizeof figure.label, "Radius at 0 V [%s]", page.scale.unit);
+        snprintf(figure.across[0].label, sizeof figure.across[0].label, "Radius at 0 V [%s]", page.scale.unit);
         add_panel(&page, &figure, "Shape [g⁻½]", 0, sqrt(1e-3));
     }
     figure.foot = list(&page, &figure.legend);

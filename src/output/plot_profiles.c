@@ -117,8 +117,8 @@ static dea_status figure_finish(dea_plot *plot, dea_figure *figure, bool ways, d
 static dea_status profiles_draw(dea_plot *plot, dea_error *error)
 {
     const dea_scale x = dea_scale_choose(plot->scene->actuator.frame_radius, "m");
-    dea_figure figure = dea_figure_begin(plot, plot->picture.log_x);
-    snprintf(figure.label, sizeof figure.label, "Radius at 0 V [%s]", x.unit);
+    dea_figure figure = dea_figure_begin(&plot->picture, plot->scene->title, plot->picture.log_x);
+    snprintf(figure.across[0].label, sizeof figure.across[0].label, "Radius at 0 V [%s]", x.unit);
     add_panel(plot, &figure, "Displacement", "m", offsetof(dea_station, displacement), false, x.factor);
     add_panel(plot, &figure, "Stretch", "", offsetof(dea_station, stretch), true, x.factor);
     add_panel(plot, &figure, "True stress", "Pa", offsetof(dea_station, stress), true, x.factor);
@@ -130,8 +130,8 @@ static dea_status forces_draw(dea_plot *plot, dea_error *error)
 {
     const dea_force_study *force = &plot->scene->force;
     const dea_scale x = dea_scale_choose(fmax(fabs(force->from), fabs(force->to)), "m");
-    dea_figure figure = dea_figure_begin(plot, plot->picture.log_x);
-    snprintf(figure.label, sizeof figure.label, "Displacement of the edge [%s]", x.unit);
+    dea_figure figure = dea_figure_begin(&plot->picture, plot->scene->title, plot->picture.log_x);
+    snprintf(figure.across[0].label, sizeof figure.across[0].label, "Displacement of the edge [%s]", x.unit);
     add_panel(plot, &figure, "Force", "N", offsetof(dea_row, force), false, x.factor);
     return figure_finish(plot, &figure, false, error);
 }

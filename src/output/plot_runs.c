@@ -163,8 +163,8 @@ static void add_trace(sheet *page, size_t number, size_t run)
     for (size_t i = 0; i < trace->count; i++) {
         const double x = trace->x[i] * page->factor;
         unsigned marks = 0;
-        if (isfinite(trace->y[i]) && look.symbol && (x > 0.0 || !page->figure.along.logarithmic)) {
-            const double share = page->runs->abscissa > 0 ? (double)i / (double)trace->count : dea_span_share(&page->figure.along, x);
+        if (isfinite(trace->y[i]) && look.symbol && (x > 0.0 || !page->figure.across[0].span.logarithmic)) {
+            const double share = page->runs->abscissa > 0 ? (double)i / (double)trace->count : dea_span_share(&page->figure.across[0].span, x);
             const int place = dea_series_mark(&page->series, group, share);
             marks = (page->peaks[number] ? i == peak : before != INT32_MIN && place != before) ? DEA_AT_SYMBOL : 0;
             before = place;
@@ -177,7 +177,9 @@ static void add_trace(sheet *page, size_t number, size_t run)
 static void add_limits(sheet *page, size_t run)
 {
     const dea_run *marked = &page->runs->runs[run];
-    dea_figure_curve(&page->figure, 0, dea_series_look(&page->series, run / page->series.groups, run % page->series.groups), 0.0);
+    dea_look look = dea_series_look(&page->series, run / page->series.groups, run % page->series.groups);
+    look.symbol = 0;
+    dea_figure_curve(&page->figure, 0, look, 0.0);
     for (size_t i = 0; i < marked->spot_count; i++) {
         dea_figure_point(&page->figure, marked->spots[i].x * page->factor, marked->spots[i].y, (unsigned)DEA_AT_LIMIT << marked->spots[i].mark);
     }
@@ -216,9 +218,9 @@ static void measure_loops(sheet *page)
     }
     const dea_scale scale = dea_scale_choose(fmax(fabs(span.low), fabs(span.high)), "V");
     page->factor = scale.factor;
-    snprintf(page->figure.label, sizeof page->figure.label, "Voltage U [%s]", scale.unit);
-    dea_span_take(&page->figure.along, page->factor * span.low);
-    dea_span_take(&page->figure.along, page->factor * span.high);
+    snprintf(page->figure.across[0].label, sizeof page->figure.across[0].label, "Voltage U [%s]", scale.unit);
+    dea_span_take(&page->figure.across[0].span, page->factor * span.low);
+    dea_span_take(&page->figure.across[0].span, page->factor * span.high);
 }
 
 /* What lies along x: frequency, or time, from the first row after zero where it is logarithmic. */
@@ -227,13 +229,13 @@ static void measure_along(sheet *page, bool response)
     const dea_scene *scene = page->plot->scene;
     dea_figure *figure = &page->figure;
     const double first = dea_layout_place(scene, 0), last = dea_layout_place(scene, page->runs->layout.rows - 1);
-    const bool plain = response || figure->along.logarithmic;
+    const bool plain = response || figure->across[0].span.logarithmic;
     const dea_scale scale = plain ? (dea_scale){.factor = 1.0, .unit = "s"} : dea_scale_choose(last, "s");
     page->factor = scale.factor;
-    figure->name = response ? dea_name_prefixed : dea_name_plain;
-    snprintf(figure->label, sizeof figure->label, response ? "Frequency [Hz]" : "Time [%s]", scale.unit);
-    dea_span_take(&figure->along, scale.factor * (figure->along.logarithmic && !(first > 0.0) ? dea_layout_place(scene, 1) : first));
-    dea_span_take(&figure->along, scale.factor * last);
+    figure->across[0].name = response ? dea_name_prefixed : dea_name_plain;
+    snprintf(figure->across[0].label, sizeof figure->across[0].label, response ? "Frequency [Hz]" : "Time [%s]", scale.unit);
+    dea_span_take(&figure->across[0].span, scale.factor * (figure->across[0].span.logarithmic && !(first > 0.0) ? dea_layout_place(scene, 1) : first));
+    dea_span_take(&figure->across[0].span, scale.factor * last);
 }
 
 /* The curves of all panels, then the limits on the first, and what they are. */
@@ -256,7 +258,7 @@ dea_status dea_plot_draw_runs(dea_plot *plot, dea_error *error)
     sheet page = {.plot = plot,
                   .runs = &plot->runs,
                   .series = dea_series_of(scene, SIZE_MAX, plot->runs.count / scene->model_count),
-                  .figure = dea_figure_begin(plot, logarithmic && !plot->loops)};
+                  .figure = dea_figure_begin(&plot->picture, plot->scene->title, logarithmic && !plot->loops)};
     page.figure.series = &page.series;
     if (plot->loops) {
         measure_loops(&page);

@@ -37,6 +37,7 @@ typedef struct dea_look {
     double value; /* as drawn */
     size_t dash;  /* as dea_plot_dash() numbers them */
     int symbol;   /* point type of gnuplot, 0: none */
+    double size;  /* of the symbol, 0: as curves have it */
 } dea_look;
 
 /* The series of a study of so many groups. */

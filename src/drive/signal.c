@@ -268,7 +268,8 @@ double dea_curve_largest(const dea_curve *curve)
     return sum;
 }
 
-size_t dea_segment_line(const dea_segment *run, double time)
+/* Number of the line of a run at a time: from < time <= to. */
+static size_t segment_line(const dea_segment *run, double time)
 {
     size_t low = 0, high = run->line_count - 1;
     while (low < high) {
@@ -284,7 +285,7 @@ size_t dea_segment_line(const dea_segment *run, double time)
 
 static const dea_segment *line_at(const dea_segment *run, double time)
 {
-    return &run->lines[dea_segment_line(run, time)];
+    return &run->lines[segment_line(run, time)];
 }
 
 const dea_segment *dea_segment_seen(const dea_segment *segment, double time)

@@ -69,8 +69,6 @@ double dea_segment_voltage_since(const dea_signal *signal, const dea_segment *se
 /* The polynomial of a segment that stands for lines: the square of its voltage, but where it is negative [V^2]. */
 double dea_segment_square(const dea_segment *segment, double time);
 
-/* Number of the line of a run at a time: from < time <= to. */
-size_t dea_segment_line(const dea_segment *run, double time);
 /* What a sample of that time sees: of a segment that stands for lines, the line. */
 const dea_segment *dea_segment_seen(const dea_segment *segment, double time);
 

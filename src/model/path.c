@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-double dea_path_fold(const dea_path_place *place)
+static double path_fold(const dea_path_place *place)
 {
     return place->slope - place->held * place->weight_slope / place->weight;
 }
@@ -10,7 +10,7 @@ double dea_path_fold(const dea_path_place *place)
 static double fold_at(const dea_path *path, double x)
 {
     const dea_path_place place = path->at(path->film, x);
-    return dea_path_fold(&place);
+    return path_fold(&place);
 }
 
 /* A stretch of the path with the folds of its ends. */
@@ -49,7 +49,7 @@ static bool find_fold(const dea_path *path, const reach *whole, double *low, dou
 
 bool dea_path_cannot_fold(const dea_path *path, double m, double x, const dea_path_place *at)
 {
-    const double mean = m / x, end = dea_path_fold(at) / at->weight;
+    const double mean = m / x, end = path_fold(at) / at->weight;
     return x <= 3.0 * dea_path_width(path, 0.0) && fmin(fmin(mean, end), path->rest) > 0.5 * fmax(fmax(mean, end), path->rest);
 }
 
@@ -102,7 +102,7 @@ bool dea_path_trace(const dea_path *path, double m, double *x)
     while (way.low < end) {
         way.high = fmin(end, way.low + dea_path_width(path, way.low));
         dea_path_place place = path->at(path->film, way.high);
-        way.at_high = dea_path_fold(&place);
+        way.at_high = path_fold(&place);
         double before = 0.0, after = 0.0;
         const bool folds = find_fold(path, &way, &before, &after);
         if (folds) {

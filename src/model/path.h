@@ -24,8 +24,6 @@ typedef struct dea_path {
     double rough;     /* change of a root, relative, that says nothing: rounding of R, 0 where that is the last digit [1] */
 } dea_path;
 
-double dea_path_fold(const dea_path_place *place);
-
 /* Change of x over which stretches move by 5 %. */
 static inline double dea_path_width(const dea_path *path, double x)
 {

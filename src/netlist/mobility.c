@@ -103,7 +103,7 @@ dea_status dea_mobility_prepare(const dea_scene *scene, const dea_model *model, 
     return status;
 }
 
-dea_stress_node dea_mobility_stress_node(const dea_dynamics *dynamics, size_t index)
+static dea_stress_node mobility_stress_node(const dea_dynamics *dynamics, size_t index)
 {
     dea_stress_node node = {"stress"};
     if (dynamics->stress_count > 1) {
@@ -299,7 +299,7 @@ static void close_loop(const dea_cards *c)
 /* What the branches relax to: a stress, or the displacement where the springs are linear. */
 static dea_stress_node followed_node(const dea_cards *c, size_t stress)
 {
-    return is_linear(c) ? (dea_stress_node){"u"} : dea_mobility_stress_node(c->dynamics, stress);
+    return is_linear(c) ? (dea_stress_node){"u"} : mobility_stress_node(c->dynamics, stress);
 }
 
 /* The relaxed stresses of the branches follow the stress with their time constants. */
@@ -322,7 +322,7 @@ static void write_relaxations(const dea_cards *c)
 /* B_a [S_a + sum c_i (S_a - z_ai)]. */
 static void write_stress_force(const dea_cards *c, size_t a)
 {
-    const dea_stress_node stress = dea_mobility_stress_node(c->dynamics, a);
+    const dea_stress_node stress = mobility_stress_node(c->dynamics, a);
     const size_t count = c->dynamics->branch_count;
     dea_part_text_write(&c->text, c->mobility->stresses[a].lever);
     fprintf(c->out, count > 0 ? "*(v(%s)" : "*v(%s)", stress.name);
@@ -390,7 +390,7 @@ static void write_hyperelastic_springs(dea_cards *c)
     const dea_mobility *m = c->mobility;
     for (size_t a = 0; a < c->dynamics->stress_count; a++) {
         char name[32];
-        const dea_stress_node node = dea_mobility_stress_node(c->dynamics, a);
+        const dea_stress_node node = mobility_stress_node(c->dynamics, a);
         snprintf(name, sizeof name, "STRESS%s", node.name + strlen("stress"));
         fprintf(c->out, "* stress S of the relaxed film [%s], its change from rest\n", c->form.cures ? "MPa" : "Pa");
         dea_part_text_source(&c->text, DEA_VOLTAGE, name, node.name, "0", "[]", m->stresses[a].stress);
@@ -517,7 +517,7 @@ void dea_cards_declare(dea_cards *c)
         dea_part_text_use(&c->text, m->network.capacitance);
     }
     for (size_t a = 0; a < c->dynamics->stress_count && !is_linear(c); a++) {
-        const dea_stress_node node = dea_mobility_stress_node(c->dynamics, a);
+        const dea_stress_node node = mobility_stress_node(c->dynamics, a);
         dea_part_text_root(&c->text, node.name);
         dea_part_text_use(&c->text, m->stresses[a].stress);
         dea_part_text_root(&c->text, "lever");
@@ -629,7 +629,8 @@ void dea_cards_write_network(dea_cards *c)
     fputs(DEA_CARDS_END, c->out);
 }
 
-double dea_cards_film_voltage(dea_cards *c, const dea_cards_numbers *n, double source)
+/* Film voltage that goes with the start [V]. */
+static double cards_film_voltage(dea_cards *c, const dea_cards_numbers *n, double source)
 {
     if (!(c->dynamics->series > 0.0)) {
         return source;
@@ -647,7 +648,7 @@ void dea_cards_write_start(dea_cards *c, const dea_cards_numbers *n, double sour
 {
     const dea_mobility *m = c->mobility;
     const dea_mobility_state *start = &n->start;
-    const double voltage = dea_cards_film_voltage(c, n, source);
+    const double voltage = cards_film_voltage(c, n, source);
     evaluate(c, start->u);
     start_node(c, "film", voltage);
     if (c->dynamics->series > 0.0) {
@@ -662,7 +663,7 @@ void dea_cards_write_start(dea_cards *c, const dea_cards_numbers *n, double sour
         start_node(c, "disp", start->u);
     }
     for (size_t a = 0; a < c->dynamics->stress_count && !is_linear(c); a++) {
-        start_node(c, dea_mobility_stress_node(c->dynamics, a).name, c->values[m->stresses[a].stress]);
+        start_node(c, mobility_stress_node(c->dynamics, a).name, c->values[m->stresses[a].stress]);
     }
     for (size_t i = 0; i < dea_dynamics_states(c->dynamics) && !is_linear(c); i++) {
         char name[24];

@@ -61,7 +61,6 @@ void dea_mobility_displace(dea_mobility *mobility);
 typedef struct dea_stress_node {
     char name[32];
 } dea_stress_node;
-dea_stress_node dea_mobility_stress_node(const dea_dynamics *dynamics, size_t index);
 
 /* What a text is cured of that stands in a circuit of strangers, with options, starts and neighbours that are not ours: it has an
  * operating point, holds no edge of its own, and bears shunts, m= and default tolerances. */
@@ -120,8 +119,6 @@ void dea_cards_write_quantities(const dea_quantities *quantities, FILE *out);
 void dea_cards_write_numbers(dea_cards *cards, const dea_cards_numbers *numbers);
 void dea_cards_write_network(dea_cards *cards);
 void dea_cards_write_start(dea_cards *cards, const dea_cards_numbers *numbers, double source);
-/* Film voltage that goes with the start [V]. */
-double dea_cards_film_voltage(dea_cards *cards, const dea_cards_numbers *numbers, double source);
 
 /* Node @p node as the integral of the velocity between two nodes, with the cures of a part. The velocity enters with a large factor,
  * so that pivoting finds it from the integrator and not from a difference of forces: only so do springs in parallel share right at

@@ -67,12 +67,13 @@ void dea_motion_open(dea_dynamics *d, const dea_signal *signal, dea_motion *m)
     }
 }
 
-double dea_motion_source(const dea_motion *m, double time)
+/* Source voltage [V] and its slope [V/s] at a time of the segment [s]. */
+static double motion_source(const dea_motion *m, double time)
 {
     return dea_segment_voltage_since(m->signal, m->segment, time);
 }
 
-double dea_motion_slope(const dea_motion *m, double time)
+static double motion_slope(const dea_motion *m, double time)
 {
     return dea_segment_slope(m->signal, m->segment, m->segment->from + time);
 }
@@ -100,7 +101,7 @@ static bool look(const dea_motion *m, double time, const double *y, local_state 
         at->voltage = y[m->q] * m->size[m->q] / at->edge.capacitance;
         at->voltage_slope = -at->voltage * at->edge.capacitance_slope / at->edge.capacitance;
     } else {
-        at->voltage = dea_motion_source(m, time);
+        at->voltage = motion_source(m, time);
     }
     dea_motion_branches(m, y, at->z);
     at->viscous = dea_edge_viscous(d, &at->edge);
@@ -137,7 +138,7 @@ bool dea_motion_rates(const dea_motion *m, double time, const double *y, double 
         f[k] = (at.edge.stress[stress_of(m, k)] / m->size[k] - y[k]) / branch_of(m, k)->tau;
     }
     if (m->q >= 0) {
-        const double current = dea_dynamics_flow(d, dea_motion_source(m, time) - at.voltage) - at.voltage * d->conductance;
+        const double current = dea_dynamics_flow(d, motion_source(m, time) - at.voltage) - at.voltage * d->conductance;
         f[m->q] = current / m->size[m->q];
     }
     return isfinite(f[0]);
@@ -190,7 +191,7 @@ void dea_motion_jacobian(const dea_motion *m, double time, const double *y, doub
         jacobian[k * n + k] = -1.0 / tau;
     }
     if (m->q >= 0) {
-        const bool limited = dea_dynamics_excess(d, dea_motion_source(m, time) - at.voltage) > 0.0;
+        const bool limited = dea_dynamics_excess(d, motion_source(m, time) - at.voltage) > 0.0;
         const double admittance = (limited ? 0.0 : 1.0 / d->series) + d->conductance;
         jacobian[m->q] = -admittance * at.voltage_slope * m->size[0] / m->size[m->q];
         jacobian[m->q * n + m->q] = -admittance / at.edge.capacitance;
@@ -256,9 +257,9 @@ static double velocity(const dea_motion *m, double time, const local_state *at)
 {
     dea_dynamics *d = m->dynamics;
     if (m->q < 0) {
-        return dea_dynamics_velocity(d, at->u, at->voltage, dea_motion_slope(m, time), at->z);
+        return dea_dynamics_velocity(d, at->u, at->voltage, motion_slope(m, time), at->z);
     }
-    const double current = dea_dynamics_flow(d, dea_motion_source(m, time) - at->voltage) - at->voltage * d->conductance;
+    const double current = dea_dynamics_flow(d, motion_source(m, time) - at->voltage) - at->voltage * d->conductance;
     return dea_dynamics_velocity_charged(d, at->u, at->voltage, current / at->edge.capacitance, at->z);
 }
 
@@ -267,12 +268,12 @@ dea_moment dea_motion_moment(const dea_motion *m, double time, const double *y)
     local_state at;
     const double none = (double)NAN;
     dea_moment moment = {
-        .time = m->segment->from + time, .source = dea_motion_source(m, time), .u = none, .v = none, .voltage = none};
+        .time = m->segment->from + time, .source = motion_source(m, time), .u = none, .v = none, .voltage = none};
     if (!look(m, time, y, &at)) {
         return moment;
     }
     moment.voltage = at.voltage;
-    moment.slope = dea_motion_slope(m, time);
+    moment.slope = motion_slope(m, time);
     moment.u = at.u;
     moment.v = at.v;
     if (m->v < 0) {

@@ -30,10 +30,6 @@ typedef struct dea_motion {
 /* Lays out the unknowns. */
 void dea_motion_open(dea_dynamics *dynamics, const dea_signal *signal, dea_motion *motion);
 
-/* Source voltage [V] and its slope [V/s] at a time of the segment [s]. */
-double dea_motion_source(const dea_motion *motion, double time);
-double dea_motion_slope(const dea_motion *motion, double time);
-
 /* True where disc and annulus both are there. */
 bool dea_motion_inside(const dea_motion *motion, double u);
 /* f at y; false where the film cannot be. */

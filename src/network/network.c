@@ -88,7 +88,8 @@ void dea_network_taut(dea_network *network, dea_expr tension)
     append(network, &network->tension, &network->tension_count, tension);
 }
 
-void dea_network_demand(dea_network *network, dea_expr range)
+/* Something that is positive where the point makes sense. */
+static void network_demand(dea_network *network, dea_expr range)
 {
     append(network, &network->range, &network->range_count, range);
 }
@@ -96,7 +97,7 @@ void dea_network_demand(dea_network *network, dea_expr range)
 void dea_network_insulate(const dea_symbols *symbols, dea_network *network, dea_expr l1, dea_expr l2)
 {
     if (dea_expr_constant(symbols->pool, symbols->electrostriction) != 0.0) {
-        dea_network_demand(network, dea_symbols_electric(symbols, l1, l2).own);
+        network_demand(network, dea_symbols_electric(symbols, l1, l2).own);
     }
 }
 
@@ -341,7 +342,8 @@ dea_expr dea_symbols_cross_section(const dea_symbols *symbols)
     return MUL(circumference, DIV(symbols->film_thickness, SQUARE(symbols->prestretch)));
 }
 
-dea_expr dea_symbols_disc_strain(const dea_symbols *symbols)
+/* Radial strain of the disc, u/r_a [1]. */
+static dea_expr symbols_disc_strain(const dea_symbols *symbols)
 {
     return dea_expr_div(symbols->pool, dea_expr_node(symbols->pool, 0), divide_radius(symbols));
 }
@@ -364,7 +366,7 @@ static void place_edge(const dea_symbols *symbols, dea_network *network)
     dea_pool *pool = symbols->pool;
     const dea_expr one = NUM(1.0);
     network->edge = dea_expr_node(pool, 0);
-    network->strain = dea_symbols_disc_strain(symbols);
+    network->strain = symbols_disc_strain(symbols);
     network->kind = symbols->kind;
     network->sign = symbols->kind == DEA_DOT ? 1.0 : -1.0;
     network->voltage = symbols->voltage;
@@ -373,15 +375,15 @@ static void place_edge(const dea_symbols *symbols, dea_network *network)
     network->focal_length = symbols->focal_length;
     network->refractive_index = symbols->refractive_index;
     network->length = MUL(divide_radius(symbols), SUB(one, symbols->coverage)); /* below both r_a and r - r_a */
-    dea_network_demand(network, symbols->coverage);
-    dea_network_demand(network, SUB(one, symbols->coverage));
-    dea_network_demand(network, symbols->permittivity);
-    dea_network_demand(network, dea_symbols_electric(symbols, one, one).first);
-    dea_network_demand(network, modulus_at(pool, symbols->law, symbols->constants, one)); /* three times the shear modulus, twice over */
-    dea_network_demand(network, form_at(symbols, symbols->prestretch, symbols->prestretch).room);
+    network_demand(network, symbols->coverage);
+    network_demand(network, SUB(one, symbols->coverage));
+    network_demand(network, symbols->permittivity);
+    network_demand(network, dea_symbols_electric(symbols, one, one).first);
+    network_demand(network, modulus_at(pool, symbols->law, symbols->constants, one)); /* three times the shear modulus, twice over */
+    network_demand(network, form_at(symbols, symbols->prestretch, symbols->prestretch).room);
     if (symbols->skin) {
-        dea_network_demand(network, symbols->skin_share);
-        dea_network_demand(network, modulus_at(pool, symbols->skin, symbols->skin_constants, one));
+        network_demand(network, symbols->skin_share);
+        network_demand(network, modulus_at(pool, symbols->skin, symbols->skin_constants, one));
     }
     network->breakdown = symbols->breakdown;
 }
@@ -417,7 +419,7 @@ static void add_second(const dea_symbols *symbols, const dea_model *model, dea_n
         dea_network_taut(network, second.tension[i]);
     }
     for (int i = 0; i < second.range_count; i++) {
-        dea_network_demand(network, second.range[i]);
+        network_demand(network, second.range[i]);
     }
     network->second_field = second.field;
     network->second_breakdown = second.breakdown;

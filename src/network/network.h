@@ -124,8 +124,6 @@ void dea_network_gather(dea_network *network);
 
 /* Something that is positive while the film is taut. */
 void dea_network_taut(dea_network *network, dea_expr tension);
-/* Something that is positive where the point makes sense. */
-void dea_network_demand(dea_network *network, dea_expr range);
 /* Demands a permittivity > 0 of the film under lambda_pre l1, lambda_pre l2 where it follows them. */
 void dea_network_insulate(const dea_symbols *symbols, dea_network *network, dea_expr l1, dea_expr l2);
 /* Sets the true field from the area that disc (dot) or annulus (lens) has at u: U lambda_pre^2/H times the area ratio. */
@@ -176,8 +174,7 @@ dea_symbols_factors dea_symbols_electric(const dea_symbols *symbols, dea_expr l1
 dea_expr dea_symbols_capacitance(const dea_symbols *symbols);
 /* A_cross = 2 pi r_a H/lambda_pre^2 [m^2]. */
 dea_expr dea_symbols_cross_section(const dea_symbols *symbols);
-/* Radial strain of the disc, u/r_a, and of the annulus, -u/(r - r_a) (Eq. 17) [1]. */
-dea_expr dea_symbols_disc_strain(const dea_symbols *symbols);
+/* Radial strain of the annulus, -u/(r - r_a) (Eq. 17) [1]. */
 dea_expr dea_symbols_annulus_strain(const dea_symbols *symbols);
 /* r - r_a [m]. */
 dea_expr dea_symbols_annulus_width(const dea_symbols *symbols);

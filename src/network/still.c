@@ -110,7 +110,9 @@ static void solve(size_t n, const double *k, double *x)
     }
 }
 
-bool dea_still_step(const dea_still *still, double share, const double *u, double *step)
+/* Newton's step at @p u under that share of the load, node_count values [m]. False where the stiffness matrix is not positive
+ * definite (a pivot <= 0: the film is not stable), a ring has no stress or is no longer elliptic (ds_1/dlambda_1 <= 0); then @p step is undefined. */
+static bool still_step(const dea_still *still, double share, const double *u, double *step)
 {
     const size_t n = still->rings.node_count;
     double k[DEA_RINGS_NODES * DEA_RINGS_NODES];
@@ -161,7 +163,7 @@ static bool settle(const dea_still *still, double share, double reach, double *u
     const size_t n = still->rings.node_count;
     double step[DEA_RINGS_NODES], moved = 0.0, last = (double)INFINITY;
     for (int i = 0; i < NEWTON_MOST; i++) {
-        if (!dea_still_step(still, share, u, step)) {
+        if (!still_step(still, share, u, step)) {
             return false;
         }
         const double size = size_of(n, step);
@@ -184,7 +186,7 @@ static bool settle(const dea_still *still, double share, double reach, double *u
 static bool tangent(const dea_still *still, double share, const double *u, double *slope)
 {
     const double more = 1e-4;
-    if (!dea_still_step(still, share + more, u, slope)) {
+    if (!still_step(still, share + more, u, slope)) {
         return false;
     }
     for (size_t i = 0; i < still->rings.node_count; i++) {
@@ -200,7 +202,7 @@ dea_state dea_still_climb(const dea_still *still, double *u)
     double share = 0.0, step = first_share;
     memset(u, 0, n * sizeof *u);
     if (still->pressure == 0.0) {
-        return dea_still_step(still, 0.0, u, slope) ? DEA_STATE_OK : DEA_STATE_PULL_IN;
+        return still_step(still, 0.0, u, slope) ? DEA_STATE_OK : DEA_STATE_PULL_IN;
     }
     while (share < 1.0 && step > least_share) {
         const double to = share + step < 1.0 ? share + step : 1.0;
@@ -343,11 +345,6 @@ static double fill(const dea_still *still, const double *u, dea_row *row)
     return slack;
 }
 
-void dea_still_fill(const dea_still *still, const double *u, dea_row *row)
-{
-    (void)fill(still, u, row);
-}
-
 static double relative(double a, double b)
 {
     return a == b ? 0.0 : fabs(a - b) / fabs(b);
@@ -357,7 +354,7 @@ double dea_still_apart(const dea_still *coarse, const double *u, const dea_still
 {
     double better[DEA_RINGS_NODES];
     dea_row other;
-    if (!dea_still_step(fine, 1.0, v, better)) {
+    if (!still_step(fine, 1.0, v, better)) {
         return INFINITY;
     }
     for (size_t n = 0; n < fine->rings.node_count; n++) {
@@ -382,7 +379,7 @@ static double finer_error(const dea_still *still, const double *u, size_t more)
     dea_still_open(still->point, (dea_rings_mesh){mesh.disc, mesh.annulus + more, mesh.logarithmic}, &fine);
     dea_rings_transfer(mesh, fine.rings.mesh, matrix);
     dea_rings_move(matrix, still->rings.node_count, u, fine.rings.node_count, v);
-    if (!dea_still_step(&fine, 1.0, v, step)) {
+    if (!still_step(&fine, 1.0, v, step)) {
         return INFINITY;
     }
     return fmax(fabs(step[fine.rings.edge] / v[fine.rings.edge]), row_share * dea_still_apart(still, u, &fine, v, &row));

@@ -14,10 +14,6 @@ typedef struct dea_still {
 /* Cuts the film of a point whose numbers are in their ranges; it borrows the point. */
 void dea_still_open(const dea_point *point, dea_rings_mesh mesh, dea_still *still);
 
-/* Newton's step at @p u under that share of the load, node_count values [m]. False where the stiffness matrix is not positive
- * definite (a pivot <= 0: the film is not stable), a ring has no stress or is no longer elliptic (ds_1/dlambda_1 <= 0); then @p step is undefined. */
-bool dea_still_step(const dea_still *still, double share, const double *u, double *step);
-
 /* Fills the row of a mesh at u; returns how far it is, relative, from that of a finer mesh behind Newton's step from @p v, the same
  * place on it, with the stress that tells slack where their states differ; inf where that has no step. */
 double dea_still_apart(const dea_still *coarse, const double *u, const dea_still *fine, const double *v, dea_row *row);
@@ -31,9 +27,6 @@ bool dea_still_near(const dea_still *still, const double *u);
 
 /* Largest strain of a ring in its plane [1]. */
 double dea_still_strain(const dea_still *still, const double *u);
-
-/* Fills the row of an equilibrium; its state says slack or breakdown. */
-void dea_still_fill(const dea_still *still, const double *u, dea_row *row);
 
 /* What meshes of one and of two degrees more make of the equilibrium @p u, the larger: of the edge's displacement, relative, and a
  * share of that of its row. */

@@ -138,7 +138,7 @@ $(FUZZ_RUNS): fuzz-%: $(BUILD)/fuzz/%_fuzz
 	&& grep -h executed $(BUILD)/fuzz/$*.log || { tail -n 40 $(BUILD)/fuzz/$*.log; false; }; })
 
 FUZZ_SEEDS_scene := tests/bad examples
-FUZZ_FOLDERS := scene support material drive study geometry load
+FUZZ_FOLDERS := scene support material drive study film load
 $(BUILD)/fuzz/scene_fuzz: tests/fuzz/scene_fuzz.c $(sort $(wildcard $(FUZZ_FOLDERS:%=src/%/*.c))) | clang-stage
 	@mkdir -p $(@D)
 	@echo "CC $@"

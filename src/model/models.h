@@ -2,7 +2,7 @@
 #ifndef DEA_MODELS_H
 #define DEA_MODELS_H
 
-#include "geometry/point.h"
+#include "film/point.h"
 
 extern const dea_model dea_model_pelrine;
 extern const dea_model dea_model_constant_force;

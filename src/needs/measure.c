@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "deaspice/needs.h"
-#include "geometry/point.h"
+#include "film/point.h"
 #include "needs/trial.h"
 #include "network/dynamics.h"
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "geometry/point.h"
+#include "film/point.h"
 #include "needs/surrogate.h"
 #include "network/swing.h"
 #include "study/study.h"

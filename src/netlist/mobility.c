@@ -10,7 +10,7 @@
 
 #include "expression/derivative.h"
 #include "expression/formula.h"
-#include "geometry/point.h"
+#include "film/point.h"
 #include "support/named.h"
 
 static const dea_analogy analogies[] = {

@@ -7,7 +7,7 @@
 
 #include "expression/derivative.h"
 #include "expression/formula.h"
-#include "geometry/point.h"
+#include "film/point.h"
 #include "netlist/mobility.h"
 #include "netlist/rings_part.h"
 #include "support/memory_text.h"

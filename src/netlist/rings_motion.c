@@ -5,7 +5,7 @@
 
 #include "expression/formula.h"
 #include "deaspice/model.h"
-#include "geometry/edge.h"
+#include "film/edge.h"
 
 static bool is_free(const dea_membrane *m)
 {

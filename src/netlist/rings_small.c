@@ -2,7 +2,7 @@
 
 #include <ctype.h>
 
-#include "geometry/point.h"
+#include "film/point.h"
 #include "netlist/export.h"
 
 /* Changes of the nominal stresses of a ring over its strains e_a from the bias [Pa]: with the voltage, and those that damper and

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "geometry/point.h"
+#include "film/point.h"
 
 dea_status dea_along_open(const dea_membrane *m, const dea_scene *scene, const dea_layout *layout, dea_along *along, dea_error *error)
 {

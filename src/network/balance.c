@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "geometry/point.h"
+#include "film/point.h"
 
 enum { ELASTIC, LOAD, STEADY, FORCES };
 enum {

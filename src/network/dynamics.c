@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-#include "geometry/point.h"
+#include "film/point.h"
 #include "study/study.h"
 #include "support/gauss.h"
 

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "geometry/point.h"
+#include "film/point.h"
 #include "study/study.h"
 #include "support/lapack.h"
 

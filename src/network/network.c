@@ -6,8 +6,8 @@
 #include <stdlib.h>
 
 #include "expression/derivative.h"
-#include "geometry/edge.h"
-#include "geometry/second.h"
+#include "film/edge.h"
+#include "film/second.h"
 #include "material/form.h"
 
 void dea_network_free(dea_network *network)

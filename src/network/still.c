@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "geometry/point.h"
+#include "film/point.h"
 
 /* Share of the load that the first step from rest takes, and the least one: a fold then lies within it. */
 static const double first_share = 0.25;

@@ -1,5 +1,7 @@
 #include "output/bench.h"
 
+#include "picture/picture.h"
+
 #include <stdlib.h>
 
 struct dea_bench_output {

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "geometry/point.h"
+#include "film/point.h"
 #include "needs/nearness.h"
 #include "network/swing.h"
 #include "program/omissions.h"

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "output/journal.h"
+#include "journal/journal.h"
 #include "program/audience.h"
 #include "support/clock.h"
 

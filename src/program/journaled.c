@@ -5,7 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "output/journal.h"
+#include "journal/journal.h"
 #include "program/audience.h"
 #include "study/study.h"
 #include "support/clock.h"

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "scene/line.h"
-#include "output/label.h"
+#include "picture/label.h"
 #include "support/number.h"
 
 const char *dea_bound_text(double bound, char text[32])

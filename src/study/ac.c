@@ -4,7 +4,7 @@
 
 #include "netlist/export.h"
 #include "scene/key_forms.h"
-#include "output/picture.h"
+#include "picture/picture.h"
 #include "study/study.h"
 
 #define AC "study.ac"

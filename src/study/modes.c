@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "output/picture.h"
+#include "picture/picture.h"
 #include "scene/key_forms.h"
 #include "study/study.h"
 

@@ -3,7 +3,7 @@
 
 #include "netlist/export.h"
 #include "scene/key_forms.h"
-#include "output/picture.h"
+#include "picture/picture.h"
 #include "study/study.h"
 
 static const dea_key keys[] = {

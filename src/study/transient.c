@@ -9,7 +9,7 @@
 #include "network/swing.h"
 #include "result/scales.h"
 #include "scene/key_forms.h"
-#include "output/picture.h"
+#include "picture/picture.h"
 #include "study/study.h"
 #include "support/number.h"
 

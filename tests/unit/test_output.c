@@ -27,7 +27,7 @@
 #include "deaspice/output.h"
 #include "deaspice/plot.h"
 #include "output/progress.h"
-#include "output/runs.h"
+#include "picture/runs.h"
 #include "support/number.h"
 
 static char folder[64];

@@ -5,7 +5,7 @@
 #include <errno.h>
 
 #include "deaspice/deaspice.h"
-#include "output/journal.h"
+#include "journal/journal.h"
 
 enum { POINTS = 24000, BLOCK = 375, BLOCKS = 64, PACKED = 65, KILLS = 20 };
 

@@ -3,7 +3,7 @@
 #include "scenes.h"
 
 #include "engine/cut.h"
-#include "output/journal.h"
+#include "journal/journal.h"
 #include "scene/keys.h"
 
 /* Two models, two axes, 2 x 150 points in blocks of several sizes; the largest electrode does not fit its frame. */

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "netlist/part.h"
-#include "output/journal.h"
+#include "journal/journal.h"
 
 #define HEAD "actuator: {kind: dot, frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n"
 #define CONSTANTS "yeoh: {C1: 178426 Pa, C2: -6023 Pa, C3: 4234 Pa}, permittivity: 2.8"

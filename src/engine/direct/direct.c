@@ -4,7 +4,7 @@
 
 #include "engine/direct/direct.h"
 #include "engine/engines.h"
-#include "geometry/point.h"
+#include "film/point.h"
 #include "scene/line.h"
 #include "study/study.h"
 

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "geometry/point.h"
+#include "film/point.h"
 
 enum { SAMPLES = 65, HALVINGS = 60 };
 

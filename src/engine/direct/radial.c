@@ -11,7 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "geometry/point.h"
+#include "film/point.h"
 #include "model/field.h"
 #include "support/gauss.h"
 

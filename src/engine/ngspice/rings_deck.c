@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "geometry/point.h"
+#include "film/point.h"
 #include "support/memory_text.h"
 
 dea_status dea_rings_deck_network(const dea_scene *scene, const dea_membrane *membrane, double unit, char **text, dea_error *error)

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "geometry/point.h"
+#include "film/point.h"
 #include "support/gauss.h"
 
 /* Steps in a radian of the first mode at fineness 1: the trapezoidal rule turns the modes above it too. */

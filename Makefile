@@ -278,7 +278,7 @@ $(UNIT_OBJECTS): OWN = -O1
 $(TRUTHS): OWN = $(TRUTH_FLAGS)
 $(UNIT_PROGRAMS): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(BUILD)/libdeaspice.a
 	@echo "LD $@"
-	@$(CC) $(CFLAGS) $(LDFLAGS) $(filter %.o,$^) $(BUILD)/libdeaspice.a -o $@ -lcmocka $(LIBS)
+	@$(CC) $(CFLAGS) $(LDFLAGS) $(WRAPPED) $(filter %.o,$^) $(BUILD)/libdeaspice.a -o $@ -lcmocka $(LIBS)
 
 # The whole program with calls that can be made to fail.
 FAULTS := $(shell awk -F '[^A-Za-z0-9_]+' '$$1 == "FAULT_CALL" {print $$2} $$2 ~ /^__wrap_/ {print substr($$2, 8)}' tests/unit/faults.h)
@@ -287,7 +287,7 @@ $(BUILD)/tests/program.o: src/program/main.c Makefile
 	@echo "CC $@"
 	@$(CC) $(ALL_CFLAGS) -Dmain=deaspice_main -c $< -o $@
 $(BUILD)/tests/test_faults: $(filter-out %/main.o,$(PROGRAM_OBJECTS)) $(BUILD)/tests/program.o
-$(BUILD)/tests/test_faults: private LDFLAGS += $(FAULTS:%=-Wl,--wrap=%)
+$(BUILD)/tests/test_faults: private WRAPPED = $(FAULTS:%=-Wl,--wrap=%)
 $(BUILD)/tests/test_stability: $(STABILITY_PARTS)
 $(BUILD)/tests/test_promises $(BUILD)/tests/test_columns: $(filter-out %/main.o,$(PROMISES))
 $(BUILD)/tests/test_hard_static $(BUILD)/tests/test_hard_moving: $(TRUTHS)

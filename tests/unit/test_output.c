@@ -911,7 +911,7 @@ static void long_curves_make_small_pictures(void **state)
     struct stat about;
     assert_int_equal(study_draw(&scene, in_folder("a.svg"), &error), DEA_OK);
     assert_int_equal(stat(in_folder("a.svg"), &about), 0);
-    assert_in_range(about.st_size, 10000, 200000);
+    assert_true(about.st_size >= 10000 && about.st_size <= 200000);
 }
 
 static void two_long_axes_make_a_map(void **state)
@@ -993,7 +993,7 @@ static void long_runs_make_small_pictures(void **state)
     struct stat about;
     assert_int_equal(points_draw(&scene, in_folder("a.svg"), &error), DEA_OK);
     assert_int_equal(stat(in_folder("a.svg"), &about), 0);
-    assert_in_range(about.st_size, 10000, 200000);
+    assert_true(about.st_size >= 10000 && about.st_size <= 200000);
 }
 
 /* The curve of quantity @p quantity that a picture keeps of @p count samples. */
@@ -1022,7 +1022,7 @@ static void thinned_curve_keeps_every_peak(void **state)
     }
     dea_runs runs;
     const dea_plot_trace *trace = trace_make(&scene, &runs, 0, point);
-    assert_in_range(trace->count, 1000, 2000);
+    assert_true(trace->count >= 1000 && trace->count <= 2000);
     for (size_t i = 0; i < 6; i++) {
         size_t found = 0;
         for (size_t k = 0; k < trace->count; k++) {
@@ -1371,7 +1371,7 @@ static void progress_shows_on_a_terminal_and_erases_itself(void **state)
         assert_true(piece > 0);
         length += piece;
     }
-    assert_in_range(length, 20, 200); /* one bar, not a thousand */
+    assert_true(length >= 20 && length <= 200); /* one bar, not a thousand */
     assert_non_null(strstr(text, " 50 %  50/100"));
     assert_null(strstr(text, "\033[36m"));
     assert_string_equal(text + length - 4, "\r\033[K");

@@ -109,8 +109,8 @@ static void plot_take(FILE *file, plot *read)
     assert_true(read->complex || strcmp(rest, "real") == 0);
     read->vectors = number_take(file, "No. Variables: ");
     read->points = number_take(file, "No. Points: ");
-    assert_in_range(read->vectors, 2, VECTORS);
-    assert_in_range(read->points, 1, 1000);
+    assert_true(read->vectors >= 2 && read->vectors <= VECTORS);
+    assert_true(read->points >= 1 && read->points <= 1000);
     line_take(file, "Variables:", rest, 1);
     for (size_t i = 0; i < read->vectors; i++) {
         vector_take(file, read, i);

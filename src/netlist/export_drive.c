@@ -71,7 +71,7 @@ static void edge(const dea_export_drive *w, pen *p, double to, double voltage)
     }
 }
 
-/* Jumps become edges; an edge that is too short for the simulator's steps is made longer. */
+/* Jumps become edges; an edge that is too short for the simulator's steps is made longer, or left out, and its jump made behind it. */
 static void write_corners(const dea_export_drive *w)
 {
     pen p = {.out = w->out};
@@ -80,7 +80,7 @@ static void write_corners(const dea_export_drive *w)
         const dea_segment *s = &w->signal.segments[i];
         if (i == 0) {
             corner(&p, s->from, s->start);
-        } else if (s->start != s[-1].end) {
+        } else if (s->start != p.voltage) {
             corner(&p, fmax(s->from, p.last) + shortest, s->start);
         }
         if (s->to > p.last + 0.5 * shortest || i + 1 == w->signal.count) {

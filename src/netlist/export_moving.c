@@ -64,7 +64,8 @@ static void write_tolerances(writer *w)
     const double velocity = 1e-11 * fmin(speed, scale) + 2e-12 * speed;
     const double least = fmin(1e-11 * scale, 1e-11 * force);
     const double free = 1e-7 * scale; /* the velocity is a difference of displacements over a step: it hears what they are open by */
-    const double held = w->analogy->loop ? least : fmin(velocity, 1e-11 * scale + 2e-12 * speed);
+    /* in a loop the velocity is a current, and a voltage once more to be read: its rounding is that of differences of u over a step */
+    const double held = w->analogy->loop ? least + 2e-12 * speed : fmin(velocity, 1e-11 * scale + 2e-12 * speed);
     const double voltage = w->mobility.displaced ? free : held;
     const double current = w->analogy->loop ? 1e-11 * speed : 1e-10 * force;
     dea_part_print(w->out, "* tolerances of one time step\n%s reltol=1e-7 abstol=%g vntol=%g\n",

@@ -349,7 +349,7 @@ static void give_number(dea_part_text *text, dea_expr ref)
 
 static bool gets_node(const dea_part_text *text, dea_expr ref)
 {
-    return text->terms[ref].nodal && text->terms[ref].uses > 1;
+    return text->terms[ref].nodal && (text->terms[ref].factor || text->terms[ref].uses > 1);
 }
 
 /* What sources refer to first, so that they read the same with numbers and with formulas. */
@@ -467,7 +467,7 @@ void dea_part_text_nodes_of(dea_part_text *text, dea_expr ref)
     if (text->terms[ref].moves && !text->terms[ref].written && term->operation >= DEA_ADD) {
         dea_part_text_nodes_of(text, term->a);
         dea_part_text_nodes_of(text, term->b);
-        if (text->terms[ref].nodal && text->terms[ref].uses > 1) {
+        if (gets_node(text, ref)) {
             write_node(text, ref);
         }
     }

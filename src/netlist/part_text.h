@@ -33,6 +33,7 @@ typedef struct dea_part_term {
     bool moves;   /* depends on the displacement */
     bool divides; /* stands in a divisor or a logarithm */
     bool nodal;   /* becomes a node where it is shared */
+    bool factor;  /* and where it stands once */
     bool written; /* has its .param card or its node */
 } dea_part_term;
 

@@ -82,8 +82,8 @@ static void make_stress(const dea_symbols *symbols, dea_rings_strain strain, boo
     const dea_expr e2 = hoop_of(pool, strain), rest = dea_symbols_rest_stress(symbols);
     const dea_expr l1 = ADD(NUM(1.0), e1), l2 = ADD(NUM(1.0), e2), l3 = ADD(NUM(1.0), dea_expr_node(pool, DEA_RINGS_E3));
     dea_rings_cauchy(symbols, strain, stress);
-    stress[0] = MUL(SUB(stress[0], MUL(rest, e1)), MUL(l2, l3)); /* 1/(1 + e_1) */
-    stress[1] = MUL(SUB(stress[1], MUL(rest, e2)), MUL(l1, l3));
+    stress[0] = MUL(MUL(SUB(stress[0], MUL(rest, e1)), l2), l3); /* 1/(1 + e_1) */
+    stress[1] = MUL(MUL(SUB(stress[1], MUL(rest, e2)), l1), l3);
     if (electroded && symbols->skin) {
         stress[0] = ADD(stress[0], DIV(dea_hyperelastic_skin(symbols, e1, e2), l1));
         stress[1] = ADD(stress[1], DIV(dea_hyperelastic_skin(symbols, e2, e1), l2));
@@ -136,27 +136,50 @@ static int stresses_of(const dea_rings_ring *ring)
     return ring->strain == DEA_RINGS_FREE ? 2 : 1; /* at the frame nothing moves with s_2 */
 }
 
+static bool is_scaled(const dea_part_text *text, const dea_term *term)
+{
+    return term->operation == DEA_MUL && !(text->terms[term->a].moves && text->terms[term->b].moves);
+}
+
 /* A term is worth a node of its own where the strains stand in it so often, and more than a number times another: a source's
  * expression is differentiated by each of its nodes, and each node costs a row of the matrix. Measured with Yeoh's law. */
 enum { WORTH = 3 };
 
-static bool is_worth(const dea_part_text *text, dea_expr ref)
-{
-    const dea_term *term = &text->pool->terms[ref];
-    const bool scaled = term->operation == DEA_MUL && (!text->terms[term->a].moves || !text->terms[term->b].moves);
-    return text->terms[ref].places == 0 || (text->terms[ref].places >= WORTH && !scaled);
-}
-
 void dea_rings_cards_share(dea_part_text *text)
 {
     for (int i = 0; i < text->pool->count; i++) {
-        text->terms[i].nodal = text->terms[i].nodal && is_worth(text, i);
+        const int places = text->terms[i].places;
+        text->terms[i].nodal = text->terms[i].nodal && (places == 0 || (places >= WORTH && !is_scaled(text, &text->pool->terms[i])));
+    }
+}
+
+static void mark_factor(dea_part_text *text, dea_expr ref)
+{
+    const dea_term *term = &text->pool->terms[ref];
+    if (is_scaled(text, term)) {
+        mark_factor(text, text->terms[term->a].moves ? term->a : term->b);
+    } else {
+        text->terms[ref].factor = true;
+    }
+}
+
+/* The derivative of a product repeats what its other factors are, so that each of them in which the strains stand more than once is
+ * worth a node, shared or not. At rest alone: what moves has as many rows again. Measured with Yeoh's law. */
+static void share_still(dea_part_text *text)
+{
+    for (int i = 0; i < text->pool->count; i++) {
+        const dea_term *term = &text->pool->terms[i];
+        if (term->operation == DEA_MUL && text->terms[term->a].places > 0 && text->terms[term->b].places > 0) {
+            mark_factor(text, term->a);
+            mark_factor(text, term->b);
+        }
+        text->terms[i].nodal = text->terms[i].nodal && !is_scaled(text, term);
     }
 }
 
 void dea_rings_cards_declare(const dea_rings_cards *cards, dea_part_text *text)
 {
-    dea_rings_cards_share(text);
+    share_still(text);
     bool declared[DEA_RINGS_STRAINS][2] = {{false}};
     for (size_t q = 0; q < cards->ring_count; q++) {
         const dea_rings_ring *ring = &cards->rings[q];

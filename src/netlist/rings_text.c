@@ -120,14 +120,15 @@ void dea_rings_spread(const dea_rings_writer *w, const dea_rings_ring *ring, con
     write_levers(w, ring, control, kind, true, factor);
 }
 
+/* (1 + e_1)(1 + e_2)(1 + e_3) = 1, solved by Newton with all else: a quotient has long derivatives. */
 void dea_rings_thickness(const dea_rings_writer *w, dea_rings_strain strain, size_t q)
 {
     const char hoop = strain == DEA_RINGS_UNIFORM ? 'a' : 'b';
     dea_rings_begin(w, dea_rings_label_of("w", q).text);
     if (strain == DEA_RINGS_FRAME) {
-        fprintf(w->out, "-v(a%zu)/(1+v(a%zu))", q, q);
+        fprintf(w->out, "-v(a%zu)*(1+v(w%zu))", q, q);
     } else {
-        fprintf(w->out, "-(v(a%zu)+v(%c%zu)+v(a%zu)*v(%c%zu))/((1+v(a%zu))*(1+v(%c%zu)))", q, hoop, q, q, hoop, q, q, hoop, q);
+        fprintf(w->out, "-(v(a%zu)+v(%c%zu)*(1+v(a%zu)))*(1+v(w%zu))", q, hoop, q, q, q);
     }
     dea_rings_end(w);
 }

@@ -168,19 +168,23 @@ static void ngspice_lumped_row(const char *peers)
     dea_scene_free(&scene);
 }
 
-static void ngspice_coverage_row(void)
+/* One core of ngspice over many points of an axis, against a goal in microseconds a point. */
+static void ngspice_row(const char *model, const char *axis, const char *along, double accuracy, double goal)
 {
     double seconds[BENCH_RUNS];
-    dea_scene scene = line_scene("coverage", coverages, MANY);
+    dea_scene scene = line_scene(model, axis, MANY);
     dea_row *rows = bench_shared(MANY * sizeof *rows);
+    scene.accuracy = accuracy;
     for (int i = 0; i < BENCH_RUNS; i++) {
         seconds[i] = bench_sweep(dea_engine_find("ngspice"), &scene, rows);
     }
-    char measured[COLUMN], wrong[COLUMN];
-    const double time = 1e6 * bench_median(seconds, BENCH_RUNS) / MANY;
+    char what[COLUMN], aim[COLUMN], measured[COLUMN], wrong[COLUMN];
+    const double time = 1e6 * bench_median(seconds, BENCH_RUNS) / MANY, error = error_of(&scene, rows, MANY);
+    snprintf(what, sizeof what, "ngspice, 100,000 points, one core, %s over %s, %.0e", model, along, accuracy);
+    snprintf(aim, sizeof aim, "%g us", goal);
     snprintf(measured, sizeof measured, "%.2f us", time);
-    snprintf(wrong, sizeof wrong, "%.1e relative", error_of(&scene, rows, MANY));
-    bench_row("ngspice, 100,000 points, one core, coverage", "10 us", time <= 10.0, measured, wrong);
+    snprintf(wrong, sizeof wrong, "%.1e relative", error);
+    bench_row(what, aim, time <= goal && error <= accuracy, measured, wrong);
     dea_scene_free(&scene);
 }
 
@@ -214,7 +218,9 @@ static void lame_row(void)
 void bench_engines(const char *peers)
 {
     ngspice_lumped_row(peers);
-    ngspice_coverage_row();
+    ngspice_row("coverage", coverages, "coverage", 1e-6, 10.0);
+    ngspice_row("field", voltages, "voltage", 1e-9, 50.0);
+    ngspice_row("field", coverages, "coverage", 1e-6, 1000.0);
     direct_row("lumped", 2000000, 50e6, "50 M points/s");
     lame_row();
     direct_row("coverage", 500000, 5e6, "5 M points/s");

@@ -21,6 +21,10 @@ enum { LONGEST_SWEEP = 100000, LONGEST_LIST = 64, RAMP_STEPS = 32, RAMP_REFINED 
 static const double mesh_share = 0.03;
 static const double answer_share = 0.2;
 
+/* Newton's last step, over the error that an answer may have: ngspice tells what stood before that step. And the error of what is
+ * small beside the film's strain, over that. */
+static const double step_share = 0.5, small_share = 0.1;
+
 /* Two climbs and a solution of one equilibrium differ by less than this, of two by more [1]. */
 static const double same = 1e-4;
 
@@ -36,6 +40,7 @@ typedef struct line_job {
     dea_rings_mesh mesh;
     double error; /* of the line, expected of the mesh [1] */
     dea_still coarse, fine; /* of that point */
+    double start[DEA_RINGS_NODES]; /* the equilibrium from which a sweep sets out [m] */
     double cut[4];          /* what the rings were cut for */
     double transfer[DEA_RINGS_NODES * DEA_RINGS_NODES];
 } line_job;
@@ -130,9 +135,24 @@ static double least_strain(line_job *job, size_t from, size_t count)
     return least;
 }
 
+/* Where Newton starts on the nodes: from rest it may miss the first equilibrium of a sweep, or come to one that the film does not reach. */
+static void write_start(const dea_rings_line *line, const line_job *job, const double *u, FILE *out)
+{
+    fputs("\n.nodeset", out);
+    for (size_t n = 0; n < line->mesh.disc + line->mesh.annulus - 1; n++) {
+        dea_part_print(out, " v(xline%zu.u%zu)=%g", line->number, n + 1, u[n] / job->point.frame_radius);
+    }
+}
+
+/* Points of a line, how exactly they are solved, and the displacements to start from [m], NULL: rest. */
+typedef struct analysis {
+    size_t from, to;
+    double relative, absolute;
+    const double *start;
+} analysis;
+
 /* The circuit of some points with its analysis; the caller frees *text. */
-static dea_status write_deck(const dea_rings_line *line, const line_job *job, size_t from, size_t to, double strain, char **text,
-                             dea_error *error)
+static dea_status write_deck(const dea_rings_line *line, const line_job *job, const analysis *a, char **text, dea_error *error)
 {
     dea_memory_text memory;
     dea_status status = dea_memory_text_begin(&memory, error);
@@ -141,11 +161,14 @@ static dea_status write_deck(const dea_rings_line *line, const line_job *job, si
         fputs("* exact membrane as a network of rings\n", out);
         status = dea_rings_line_write(line, dea_dialect_at(0), out, error);
         dea_part_print(out, "VINDEX k 0 0\n.options itl1=100 itl2=100 gminsteps=0 srcsteps=0 reltol=%g vntol=%g abstol=%g\n.save",
-                       fmin(1e-7, job->accuracy), 1e-11 * strain, 1e-11 * strain);
+                       a->relative, a->absolute, a->absolute);
         for (size_t n = 1; n < line->mesh.disc + line->mesh.annulus; n++) {
             fprintf(out, " v(xline%zu.u%zu)", line->number, n);
         }
-        fprintf(out, "\n.dc VINDEX %zu %zu 1\n.end\n", from, to);
+        if (a->start) {
+            write_start(line, job, a->start, out);
+        }
+        fprintf(out, "\n.dc VINDEX %zu %zu 1\n.end\n", a->from, a->to);
     }
     status = dea_memory_text_end(&memory, status, error);
     *text = memory.text;
@@ -153,8 +176,7 @@ static dea_status write_deck(const dea_rings_line *line, const line_job *job, si
 }
 
 /* Runs a circuit and reads the displacements of its nodes over r; the caller frees the table, also after a failure. */
-static dea_status run(line_job *job, const dea_rings_line *line, size_t from, size_t to, double strain, dea_ngspice_table *table,
-                      dea_error *error)
+static dea_status run(line_job *job, const dea_rings_line *line, const analysis *a, dea_ngspice_table *table, dea_error *error)
 {
     char *text;
     char names[DEA_RINGS_NODES][32];
@@ -164,7 +186,7 @@ static dea_status run(line_job *job, const dea_rings_line *line, size_t from, si
         snprintf(names[n], sizeof names[n], "xline%zu.u%zu", line->number, n + 1);
         list[n] = names[n];
     }
-    dea_status status = write_deck(line, job, from, to, strain, &text, error);
+    dea_status status = write_deck(line, job, a, &text, error);
     if (status == DEA_OK) {
         status = dea_ngspice_run_all(job->library, text, list, nodes, table, error);
         free(text);
@@ -175,13 +197,12 @@ static dea_status run(line_job *job, const dea_rings_line *line, size_t from, si
 static bool can_start(void *user, size_t i)
 {
     line_job *job = user;
-    double u[DEA_RINGS_NODES];
     place(job, i);
     if (!job->valid || job->point.voltage == 0.0) {
         return false;
     }
     cut(job);
-    return dea_still_climb(&job->coarse, u) == DEA_STATE_OK;
+    return dea_still_climb(&job->coarse, job->start) == DEA_STATE_OK;
 }
 
 static dea_status sweep(void *user, size_t from, size_t count, size_t *good, dea_error *error)
@@ -190,7 +211,8 @@ static dea_status sweep(void *user, size_t from, size_t count, size_t *good, dea
     const dea_line *l = job->line;
     const size_t first = l->from + from;
     const bool uniform = !l->axis || l->axis->uniform;
-    const double strain = least_strain(job, from, count);
+    const double relative = step_share * answer_share * job->accuracy;
+    const analysis a = {first, first + count - 1, relative, small_share * relative * least_strain(job, from, count), job->start};
     place(job, from);
     const dea_scene start = job->scene; /* borrowed by the text alone */
     const dea_rings_line line = {.scene = &start,
@@ -201,7 +223,7 @@ static dea_status sweep(void *user, size_t from, size_t count, size_t *good, dea
                                  .error = job->error,
                                  .number = 1};
     dea_ngspice_table table = {0};
-    const dea_status status = run(job, &line, first, first + count - 1, strain, &table, error);
+    const dea_status status = run(job, &line, &a, &table, error);
     *good = 0;
     while (status == DEA_OK && *good < table.count && *good < count) {
         place(job, from + *good);
@@ -236,7 +258,8 @@ static dea_status climb(line_job *job, size_t i, size_t steps, bool *accepted, d
     double u[DEA_RINGS_NODES];
     const bool known = dea_still_climb(&job->coarse, u) == DEA_STATE_OK;
     const double strain = known ? dea_still_strain(&job->coarse, u) / (double)(steps * steps) : 1e-6;
-    const dea_status status = run(job, &line, 0, steps, strain, &table, error);
+    const analysis a = {.to = steps, .relative = fmin(1e-7, job->accuracy), .absolute = 1e-11 * strain};
+    const dea_status status = run(job, &line, &a, &table, error);
     *accepted = status == DEA_OK && table.count == steps + 1 && accept(job, i, (const double *const *)table.columns, steps);
     dea_ngspice_table_free(&table);
     free(values);

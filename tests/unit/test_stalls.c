@@ -3,6 +3,7 @@
 #include "scenes.h"
 
 #include <stdlib.h>
+#include <unistd.h>
 
 #include "../promises/promises.h"
 
@@ -167,6 +168,31 @@ static void what_takes_too_long_is_refused_at_once(void **state)
     assert_non_null(strstr(found.log, "--engine ida"));
 }
 
+/* A record of a sine with noise, of which a film with a damper sees much: a netlist of a film that is not linear costs milliseconds. */
+static void a_noisy_record_that_takes_too_long_is_refused_at_once(void **state)
+{
+    (void)state;
+    enum { ROWS = 200000 };
+    char path[] = "/tmp/deaspice-noise-XXXXXX", text[LINE];
+    FILE *file = fdopen(mkstemp(path), "w");
+    assert_non_null(file);
+    unsigned seed = 3;
+    fputs("time_s,voltage_V\n", file);
+    for (int i = 0; i < ROWS; i++) {
+        const double time = i / (ROWS - 1.0);
+        seed = 1664525u * seed + 1013904223u;
+        fprintf(file, "%.9g,%.6g\n", time, 2000.0 + 1500.0 * sin(6.0 * DEA_PI * time) + 20.0 * (seed / 4294967296.0 - 0.5));
+    }
+    assert_int_equal(fclose(file), 0);
+    snprintf(text, sizeof text, SILICONE_DOT "drive: {waveform: {file: %s}}\nmodel: ring\nstudy: {transient: {until: 1 s, every: 1 ms}}\n", path);
+    run_text(text, "ngspice", 1e-4, &found);
+    remove(path);
+    assert_int_equal(found.samples[1].state, DEA_STATE_FAILED);
+    assert_non_null(strstr(found.log, "netlists"));
+    assert_non_null(strstr(found.log, "at most"));
+    assert_non_null(strstr(found.log, "--engine ida"));
+}
+
 /* ---- past the fold in time */
 
 static const char *snap(char *text, const char *film, double voltage, const char *times)
@@ -251,6 +277,7 @@ int main(void)
         cmocka_unit_test(a_film_is_thrown_back_where_its_chains_are_straight),
         cmocka_unit_test(a_bridge_of_short_edges_is_solved),
         cmocka_unit_test(what_takes_too_long_is_refused_at_once),
+        cmocka_unit_test(a_noisy_record_that_takes_too_long_is_refused_at_once),
         cmocka_unit_test(a_ring_that_loses_its_phase_is_refused_by_its_begin),
         cmocka_unit_test(a_film_is_followed_past_its_fold),
         cmocka_unit_test(a_film_that_runs_away_is_pulled_in),

@@ -19,7 +19,7 @@ static const double most_work = 5e6;
 static const double late_work = 1e6;
 static const double late_share = 3.0;
 static const double nonlinear_step = 5.0;
-static const double netlist = 300.0;
+static const double netlist = 300.0, nonlinear_netlist = 500.0;
 static const double work_time = 6e-6; /* of one processor, roughly [s] */
 
 /* Most runs, those after which a failure is one, and those after which a film that runs away does so at a sample. */
@@ -294,8 +294,9 @@ static double first_fineness(const dea_scene *scene)
 /* Work of a run, in steps of a linear network. */
 static double work_of(const dea_route *route, double fineness)
 {
-    const double step = route->dynamics->linear ? 1.0 : nonlinear_step;
-    return step * route->pieces->points / fineness + netlist * (double)route->pieces->count;
+    const bool linear = route->dynamics->linear;
+    return (linear ? 1.0 : nonlinear_step) * route->pieces->points / fineness +
+           (linear ? netlist : nonlinear_netlist) * (double)route->pieces->count;
 }
 
 /* Runs that are wanted at least, each finer by 2: two to compare, then as many as a fourth order takes from here. */
@@ -335,14 +336,14 @@ static void explain_length(const dea_route *route, char *why, size_t size)
     double turns = 0.0;
     for (size_t i = 0; i < signal->count; i++) {
         const dea_segment *s = &signal->segments[i];
-        turns += dea_segment_turn(signal, s) * (s->to - s->from) / (2.0 * DEA_PI);
+        turns += s->terms ? 0.0 : dea_segment_turn(signal, s) * (s->to - s->from) / (2.0 * DEA_PI);
     }
     if (periods > 1000.0) {
         snprintf(why, size, "the film rings for %.2g periods", periods);
     } else if (turns > 1000.0) {
         snprintf(why, size, "the sine of the drive turns %.2g times", turns);
     } else if (route->pieces->count > MANY) {
-        snprintf(why, size, "the drive has %zu edges and ramps, which makes %zu netlists", signal->count, route->pieces->count);
+        snprintf(why, size, "what the film sees of the edges and ramps of the drive makes %zu netlists", route->pieces->count);
     } else {
         snprintf(why, size, "the run is very long beside the fastest times of the film");
     }

@@ -69,7 +69,7 @@ void dea_figure_point(dea_figure *figure, double x, double y, unsigned marks)
     dea_span_take(along, x);
     dea_span_take(&panel->span, drawn);
     for (size_t i = 0; i < DEA_MARKS; i++) {
-        figure->seen[i] = figure->seen[i] || (marks & (DEA_AT_LIMIT << i));
+        figure->seen[i] = figure->seen[i] || (marks & ((unsigned)DEA_AT_LIMIT << i));
     }
 }
 
@@ -180,7 +180,7 @@ static void write_block(FILE *script, const dea_curve *curve, size_t number)
             dea_gnuplot_put(script, "%g %g", curve->points[i].x, y);
         }
         for (int mark = 0; mark <= DEA_MARKS && curve->marked && !isnan(y); mark++) {
-            dea_gnuplot_put(script, " %g", curve->points[i].marks & (DEA_AT_SYMBOL << mark) ? y : (double)NAN);
+            dea_gnuplot_put(script, " %g", curve->points[i].marks & ((unsigned)DEA_AT_SYMBOL << mark) ? y : (double)NAN);
         }
         fputc('\n', script);
     }

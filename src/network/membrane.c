@@ -106,11 +106,17 @@ static void strain_ring(const dea_membrane *m, size_t r, const double *u, double
 {
     const dea_ring *ring = &m->rings.rings[r];
     const double *at = u + ring->first;
-    double radial = 0.0;
-    for (size_t i = 0; i < ring->count; i++) {
-        radial += ring->radial[i] * at[i];
+    double sums[4] = {0.0}; /* one would wait for each of its terms */
+    size_t i = 0;
+    for (; i + 4 <= ring->count; i += 4) {
+        for (size_t k = 0; k < 4; k++) {
+            sums[k] += ring->radial[i + k] * at[i + k];
+        }
     }
-    e[0] = radial;
+    for (; i < ring->count; i++) {
+        sums[0] += ring->radial[i] * at[i];
+    }
+    e[0] = (sums[0] + sums[1]) + (sums[2] + sums[3]);
     e[1] = ring->hoop[m->own[r]] * at[m->own[r]];
 }
 
@@ -127,12 +133,26 @@ static void add_skin(const dea_point *point, const double e[2], dea_ring_look *a
     at->tangent[1][1] += skin.w22;
 }
 
+/* Branches that are held add their share of S_a to the film's own. */
+static void add_held(double held, dea_ring_look *at)
+{
+    for (int a = 0; a < 2; a++) {
+        const double l = at->stretch[a], own = at->cauchy[a];
+        at->nominal[a] += held * own / l;
+        at->cauchy[a] *= 1.0 + held;
+        for (int b = 0; b < 2; b++) {
+            at->tangent[a][b] += held * (at->slope[a][b] - (a == b ? own / l : 0.0)) / l;
+            at->slope[a][b] *= 1.0 + held;
+        }
+    }
+}
+
 /* S_a = lambda_a P_a + lambda_pre e_a P_0, of absolute stresses P_0 + P_a; dS_a/dlambda_b = lambda_a W_ab + (P_0 + P_a) where
- * a = b. Branches that are held add their share of S_a to the film's own. */
+ * a = b. */
 static bool look_at_ring(const dea_membrane *m, size_t r, const double *u, dea_ring_look *at)
 {
     const dea_film *film = &m->film.point.film;
-    const double held = m->film.held, l0 = film->prestretch;
+    const double l0 = film->prestretch;
     double e[2];
     strain_ring(m, r, u, e);
     if (!(e[0] > -1.0 && e[1] > -1.0)) {
@@ -143,14 +163,15 @@ static bool look_at_ring(const dea_membrane *m, size_t r, const double *u, dea_r
     const double w[2][2] = {{stress.w11, stress.w12}, {stress.w12, stress.w22}};
     for (int a = 0; a < 2; a++) {
         const double l = at->stretch[a] = l0 * (1.0 + e[a]);
-        const double own = l * p[a] + l0 * e[a] * film->tension;
-        at->nominal[a] = p[a] + held * own / l;
-        at->cauchy[a] = (1.0 + held) * own;
+        at->nominal[a] = p[a];
+        at->cauchy[a] = l * p[a] + l0 * e[a] * film->tension;
         for (int b = 0; b < 2; b++) {
-            const double slope = l * w[a][b] + (a == b ? film->tension + p[a] : 0.0);
-            at->slope[a][b] = (1.0 + held) * slope;
-            at->tangent[a][b] = w[a][b] + held * (slope - (a == b ? own / l : 0.0)) / l;
+            at->slope[a][b] = l * w[a][b] + (a == b ? film->tension + p[a] : 0.0);
+            at->tangent[a][b] = w[a][b];
         }
+    }
+    if (m->film.held > 0.0) {
+        add_held(m->film.held, at);
     }
     if (m->rings.rings[r].electroded && m->film.point.skin_share > 0.0) {
         add_skin(&m->film.point, e, at);

@@ -35,6 +35,7 @@ typedef struct dea_membrane {
     dea_sheet sheet; /* charges and potentials of its electrodes */
     double masses[DEA_RINGS_NODES]; /* m_n [kg]; all 0: none */
     bool heavy;
+    double unseen; /* least time between a kink of the voltage and the sample behind it [s], 0: not known */
     size_t own[DEA_RINGS_MOST]; /* place, among the nodes of a ring, of the one at its own radius, which alone strains its hoop */
 } dea_membrane;
 

@@ -9,14 +9,25 @@ static const double doubt = 1.5;         /* most that the error of the better of
 static const double certainty = 0.75;    /* the same where the film is smooth */
 static const double smooth_enough = 1.0; /* of smoothness over the spacing of the nodes */
 
+/* Behind an edge the error of the mesh falls by 10^(-gain s^(1/4)) a node, s its smoothness: measured for s = 0.1 to 1.3. So many nodes leave
+ * such a share of the accuracy; never less than that share of the usual number, for s tells nothing of films at rest. */
+static const double gain = 0.92, left = 0.05, fewest = 0.55;
+
 static const double resolved = 0.25; /* of the root of a front's width, over the spacing of nodes that follow it */
 
-/* Time over which all waves are smooth, over the time that one takes from centre to frame [1]. */
+/* Time that a wave takes from centre to frame [s]: J1(3.83) = 0 there. */
+static double crossing_of(const dea_membrane_rest *rest)
+{
+    return 3.83 / rest->slowest;
+}
+
+/* Time over which all waves are smooth, over that of a crossing [1]. A damper spreads them by sqrt(tau t): where no sample looks for a
+ * while, by as much as one so many times as strong does by the first crossing. */
 static double smoothness(const dea_membrane *m, const dea_membrane_rest *rest)
 {
-    const double crossing = 3.83 / rest->slowest; /* J1(3.83) = 0 at the frame */
+    const double crossing = crossing_of(rest), age = fmax(1.0, m->unseen / crossing);
     const double charging = m->film.series * rest->capacitance;
-    const double waves = m->heavy ? fmax(2.0 * DEA_PI * m->film.retardation, charging) / crossing : INFINITY;
+    const double waves = m->heavy ? fmax(2.0 * DEA_PI * m->film.retardation * age, charging) / crossing : INFINITY;
     return fmin(resolved * sqrt(m->sheet.front), waves); /* nodes lie closer to the rim by their number squared */
 }
 
@@ -70,6 +81,13 @@ bool dea_rings_stays_rough(const dea_scene *scene, const dea_model *model)
 double dea_rings_first_nodes(double accuracy)
 {
     return 2.5 - 1.45 * log10(accuracy);
+}
+
+double dea_rings_foreseen_nodes(const dea_membrane *m, const dea_membrane_rest *rest, double accuracy)
+{
+    const double usual = dea_rings_first_nodes(accuracy), s = smoothness(m, rest);
+    const double foreseen = -log10(left * accuracy) / (gain * pow(s, 0.25));
+    return m->heavy && m->sheet.places == 0 ? fmin(usual, fmax(fewest * usual, foreseen)) : usual;
 }
 
 double dea_rings_more_nodes(const dea_membrane *m, const dea_membrane_rest *rest, double nodes)

@@ -14,6 +14,8 @@ dea_rings_mesh dea_rings_mesh_of(const dea_scene *scene, double nodes);
 bool dea_rings_stays_rough(const dea_scene *scene, const dea_model *model);
 /* Nodes of an element for a first run. */
 double dea_rings_first_nodes(double accuracy);
+/* The same of a film with mass whose damper is known. */
+double dea_rings_foreseen_nodes(const dea_membrane *membrane, const dea_membrane_rest *rest, double accuracy);
 /* Nodes for the run after that with @p nodes; and what the error of the finer of both is taken for, over their difference: where
  * the film is not smooth the errors of both are alike. */
 double dea_rings_more_nodes(const dea_membrane *membrane, const dea_membrane_rest *rest, double nodes);

@@ -73,7 +73,7 @@ static bool begin(explicit_run *run)
     dea_rings_flight *f = &run->solver->flight;
     const dea_sundials *sun = run->solver->sun;
     const size_t count = f->motion.count;
-    run->w = sun->N_VNew_Serial((sunindextype)(count + run->audited + run->integrated), sun->context);
+    run->w = dea_sundials_vector(sun, count + run->audited + run->integrated);
     run->tolerances = run->w ? sun->N_VClone(run->w) : NULL;
     run->between = run->w ? sun->N_VClone(run->w) : NULL;
     run->slope = run->w ? sun->N_VClone(run->w) : NULL;

@@ -88,12 +88,12 @@ static int solver_solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_
 {
     dea_rings_solver *s = solver->content;
     dea_rings_flight *f = &s->flight;
-    (void)matrix;
+    (void)matrix, (void)tolerance;
     dea_rings_schur_reduce(&f->motion, &s->schur, NV_DATA_S(b), NV_DATA_S(s->reduced));
-    const int code = s->inner->ops->solve(s->inner, s->dense, s->reduced, s->reduced, tolerance);
+    dea_sundials_substitute(s->inner, s->dense, NV_DATA_S(s->reduced));
     memcpy(NV_DATA_S(x), NV_DATA_S(s->reduced), f->motion.nodes * sizeof(sunrealtype));
     dea_rings_schur_expand(&f->motion, &s->schur, NV_DATA_S(b), NV_DATA_S(x));
-    return code;
+    return 0;
 }
 
 static bool make_solver(dea_rings_solver *s)
@@ -221,18 +221,51 @@ static dea_state take_samples(dea_rings_solver *s, double time, bool last)
     return DEA_STATE_OK;
 }
 
-/* Two-point Gauss rule on [0, 1] for energies: a step is a small part of all that the film does. */
-static const double places[2] = {0.21132486540518711775, 0.78867513459481288225};
+/* Powers at the ends of the last steps, and the time up to which their energies are counted. */
+enum { ENDS = 4 };
 
-static void audit_step(dea_rings_solver *s, double before, double time)
+typedef struct power_track {
+    size_t count; /* of ends */
+    double times[ENDS], until;
+    dea_audit powers[ENDS];
+} power_track;
+
+/* Counts energies up to a time by the polynomial through the powers: the Gauss rule of two points is exact for a cubic one. */
+static void count_energies(power_track *t, double to, dea_audit *audit)
+{
+    static const double places[2] = {0.21132486540518711775, 0.78867513459481288225};
+    for (size_t k = 0; k < 2 * t->count; k++) {
+        const size_t i = k / 2;
+        const double at = t->until + places[k % 2] * (to - t->until);
+        double weight = 0.5 * (to - t->until);
+        for (size_t j = 0; j < t->count; j++) {
+            weight *= j == i ? 1.0 : (at - t->times[j]) / (t->times[i] - t->times[j]);
+        }
+        audit->work += weight * t->powers[i].work;
+        audit->dissipated += weight * t->powers[i].dissipated;
+        audit->branch += weight * t->powers[i].branch;
+    }
+    audit->largest = fmax(audit->largest, fmax(fabs(audit->work), fabs(audit->dissipated)));
+    t->until = to;
+}
+
+/* Takes the end of a step: the step before the last lies in the middle of four ends. */
+static void audit_step(dea_rings_solver *s, double time, power_track *t)
 {
     dea_rings_flight *f = &s->flight;
-    const bool charging = charges_slowly(s);
-    for (int g = 0; g < 2; g++) {
-        const double at = before + places[g] * (time - before);
-        if (look_back(s, at)) {
-            dea_rings_audit(f, at, NV_DATA_S(s->between), NV_DATA_S(s->slope), charging, 0.5 * (time - before));
-        }
+    if (t->count == ENDS) {
+        t->count--;
+        memmove(t->times, t->times + 1, t->count * sizeof *t->times);
+        memmove(t->powers, t->powers + 1, t->count * sizeof *t->powers);
+    }
+    dea_audit *audit = f->audit;
+    f->audit = &t->powers[t->count];
+    *f->audit = (dea_audit){0};
+    dea_rings_audit(f, time, NV_DATA_S(s->y), NV_DATA_S(s->yp), charges_slowly(s), 1.0);
+    f->audit = audit;
+    t->times[t->count++] = time;
+    if (t->count == ENDS) {
+        count_energies(t, t->times[ENDS - 2], f->audit);
     }
 }
 
@@ -283,7 +316,11 @@ dea_state dea_rings_implicit(dea_rings_solver *s, double from)
         return DEA_STATE_PULL_IN;
     }
     double time = from;
+    power_track track = {.until = from};
     f->derived = true;
+    if (f->audit) {
+        audit_step(s, from, &track);
+    }
     for (int code = IDA_SUCCESS; code != IDA_TSTOP_RETURN;) {
         const double before = time;
         code = s->sun->IDASolve(s->ida, width, &time, s->y, s->yp, IDA_ONE_STEP);
@@ -303,8 +340,11 @@ dea_state dea_rings_implicit(dea_rings_solver *s, double from)
             dea_peak_search(&f->trace->peak, segment->from + before, segment->from + time, current_at, s);
         }
         if (f->audit) {
-            audit_step(s, before, time);
+            audit_step(s, time, &track);
         }
+    }
+    if (f->audit) {
+        count_energies(&track, width, f->audit);
     }
     return DEA_STATE_OK;
 }

@@ -17,8 +17,7 @@ dea_status dea_rings_solver_open(const dea_sundials *sun, const dea_scene *scene
     if (status != DEA_OK) {
         return status;
     }
-    const sunindextype count = (sunindextype)f->motion.count;
-    s->y = sun->N_VNew_Serial(count, sun->context);
+    s->y = dea_sundials_vector(sun, f->motion.count);
     s->yp = s->y ? sun->N_VClone(s->y) : NULL;
     s->between = s->y ? sun->N_VClone(s->y) : NULL;
     s->slope = s->y ? sun->N_VClone(s->y) : NULL;

@@ -18,6 +18,7 @@ static const double thin_front = 64.0; /* width of a front of charge over the sp
 static const double first_share = 0.2;      /* from one tolerance to the next */
 static const double gains_nothing = 0.5;    /* a difference that falls by less than that stays too large */
 static const double least_tolerance = 3e-12; /* what rounding of the stiffest nodes leaves */
+static const double drift = 30.0; /* errors of BDF add up over a swing to so many times the tolerance, which two runs may share */
 static const double certain = 1e-7; /* an end of the motion counts from this tolerance on */
 
 /* A study of one scene. */
@@ -31,6 +32,7 @@ typedef struct search {
     dea_rings_solver *solver;  /* owned: of the last */
     dea_layout layout;
     size_t rows, entries; /* of the layout; numbers that a row tells over the radius */
+    double unseen; /* as membranes have it */
     double loosest;
     double worst; /* error that the last run is left with, of the column that is worst against what it promises [1] */
 } search;
@@ -47,6 +49,7 @@ static dea_status run_on(search *s, dea_rings_mesh mesh, double tolerance, dea_s
         return status;
     }
     s->solver->loosest = s->loosest;
+    s->solver->flight.membrane.unseen = s->unseen;
     dea_rings_solver_run(s->solver, tolerance, &s->traces[1], summary);
     if (dea_rings_solver_fit(s->solver)) {
         dea_rings_solver_run(s->solver, tolerance, &s->traces[1], summary);
@@ -78,6 +81,35 @@ static dea_status look_ahead(search *s, dea_summary *summary, bool *hopeless, de
     return status;
 }
 
+/* Least time between a kink of the voltage and the next sample. One at the kink itself, or so close that nothing has moved, sees the film
+ * from before; means, the current between samples and runs of lines see all. */
+static double unseen_of(const search *s, const dea_dynamics *film, double blink)
+{
+    double least = INFINITY;
+    size_t row = 0;
+    for (size_t i = 0; i < s->signal->count; i++) {
+        const dea_segment *segment = &s->signal->segments[i];
+        while (row < s->rows && dea_layout_place(s->scene, row) <= segment->from + blink) {
+            row++;
+        }
+        least = segment->lines ? 0.0 : row < s->rows ? fmin(least, dea_layout_place(s->scene, row) - segment->from) : least;
+    }
+    return s->scene->transient.average_count > 0 || dea_peak_is_known(s->scene, film, s->signal) ? 0.0 : least;
+}
+
+/* Nodes of the first run, from what a few tell of the film at rest. */
+static double foresee_nodes(search *s)
+{
+    const double accuracy = s->scene->accuracy, blink = 1e-6;
+    dea_membrane m;
+    dea_membrane_rest rest;
+    if (dea_membrane_open(s->scene, s->model, dea_rings_mesh_of(s->scene, rough_nodes), &m, NULL) != DEA_OK || !dea_membrane_at_rest(&m, &rest)) {
+        return dea_rings_first_nodes(accuracy);
+    }
+    m.unseen = s->unseen = m.heavy ? unseen_of(s, &m.film, blink / rest.slowest) : 0.0;
+    return dea_rings_foreseen_nodes(&m, &rest, accuracy);
+}
+
 /* Leaves the better run of the last two in traces[1]; *good false where the accuracy was not reached. */
 static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates, bool *good, dea_error *error)
 {
@@ -88,7 +120,7 @@ static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates
     if (status != DEA_OK || steep) {
         return status;
     }
-    double tolerance = s->loosest = first_tolerance * accuracy, nodes = dea_rings_first_nodes(accuracy), last = INFINITY;
+    double tolerance = s->loosest = first_tolerance * accuracy, nodes = foresee_nodes(s), last = INFINITY;
     dea_rings_mesh mesh = dea_rings_mesh_of(s->scene, nodes);
     status = run_on(s, mesh, tolerance, NULL, error);
     for (int i = 0; i < MOST_RUNS && status == DEA_OK && s->traces[1].end != DEA_STATE_FAILED; i++) {
@@ -105,9 +137,9 @@ static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates
         const double trust = dea_rings_mesh_trust(&s->solver->flight.membrane, &s->solver->flight.motion.rest, nodes);
         const bool doubtful = s->traces[1].end == DEA_STATE_PULL_IN && tolerance > certain;
         const bool comparable = s->traces[0].count == s->traces[1].count;
-        summary->error = fmax(apart.displacement * trust, fmax(10.0 * tolerance, 0.1 * accuracy));
+        summary->error = fmax(apart.displacement * trust, fmax(drift * tolerance, 0.1 * accuracy));
         *rates = (dea_rate_errors){apart.rates.velocity * trust, apart.rates.current * trust};
-        s->worst = fmax(apart.answer * trust, 10.0 * tolerance);
+        s->worst = fmax(apart.answer * trust, drift * tolerance);
         *good = s->worst <= accuracy && comparable && !doubtful;
         const bool fronts = s->solver->flight.membrane.sheet.front * nodes * nodes < thin_front; /* they converge late, and then fast */
         const bool hopeless = comparable && !(apart.answer < gains_nothing * last) && !fronts;

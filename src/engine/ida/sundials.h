@@ -62,6 +62,12 @@ const char *dea_sundials_version(char *text, size_t size);
 void dea_sundials_ignore(int code, const char *module, const char *function, char *message, void *user);
 #endif
 
+/* A serial vector whose sums, and those of its clones, are sooner done than the library's own; the caller destroys it. NULL without memory. */
+N_Vector dea_sundials_vector(const dea_sundials *sun, size_t count);
+
+/* Solves in place with what the dense solver factored, in the same way, sooner. */
+void dea_sundials_substitute(SUNLinearSolver solver, SUNMatrix factors, double *b);
+
 /* An IDA integrator of n unknowns with a dense matrix. Zeroed is empty. */
 typedef struct dea_integrator {
     const dea_sundials *sun; /* borrowed */

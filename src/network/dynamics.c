@@ -134,6 +134,7 @@ static dea_status compile(dea_network *network, dea_dynamics *d, dea_error *erro
         refs[STRESSES + 2 * a] = stresses[a].stress;
         refs[STRESSES + 2 * a + 1] = stresses[a].lever;
     }
+    d->seen = (double)NAN;
     const dea_status status = dea_tape_compile(&network->pool, refs, STRESSES + 2 * (int)d->stress_count, &d->tape, error);
     return status == DEA_OK ? dea_balance_open(network, &d->balance, error) : status;
 }
@@ -231,7 +232,10 @@ void dea_dynamics_close(dea_dynamics *dynamics)
 dea_edge dea_dynamics_edge(dea_dynamics *dynamics, double u)
 {
     dea_tape *tape = &dynamics->tape;
-    dea_tape_run(tape, 1.0, u);
+    if (!(u == dynamics->seen)) { /* rates and energies of one state are asked for one after the other */
+        dea_tape_run(tape, 1.0, u);
+        dynamics->seen = u;
+    }
     dea_edge e;
     e.tension = dea_tape_value(tape, TENSION);
     e.tension_slope = dea_tape_slope(tape, TENSION);

@@ -46,6 +46,7 @@ typedef struct dea_dynamics {
     double focal_length, refractive_index; /* NAN: no optics */
     bool linear;                           /* one stress K u on the lever 1, without G, as without a skin and a load, as without a skin */
     dea_tape tape;                         /* owned: G, phi, C, then S_a and B_a in turn */
+    double seen;                           /* u that the tape has its values at [m] */
     dea_balance balance;                   /* owned: rows */
 } dea_dynamics;
 

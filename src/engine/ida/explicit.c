@@ -76,7 +76,7 @@ static bool begin(explicit_run *run)
     dea_flight *flight = run->flight;
     const int n = flight->motion.count;
     const dea_sundials *sun = flight->integrator.sun;
-    run->w = sun->N_VNew_Serial(n + run->audited + run->integrated, sun->context);
+    run->w = dea_sundials_vector(sun, (size_t)(n + run->audited + run->integrated));
     run->tolerance = run->w ? sun->N_VClone(run->w) : NULL;
     run->between = run->w ? sun->N_VClone(run->w) : NULL;
     if (!run->tolerance || !run->between) {
@@ -86,7 +86,7 @@ static bool begin(explicit_run *run)
     sun->N_VConst(flight->tolerance, run->tolerance);
     dea_rotation_unknowns(flight->swing, dea_rotation_turn(flight->swing, 0.0, 0.0), flight->y, NV_DATA_S(run->w));
     for (int i = 0; i < run->audited; i++) {
-        NV_DATA_S(run->tolerance)[n + i] = 1e-4 * flight->scene->accuracy;
+        NV_DATA_S(run->tolerance)[n + i] = 1e-3 * flight->scene->accuracy;
     }
     run->ark = dea_sundials_verner(sun, rates, run->w, flight->tolerance, run->tolerance, longest_step(flight), run);
     return run->ark != NULL;

@@ -6,6 +6,7 @@
 
 #include "drive/signal.h"
 #include "engine/ida/flight.h"
+#include "network/swing.h"
 #include "network/thin.h"
 #include "result/scales.h"
 #include "support/lapack.h"
@@ -108,12 +109,21 @@ static gap difference(const dea_flight *flight, const dea_scales *scales, const 
     return g;
 }
 
+/* Radians over which a swing that starts at rest keeps its errors. */
+static double memory(const dea_flight *flight)
+{
+    const double until = flight->scene->transient.until;
+    const dea_swing swing = dea_swing_of(flight->motion.dynamics, flight->motion.dynamics->rest, 0.0);
+    return isnan(swing.frequency) ? 0.0 : 2.0 * DEA_PI * swing.frequency * (swing.decay * until > 1.0 ? 1.0 / swing.decay : until);
+}
+
 /* Local tolerance with which a run is likely to be good enough: errors of an explicit method add up over a swing. A corner of a slow
  * voltage sets off a swing of a velocity like the film's own, 1/(omega T) of its displacement, which no looser run would see. */
 static double first_tolerance(const dea_flight *flight, const dea_scales *scales, double accuracy)
 {
     const dea_dynamics *d = flight->motion.dynamics;
-    const double tolerance = (d->mass > 0.0 && !d->linear ? 1e-3 : 0.1) * accuracy;
+    const double share = d->mass > 0.0 && !d->linear ? fmin(0.01, fmax(1e-3, 1.0 / memory(flight))) : 0.1;
+    const double tolerance = share * accuracy;
     if (!(d->mass > 0.0)) {
         return tolerance;
     }

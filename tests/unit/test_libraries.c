@@ -1,6 +1,8 @@
 /* What is loaded, and when: SUNDIALS and LAPACKE only by what needs them. */
 #include "child_program.h"
 
+#include <math.h>
+
 #include "engine/ida/sundials.h"
 #include "support/lapack.h"
 
@@ -113,12 +115,82 @@ static void sundials_is_of_the_version_that_was_built_for(void **state)
     assert_int_equal(atoi(dea_sundials_version(version, sizeof version)), SUNDIALS_VERSION_MAJOR);
 }
 
+static N_Vector filled(N_Vector v, double pace)
+{
+    for (sunindextype i = 0; i < NV_LENGTH_S(v); i++) {
+        NV_Ith_S(v, i) = sin(pace * (double)(i + 1));
+    }
+    return v;
+}
+
+static void assert_same(N_Vector a, N_Vector b)
+{
+    assert_memory_equal(NV_DATA_S(a), NV_DATA_S(b), (size_t)NV_LENGTH_S(a) * sizeof(sunrealtype));
+}
+
+static void check_sums(const dea_sundials *sun, size_t n)
+{
+    N_Vector x = filled(dea_sundials_vector(sun, n), 1.0), y = filled(sun->N_VClone(x), 2.3), wide = sun->N_VClone(x);
+    N_Vector plain = sun->N_VNew_Serial((sunindextype)n, sun->context), parts[] = {x, y, x};
+    sunrealtype factors[] = {0.3, -1.7, 1e-3};
+    wide->ops->nvlinearsum(0.7, x, -1.3, y, wide);
+    plain->ops->nvlinearsum(0.7, x, -1.3, y, plain);
+    assert_same(wide, plain);
+    wide->ops->nvscale(1.9, wide, wide);
+    plain->ops->nvscale(1.9, plain, plain);
+    assert_same(wide, plain);
+    assert_int_equal(wide->ops->nvlinearcombination(3, factors, parts, wide), 0);
+    for (sunindextype i = 0; i < (sunindextype)n; i++) {
+        NV_Ith_S(plain, i) = 0.3 * NV_Ith_S(x, i) + -1.7 * NV_Ith_S(y, i) + 1e-3 * NV_Ith_S(x, i);
+    }
+    assert_same(wide, plain);
+    const double norm = plain->ops->nvwrmsnorm(x, y);
+    assert_true(fabs(wide->ops->nvwrmsnorm(x, y) - norm) <= 1e-15 * norm);
+    N_Vector vectors[] = {x, y, wide, plain};
+    for (int i = 0; i < 4; i++) {
+        sun->N_VDestroy(vectors[i]);
+    }
+}
+
+static void check_substitution(const dea_sundials *sun, size_t n)
+{
+    const sunindextype size = (sunindextype)n;
+    N_Vector b = filled(dea_sundials_vector(sun, n), 0.9), x = sun->N_VClone(b);
+    SUNMatrix matrix = sun->SUNDenseMatrix(size, size, sun->context);
+    SUNLinearSolver solver = sun->SUNLinSol_Dense(b, matrix, sun->context);
+    for (sunindextype i = 0; i < size * size; i++) {
+        SM_DATA_D(matrix)[i] = sin(1.0 + 0.37 * (double)(i * i)); /* rows have to change places */
+    }
+    assert_int_equal(solver->ops->setup(solver, matrix), 0);
+    assert_int_equal(solver->ops->solve(solver, matrix, x, b, 0.0), 0);
+    dea_sundials_substitute(solver, matrix, NV_DATA_S(b));
+    assert_same(x, b);
+    sun->SUNLinSolFree(solver);
+    sun->SUNMatDestroy(matrix);
+    sun->N_VDestroy(x);
+    sun->N_VDestroy(b);
+}
+
+static void wide_sums_and_substitutions_have_the_digits_of_sundials(void **state)
+{
+    dea_sundials sun;
+    dea_error error = {0};
+    (void)state;
+    assert_int_equal(dea_sundials_open(&sun, &error), DEA_OK);
+    for (size_t n = 1; n <= 33; n++) {
+        check_sums(&sun, n);
+        check_substitution(&sun, n);
+    }
+    dea_sundials_close(&sun);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_that_is_missing_stops_only_what_needs_it),
         cmocka_unit_test(lapack_brings_no_threads_and_leaves_the_environment),
         cmocka_unit_test(sundials_is_of_the_version_that_was_built_for),
+        cmocka_unit_test(wide_sums_and_substitutions_have_the_digits_of_sundials),
     };
     return cmocka_run_group_tests_name("libraries", tests, child_enter, child_leave);
 }

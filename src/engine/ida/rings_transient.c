@@ -81,8 +81,8 @@ static dea_status look_ahead(search *s, dea_summary *summary, bool *hopeless, de
     return status;
 }
 
-/* Least time between a kink of the voltage and the next sample. One at the kink itself, or so close that nothing has moved, sees the film
- * from before; means, the current between samples and runs of lines see all. */
+/* Least time between a kink of the voltage and the next sample or window. A sample at the kink itself, or so close that nothing has moved,
+ * sees the film from before; the current between samples and runs of lines see all. */
 static double unseen_of(const search *s, const dea_dynamics *film, double blink)
 {
     double least = INFINITY;
@@ -93,8 +93,12 @@ static double unseen_of(const search *s, const dea_dynamics *film, double blink)
             row++;
         }
         least = segment->lines ? 0.0 : row < s->rows ? fmin(least, dea_layout_place(s->scene, row) - segment->from) : least;
+        for (size_t k = 0; k < s->scene->transient.average_count; k++) {
+            const dea_window *window = &s->scene->transient.averages[k];
+            least = segment->from < window->to ? fmin(least, fmax(0.0, window->from - segment->from)) : least;
+        }
     }
-    return s->scene->transient.average_count > 0 || dea_peak_is_known(s->scene, film, s->signal) ? 0.0 : least;
+    return dea_peak_is_known(s->scene, film, s->signal) ? 0.0 : least;
 }
 
 /* Nodes of the first run, from what a few tell of the film at rest. */

@@ -111,6 +111,12 @@ void dea_export_drive_source(const dea_export_drive *w, const char *node)
     }
 }
 
+/* How much longer a step may be where the load grows over many times of what answers to it: so much less is that excited. */
+static double eased(const dea_export_drive *w, double time)
+{
+    return sqrt(fmax(1.0, w->evenly / time));
+}
+
 /* The error of the trapezoidal rule is (w h)^2/12 a radian of a ring, and (h/tau)^2/12 of what relaxes; the step of the Euler
  * rule behind every edge adds some (w h)^2/2. Hence 1 in the place of 12. */
 static double step_wanted(dea_export_drive *w, const dea_pace *paces, size_t count)
@@ -123,11 +129,12 @@ static double step_wanted(dea_export_drive *w, const dea_pace *paces, size_t cou
         const dea_pace *pace = &paces[i];
         if (pace->omega > 0.0) {
             const double life = fmin(until, pace->decay > 0.0 ? 1.0 / (2.718281828 * pace->decay) : INFINITY);
-            step = fmin(step, share / pace->omega / sqrt(1.0 + pace->omega * life));
+            step = fmin(step, eased(w, 1.0 / pace->omega) * share / pace->omega / sqrt(1.0 + pace->omega * life));
             w->rings = true;
         }
-        w->rings = w->rings && step <= share * pace->fastest;
-        step = fmin(step, share * pace->fastest);
+        const double relaxes = eased(w, pace->fastest) * share * pace->fastest;
+        w->rings = w->rings && step <= relaxes;
+        step = fmin(step, relaxes);
         w->quick = fmin(w->quick, pace->omega > 0.0 ? fmin(pace->fastest, 1.0 / pace->omega) : pace->fastest);
     }
     for (size_t i = 0; i < w->signal.count; i++) {

@@ -15,6 +15,7 @@ typedef struct dea_export_drive {
     bool rings;        /* the step is that of a ring */
     double expected;   /* error of that step [1] */
     double quick;      /* shortest time of the film: a radian of its ring, or its fastest relaxation [s] */
+    double evenly;     /* time over which a source at its limit charges the film, at least, behind each edge of a step [s], 0: at once */
 } dea_export_drive;
 
 /* Opens the scene's waveform; the caller ends it with dea_export_drive_close(), also after a failure. DEA_ERROR_UNSUPPORTED for one

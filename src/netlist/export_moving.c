@@ -72,9 +72,24 @@ static void write_tolerances(writer *w)
                    w->dialect->solver, current, voltage);
 }
 
+/* C U/I of a film that a limited source charges behind the edges of a step, or the shorter time that it has; 0 for drives that may
+ * drive a swing again and again. */
+static double charging_time(writer *w)
+{
+    const dea_scene *scene = w->export->scene;
+    const dea_step *step = &scene->drive.waveform.step;
+    if (!isfinite(w->dynamics.limit) || !dea_wave_settles(&scene->drive.waveform) || !isnan(scene->drive.waveform.period)) {
+        return 0.0;
+    }
+    const double end = isnan(step->off) ? scene->transient.until : fmin(step->off, scene->transient.until);
+    const double whole = dea_dynamics_edge(&w->dynamics, 0.0).capacitance * w->drive.signal.largest / w->dynamics.limit;
+    return fmin(whole, end - step->on);
+}
+
 /* The film at rest and, where it stands, under the largest voltage. */
 static void choose_step(writer *w)
 {
+    w->drive.evenly = charging_time(w);
     const double voltage = w->drive.signal.largest;
     double u;
     dea_pace paces[2] = {dea_pace_of(&w->dynamics, 0.0, 0.0)};

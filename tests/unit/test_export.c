@@ -307,6 +307,31 @@ static void netlists_of_the_moving_examples_give_the_numbers_of_the_engines(void
     check_example(&examples[1], "ngspice", 2e-6); /* both have their error */
 }
 
+/* What a source at its limit charges over tens of periods hardly swings: steps as for a jump would be a million. */
+static void a_film_that_is_charged_evenly_takes_long_steps(void **state)
+{
+    static const char *const changes[] = {"accuracy=1e-6"}, *const analogies[] = {"mobility", "impedance"};
+    dea_scene scene, exact;
+    answer a;
+    (void)state;
+    simulate_without_sanitizers();
+    read_example("constant-current", changes, 1, "lame", &scene);
+    exact = scene;
+    exact.accuracy = 1e-9;
+    solve(&exact, "ida", &a);
+    for (size_t i = 0; i < 2; i++) {
+        plot p;
+        run_netlist(&scene, analogies[i], &p);
+        const double error = error_of(&p, &a);
+        if (!(error <= 1e-6 && p.count < 300000)) {
+            fail_msg("%s: error %.3g, %zu time points", analogies[i], error, p.count);
+        }
+        free_plot(&p);
+    }
+    free(a.points);
+    dea_scene_free(&scene);
+}
+
 /* Slow motion of a random scene: a twentieth of its periods, and no time below a hundredth of the run, so that one step for all
  * of the run is affordable. */
 static void slow_down(dea_scene *scene)
@@ -952,6 +977,7 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(netlists_of_the_moving_examples_give_the_numbers_of_the_engines),
+        cmocka_unit_test(a_film_that_is_charged_evenly_takes_long_steps),
         cmocka_unit_test(netlists_of_random_transients_are_right_to_half_of_what_is_asked),
         cmocka_unit_test(netlists_of_frequency_responses_give_the_numbers_of_the_engine),
         cmocka_unit_test(grid_of_a_frequency_response_ends_below_an_end_that_is_off_it),

@@ -1,6 +1,6 @@
 /* Films as they are built: stacks of layers, skins of electrodes, a permittivity that follows the strain. Judges are one film alone, figures from elsewhere, the energy in
  * long double, and other engines. */
-#include "scenes.h"
+#include "answers.h"
 
 #include <stdlib.h>
 
@@ -13,51 +13,14 @@
 #define STILL "drive: {voltage: 4500 V}\nstudy: {sweep: {}}\n"
 #define REST "drive: {voltage: 0 V}\nstudy: {sweep: {}}\n"
 
-static const char *const engines[] = {"direct", "ida", "ngspice"};
-enum { ENGINES = 3, MOST = 1 << 18 };
-
-typedef struct answer {
-    size_t size, rows, count;
-    _Alignas(16) char bytes[MOST];
-} answer;
-
-static answer one, other;
-
-static dea_status take(void *user, size_t first, const void *points, size_t count, dea_error *error)
+static void solve(const char *text, const char *model, const char *engine, answer *a)
 {
-    answer *a = user;
-    (void)error;
-    assert_true((first + count) * a->size <= MOST);
-    memcpy(a->bytes + first * a->size, points, count * a->size);
-    a->count = first + count;
-    return DEA_OK;
-}
-
-static void read_scene(const char *text, const char *model, dea_scene *scene)
-{
-    dea_error error = {0};
-    if (dea_scene_parse(text, strlen(text), "test", ".", NULL, 0, model, scene, &error) != DEA_OK) {
-        fail_msg("%s: %s", text, error.message);
-    }
-}
-
-static void run(const char *text, const char *model, const char *engine, answer *a)
-{
-    dea_scene scene;
-    dea_error error = {0};
-    read_scene(text, model, &scene);
-    a->size = dea_layout_of(&scene).point_size;
-    a->rows = dea_layout_of(&scene).rows;
-    const dea_run_options options = {.jobs = 1, .points = take, .user = a};
-    if (dea_study_run(&scene, dea_engine_find(engine), &options, &error) != DEA_OK) {
-        fail_msg("%s, %s: %s", engine, model, error.message);
-    }
-    dea_scene_free(&scene);
+    assert_true(run(text, model, engine, a));
 }
 
 static dea_row row_of(const char *text, const char *model, const char *engine)
 {
-    run(text, model, engine, &one);
+    solve(text, model, engine, &one);
     return *(const dea_row *)one.bytes;
 }
 
@@ -120,8 +83,8 @@ static void a_stack_moves_as_one_film(void **state)
             if (!can(single, models[m], engines[e])) {
                 continue;
             }
-            run(single, models[m], engines[e], &one);
-            run(FILM("dot", ", layers: 5") LOSSY SWITCHED("200 kOhm") MOVED, models[m], engines[e], &other);
+            solve(single, models[m], engines[e], &one);
+            solve(FILM("dot", ", layers: 5") LOSSY SWITCHED("200 kOhm") MOVED, models[m], engines[e], &other);
             const dea_sample *film = (const dea_sample *)one.bytes, *five = (const dea_sample *)other.bytes;
             assert_true(one.rows == 41 && film[40].displacement > 1e-4);
             for (size_t i = 0; i < one.rows; i++) {
@@ -143,8 +106,8 @@ static void a_stack_answers_with_a_fifth_of_the_impedance(void **state)
             if (!can(single, models[m], engines[e])) {
                 continue;
             }
-            run(single, models[m], engines[e], &one);
-            run(FILM("dot", ", layers: 5") LOSSY "drive: {series_resistance: 200 kOhm}\n" SHAKEN, models[m], engines[e], &other);
+            solve(single, models[m], engines[e], &one);
+            solve(FILM("dot", ", layers: 5") LOSSY "drive: {series_resistance: 200 kOhm}\n" SHAKEN, models[m], engines[e], &other);
             const dea_response *film = (const dea_response *)one.bytes, *five = (const dea_response *)other.bytes;
             for (size_t i = 0; i < one.rows; i++) {
                 assert_relative(five[i].displacement, film[i].displacement, 1e-5);
@@ -259,13 +222,13 @@ static void engines_agree_on_moving_skins(void **state)
         for (size_t d = 0; d < 2; d++) {
             char text[1024];
             snprintf(text, sizeof text, "%s%s", FILM("dot", "") LOSSY SKIN MOVED, drives[d]);
-            run(text, models[m], "ida", &one);
+            solve(text, models[m], "ida", &one);
             const dea_sample *wanted = (const dea_sample *)one.bytes;
             for (size_t e = 0; e < ENGINES; e += 2) {
                 if (!can(text, models[m], engines[e])) {
                     continue;
                 }
-                run(text, models[m], engines[e], &other);
+                solve(text, models[m], engines[e], &other);
                 const dea_sample *rows = (const dea_sample *)other.bytes;
                 for (size_t i = 0; i < one.rows; i++) {
                     assert_near(rows[i].displacement, wanted[i].displacement, 2e-5 * wanted[40].displacement);
@@ -276,20 +239,24 @@ static void engines_agree_on_moving_skins(void **state)
     }
 }
 
-static void engines_agree_on_shaken_skins(void **state)
+static void engines_agree_on_shaken(const char *text)
 {
-    (void)state;
     static const char *const models[] = {"lumped", "lame", "coverage", "ring"};
-    const char *text = FILM("dot", "") LOSSY SKIN "drive: {series_resistance: 1 MOhm}\n" SHAKEN;
     for (size_t m = 0; m < 4; m++) {
-        run(text, models[m], "direct", &one);
-        run(text, models[m], "ngspice", &other);
+        solve(text, models[m], "direct", &one);
+        solve(text, models[m], "ngspice", &other);
         const dea_response *wanted = (const dea_response *)one.bytes, *rows = (const dea_response *)other.bytes;
         for (size_t i = 0; i < one.rows; i++) {
             assert_relative(rows[i].displacement, wanted[i].displacement, 1e-6);
             assert_relative(rows[i].impedance, wanted[i].impedance, 1e-6);
         }
     }
+}
+
+static void engines_agree_on_shaken_skins(void **state)
+{
+    (void)state;
+    engines_agree_on_shaken(FILM("dot", "") LOSSY SKIN "drive: {series_resistance: 1 MOhm}\n" SHAKEN);
 }
 
 /* So slowly that the film follows, the membrane answers with the slope of its static displacement. */
@@ -351,8 +318,8 @@ static void sheets_add_to_the_series_resistance(void **state)
         const char *step = "waveform: {step: {on: 0 s, voltage: 4 kV, rise: 0.1 ms}}, leakage_resistance: 1 GOhm";
         snprintf(sheets, sizeof sheets, "%selectrode: {sheet_resistance: 50 MOhm}\ndrive: {%s, series_resistance: 100 kOhm}\n", film, step);
         snprintf(one_resistance, sizeof one_resistance, "%sdrive: {%s, series_resistance: %.17g Ohm}\n", film, step, 1e5 + own);
-        run(sheets, "ring", "ida", &one);
-        run(one_resistance, "ring", "ida", &other);
+        solve(sheets, "ring", "ida", &one);
+        solve(one_resistance, "ring", "ida", &other);
         const dea_sample *wanted = (const dea_sample *)other.bytes, *rows = (const dea_sample *)one.bytes;
         for (size_t i = 0; i < one.rows; i++) {
             assert_near(rows[i].displacement, wanted[i].displacement, 1e-9 * fabs(wanted[40].displacement));
@@ -360,9 +327,9 @@ static void sheets_add_to_the_series_resistance(void **state)
         }
         snprintf(sheets, sizeof sheets, "%s" PAPER "electrode: {sheet_resistance: 5 GOhm}\ndrive: {voltage: 4 kV, leakage_resistance: 1 GOhm}\n"
                  "study: {sweep: {coverage: [0.3, 0.6]}}\n", k ? FILM("lens", "") : FILM("dot", ""));
-        run(sheets, "ring", "direct", &other);
+        solve(sheets, "ring", "direct", &other);
         for (size_t e = 1; e < ENGINES; e++) {
-            run(sheets, "ring", engines[e], &one);
+            solve(sheets, "ring", engines[e], &one);
             for (int i = 0; i < 2; i++) {
                 assert_relative(((const dea_row *)one.bytes)[i].charge, ((const dea_row *)other.bytes)[i].charge, 1e-8);
             }
@@ -441,13 +408,13 @@ static void engines_agree_on_moving_loads(void **state)
         for (size_t d = 0; d < 2; d++) {
             const char *text = d ? FILM("dot", "") LOSSY LOAD SWITCHED("1 MOhm") MOVED
                                  : FILM("lens", "") LOSSY SKIN LOAD "drive: {waveform: {points: [[0 s, 4 kV]]}}\n" MOVED;
-            run(text, models[m], "ida", &one);
+            solve(text, models[m], "ida", &one);
             const dea_sample *wanted = (const dea_sample *)one.bytes;
             for (size_t e = 0; e < ENGINES; e += 2) {
                 if (!can(text, models[m], engines[e])) {
                     continue;
                 }
-                run(text, models[m], engines[e], &other);
+                solve(text, models[m], engines[e], &other);
                 const dea_sample *rows = (const dea_sample *)other.bytes;
                 for (size_t i = 0; i < one.rows; i++) {
                     assert_near(rows[i].displacement, wanted[i].displacement, 4e-5 * fabs(wanted[40].displacement));
@@ -461,17 +428,7 @@ static void engines_agree_on_moving_loads(void **state)
 static void engines_agree_on_shaken_loads(void **state)
 {
     (void)state;
-    static const char *const models[] = {"lumped", "lame", "coverage", "ring"};
-    const char *text = FILM("dot", "") LOSSY LOAD SHAKEN;
-    for (size_t m = 0; m < 4; m++) {
-        run(text, models[m], "direct", &one);
-        run(text, models[m], "ngspice", &other);
-        const dea_response *wanted = (const dea_response *)one.bytes, *rows = (const dea_response *)other.bytes;
-        for (size_t i = 0; i < one.rows; i++) {
-            assert_relative(rows[i].displacement, wanted[i].displacement, 1e-6);
-            assert_relative(rows[i].impedance, wanted[i].impedance, 1e-6);
-        }
-    }
+    engines_agree_on_shaken(FILM("dot", "") LOSSY LOAD SHAKEN);
 }
 
 /* Under a heavy load the film is a spring: membrane and ring swing alike, at sqrt(k/m). */
@@ -575,12 +532,12 @@ static void engines_agree_on_pulled_permittivities_that_follow(void **state)
         FILM("lens", "") FOLLOWED "drive: {voltage: 4 kV}\nstudy: {force: {displacement: {from: -0.4 mm, to: 0.4 mm, points: 3}}}\n"};
     for (size_t m = 0; m < 5; m++) {
         for (size_t p = 0; p < 3; p++) {
-            run(pulled[p], models[m], "direct", &one);
+            solve(pulled[p], models[m], "direct", &one);
             for (size_t e = 1; e < ENGINES; e++) {
                 if (!can(pulled[p], models[m], engines[e])) {
                     continue;
                 }
-                run(pulled[p], models[m], engines[e], &other);
+                solve(pulled[p], models[m], engines[e], &other);
                 const dea_row *wanted = (const dea_row *)one.bytes, *rows = (const dea_row *)other.bytes;
                 for (size_t i = 0; i < one.rows; i++) {
                     assert_relative(rows[i].displacement, wanted[i].displacement, 1e-7);
@@ -609,7 +566,7 @@ static void a_film_whose_permittivity_follows_keeps_its_energy(void **state)
             const double rest = row_of(still, models[m], "direct").displacement;
             dea_scene scene;
             read_scene(text, models[m], &scene);
-            run(text, models[m], "ida", &one);
+            solve(text, models[m], "ida", &one);
             const dea_layout layout = dea_layout_of(&scene);
             assert_true(dea_layout_summary(&layout, one.bytes)->residual < 1e-4);
             assert_near(((const dea_sample *)one.bytes)[60].displacement, rest, 2e-5 * fabs(rest));
@@ -624,8 +581,8 @@ static void engines_agree_on_moving_permittivities(void **state)
     static const char *const models[] = {"lame", "ring"};
     const char *text = FILM("dot", "") YIELDING SWITCHED("1 MOhm") MOVED;
     for (size_t m = 0; m < 2; m++) {
-        run(text, models[m], "ida", &one);
-        run(text, models[m], "ngspice", &other);
+        solve(text, models[m], "ida", &one);
+        solve(text, models[m], "ngspice", &other);
         const dea_sample *wanted = (const dea_sample *)one.bytes, *rows = (const dea_sample *)other.bytes;
         for (size_t i = 0; i < one.rows; i++) {
             assert_near(rows[i].displacement, wanted[i].displacement, 2e-5 * wanted[40].displacement);
@@ -642,8 +599,8 @@ static void engines_agree_on_shaken_permittivities(void **state)
         for (int lens = 0; lens < 2; lens++) {
             const char *text = lens ? FILM("lens", "") YIELDING "drive: {series_resistance: 1 MOhm}\n" SHAKEN
                                     : FILM("dot", "") YIELDING "drive: {series_resistance: 1 MOhm}\n" SHAKEN;
-            run(text, models[m], "direct", &one);
-            run(text, models[m], "ngspice", &other);
+            solve(text, models[m], "direct", &one);
+            solve(text, models[m], "ngspice", &other);
             const dea_response *wanted = (const dea_response *)one.bytes, *rows = (const dea_response *)other.bytes;
             for (size_t i = 0; i < one.rows; i++) {
                 assert_relative(rows[i].displacement, wanted[i].displacement, 1e-6);
@@ -675,7 +632,7 @@ static void a_film_that_voltage_shrinks_is_refused(void **state)
     }
     const char *swept = FILM("dot", "") FOLLOWED "drive: {voltage: 4500 V}\nstudy: {sweep: {material.permittivity.per_stretch: [-1.9, -0.28]}}\n";
     for (size_t e = 0; e < ENGINES; e++) {
-        run(swept, "ring", engines[e], &one);
+        solve(swept, "ring", engines[e], &one);
         assert_int_equal(((const dea_row *)one.bytes)[0].state, DEA_STATE_FAILED);
         assert_int_equal(((const dea_row *)one.bytes)[1].state, DEA_STATE_OK);
     }
@@ -692,7 +649,7 @@ static void a_film_drawn_past_its_permittivity_has_no_numbers(void **state)
     for (size_t m = 0; m < 5; m++) {
         for (size_t e = 0; e < ENGINES; e++) {
             if (can(drawn, models[m], engines[e])) {
-                run(drawn, models[m], engines[e], &one);
+                solve(drawn, models[m], engines[e], &one);
                 const dea_row *rows = (const dea_row *)one.bytes;
                 assert_true(rows[0].state == DEA_STATE_OK && rows[0].capacitance > 0.0);
                 assert_true(rows[1].state == DEA_STATE_FAILED && isnan(rows[1].strain));

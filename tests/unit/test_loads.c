@@ -1,6 +1,6 @@
 /* What else acts on the edge: forces, dampers, a second film, something that holds it. The judge is the film in long double: the
  * equations of physics.md, sections 3 and 7, with nothing of the library's. */
-#include "scenes.h"
+#include "answers.h"
 
 #include <stdlib.h>
 
@@ -144,12 +144,12 @@ static const struct {
 enum { MODELS = sizeof models / sizeof *models, FIELD = MODELS - 1 };
 
 /* Where all that acts on the edge is in balance. */
-static real rest_of(size_t model, const film *one, const film *second, real stiffness, real force)
+static real rest_of(size_t model, const film *first, const film *second, real stiffness, real force)
 {
     real low = -3e-3L, high = 3e-3L;
     for (int i = 0; i < (model == FIELD ? 46 : 70); i++) {
         const real u = 0.5L * (low + high);
-        const real net = models[model].exerted(one, u) + (second ? models[model].exerted(second, u) : 0.0L) - stiffness * u + force;
+        const real net = models[model].exerted(first, u) + (second ? models[model].exerted(second, u) : 0.0L) - stiffness * u + force;
         *(net > 0.0L ? &low : &high) = u;
     }
     return 0.5L * (low + high);
@@ -160,44 +160,6 @@ static real rest_of(size_t model, const film *one, const film *second, real stif
 #define FILM(kind) \
     "actuator: {kind: " kind ", frame_radius: 30 mm, coverage: 0.5, film_thickness: 100 um, prestretch: 1.2}\n" \
     "material: {yeoh: {C1: 178426 Pa, C2: -6023 Pa, C3: 4234 Pa}, permittivity: 2.8, density: 1080 kg/m^3"
-
-static const char *const engines[] = {"direct", "ida", "ngspice"};
-enum { ENGINES = 3, MOST = 1 << 17 };
-
-typedef struct answer {
-    size_t size, rows;
-    _Alignas(16) char bytes[MOST];
-} answer;
-
-static answer one, other;
-
-static dea_status take(void *user, size_t first, const void *points, size_t count, dea_error *error)
-{
-    answer *a = user;
-    (void)error;
-    assert_true((first + count) * a->size <= MOST);
-    memcpy(a->bytes + first * a->size, points, count * a->size);
-    return DEA_OK;
-}
-
-/* False where the engine cannot do it. */
-static bool run(const char *text, const char *model, const char *engine, answer *a)
-{
-    dea_scene scene;
-    dea_error error = {0};
-    if (dea_scene_parse(text, strlen(text), "test", ".", NULL, 0, model, &scene, &error) != DEA_OK) {
-        fail_msg("%s: %s", text, error.message);
-    }
-    a->size = dea_layout_of(&scene).point_size;
-    a->rows = dea_layout_of(&scene).rows;
-    const dea_run_options options = {.jobs = 1, .points = take, .user = a};
-    const bool able = !dea_engine_refuses(dea_engine_find(engine), &scene, scene.models[0]);
-    if (able && dea_study_run(&scene, dea_engine_find(engine), &options, &error) != DEA_OK) {
-        fail_msg("%s, %s: %s", engine, model, error.message);
-    }
-    dea_scene_free(&scene);
-    return able;
-}
 
 static const dea_row *rows_of(const answer *a)
 {

@@ -20,25 +20,6 @@ static dea_scene profiled_scene(dea_kind kind, double until, size_t samples)
     return scene;
 }
 
-/* Samples of a run and what stands behind them; the caller frees them. */
-static dea_sample *fly(const dea_scene *scene, dea_layout *layout)
-{
-    const dea_engine *ida = dea_engine_find("ida");
-    dea_error error = {0};
-    void *session = NULL;
-    *layout = dea_layout_of(scene);
-    dea_sample *samples = calloc(1, layout->point_size);
-    assert_non_null(samples);
-    assert_null(dea_engine_refuses(ida, scene, scene->models[0]));
-    assert_int_equal(ida->begin(&session, &error), DEA_OK);
-    if (ida->transient(session, scene, scene->models[0], samples, dea_layout_summary(layout, samples), &error) != DEA_OK ||
-        error.message[0]) {
-        fail_msg("%s", error.message);
-    }
-    ida->end(session);
-    return samples;
-}
-
 /* Value of the finite elements at R, and its slope. */
 static double fe_at(const fe_film *f, const double *u, double radius, double *slope)
 {

@@ -24,25 +24,6 @@ static dea_scene sheet_scene(dea_kind kind, double rho, double voltage, double r
     return scene;
 }
 
-/* Samples of a run and what stands behind them; the caller frees them. */
-static dea_sample *fly(const dea_scene *scene, dea_layout *layout)
-{
-    const dea_engine *ida = dea_engine_find("ida");
-    dea_error error = {0};
-    void *session = NULL;
-    *layout = dea_layout_of(scene);
-    dea_sample *samples = calloc(1, layout->point_size);
-    assert_non_null(samples);
-    assert_null(dea_engine_refuses(ida, scene, scene->models[0]));
-    assert_int_equal(ida->begin(&session, &error), DEA_OK);
-    if (ida->transient(session, scene, scene->models[0], samples, dea_layout_summary(layout, samples), &error) != DEA_OK ||
-        error.message[0]) {
-        fail_msg("%s", error.message);
-    }
-    ida->end(session);
-    return samples;
-}
-
 /* Voltage across the film at a radius. */
 static double voltage_at(const dea_layout *layout, const dea_sample *samples, size_t row, size_t radius)
 {

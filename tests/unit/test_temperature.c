@@ -1,6 +1,6 @@
 /* A film at another temperature than that of its data. Judges are the shift laws written out here, and films at the temperature of
  * the data on a clock that runs as much slower, or of as much stiffer constants. */
-#include "scenes.h"
+#include "answers.h"
 
 #include <stdlib.h>
 
@@ -15,50 +15,6 @@
 #define SLOPE ", modulus_slope: {per_kelvin: 0.2 %/K, reference: 20 degC}"
 #define FILM(more) HEAD "material: {" CONSTANTS more "}\n"
 #define STILL "drive: {voltage: 4 kV}\nstudy: {sweep: {}}\n"
-
-static const char *const engines[] = {"direct", "ida", "ngspice"};
-enum { ENGINES = 3, MOST = 1 << 16 };
-
-typedef struct answer {
-    size_t rows;
-    _Alignas(16) char bytes[MOST];
-} answer;
-
-static answer one, other;
-
-static dea_status take(void *user, size_t first, const void *points, size_t count, dea_error *error)
-{
-    answer *a = user;
-    (void)error;
-    assert_true((first + count) * a->rows <= MOST); /* rows: bytes of a point until the run is over */
-    memcpy(a->bytes + first * a->rows, points, count * a->rows);
-    return DEA_OK;
-}
-
-static void read_scene(const char *text, const char *model, dea_scene *scene)
-{
-    dea_error error = {0};
-    if (dea_scene_parse(text, strlen(text), "test", ".", NULL, 0, model, scene, &error) != DEA_OK) {
-        fail_msg("%s: %s", text, error.message);
-    }
-}
-
-/* False where the engine cannot. */
-static bool run(const char *text, const char *model, const char *engine, answer *a)
-{
-    dea_scene scene;
-    dea_error error = {0};
-    read_scene(text, model, &scene);
-    const bool able = !dea_engine_refuses(dea_engine_find(engine), &scene, scene.models[0]);
-    const dea_run_options options = {.jobs = 1, .points = take, .user = a};
-    a->rows = dea_layout_of(&scene).point_size;
-    if (able && dea_study_run(&scene, dea_engine_find(engine), &options, &error) != DEA_OK) {
-        fail_msg("%s, %s: %s", engine, model, error.message);
-    }
-    a->rows = dea_layout_of(&scene).rows;
-    dea_scene_free(&scene);
-    return able;
-}
 
 static dea_material material_of(const char *text)
 {

@@ -60,8 +60,8 @@ double dea_series_resistance(const dea_scene *scene)
 /* Share of the source voltage that a leaking film sees at rest: R_p/(R_s + R_p). */
 static double film_share(const dea_scene *scene)
 {
-    const double leakage = scene->drive.leakage_resistance, series = dea_series_resistance(scene);
-    return isnan(series) || isnan(leakage) ? 1.0 : leakage / (series + leakage);
+    const double leakage = scene->drive.leakage_resistance, series = isnan(leakage) ? leakage : dea_series_resistance(scene);
+    return isnan(series) ? 1.0 : leakage / (series + leakage);
 }
 
 static void place_skin(const dea_electrode *electrode, dea_point *point)

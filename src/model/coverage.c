@@ -35,7 +35,7 @@ static double more_push_of_lens(double b, double e, double push)
 }
 
 /* Dot: C_0 lambda_a^4. Lens: C_0 + int 2 F/U^2 du, because the equi-biaxial annulus is not the true area [F]. */
-static double capacitance_of(const dea_point *point, double strain)
+DEA_INLINE double capacitance_of(const dea_point *point, double strain)
 {
     if (point->kind == DEA_DOT) {
         return dea_point_disc_capacitance(point, strain);
@@ -47,7 +47,7 @@ static double capacitance_of(const dea_point *point, double strain)
 }
 
 /* Strain that the passive film gives back per strain of the active one. */
-static double ratio_of(const dea_point *point)
+DEA_INLINE double ratio_of(const dea_point *point)
 {
     const double b = point->coverage;
     return point->kind == DEA_DOT ? b / (1.0 - b) : (1.0 - b) / b;

@@ -466,12 +466,15 @@ static double tail(const double *last)
     return isfinite(fall) ? fabs(last[0]) * fall / 3.0 : fabs(last[0]);
 }
 
+/* A square falls slower than its root, whose coefficients the ratio of the last ones takes for the next: measured, by up to three. */
+static const double of_square = 3.0;
+
 /* Estimated relative error of strain and capacitance: what the sums leave out, over the share of its stiffness that the film has
  * left. */
 static double error_of(const traveller *t, const findings *f, size_t l)
 {
     const dea_point *point = t->point;
-    const double b = point->coverage, apart = b * b / ((1.0 - b) * (1.0 + b)) / (point->film.square * point->film.square);
+    const double b = point->coverage, apart = of_square * b * b / ((1.0 - b) * (1.0 + b)) / (point->film.square * point->film.square);
     const double softened = fmax(1.0, rest_of(point).stiffness / t->here.stiffness);
     const double weights[] = {softened, softened, point->kind == DEA_DOT ? 0.0 : apart};
     double error = 0.0;

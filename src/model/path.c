@@ -19,6 +19,18 @@ typedef struct reach {
     double at_low, at_high; /* fold there */
 } reach;
 
+/* Where `fold` has fallen to a share q of that at rest it may touch zero and rise again, as q = c d^2 over a distance d from there:
+ * samples then lie closer by this many times the root of q. */
+static const double shallow = 4.0;
+
+/* True where `fold` passes zero nowhere between two samples of it, both positive. */
+static bool is_smooth(const dea_path *path, double width, double trusted, double fold, double next)
+{
+    const double share = fmin(fold, next) / path->rest;
+    const bool alike = next > 0.5 * fold && fold > 0.5 * next; /* never NAN */
+    return alike && width <= trusted && width * width <= shallow * shallow * share * trusted * trusted;
+}
+
 /* Looks for a fold on a reach that begins with a positive one. Returns true and in @p low, @p high a narrow bracket of the first
  * sample that is not positive. Samples lie so close that `fold` at most halves, or stretches move by 5 %, between two of them.
  * Where the energy of the film ends `fold` is NAN: that counts as one, and just before it the film holds any load. */
@@ -35,7 +47,7 @@ static bool find_fold(const dea_path *path, const reach *whole, double *low, dou
             *high = next;
             return true;
         }
-        if (finest || (width <= trusted && next_fold > 0.5 * fold && fold > 0.5 * next_fold)) { /* never NAN */
+        if (finest || is_smooth(path, width, trusted, fold, next_fold)) {
             at = next;
             fold = next_fold;
             next = fmin(whole->high, at + 2.0 * width);

@@ -507,6 +507,19 @@ static const struct {
      "material: {gent: {mu: 421335.63578498969 Pa, Jm: 60.448824471749624}, permittivity: 9.2496348433590931}\n"
      "drive: {voltage: 24132.842089669884 V}\nmodel: field\n"
      "study: {sweep: {prestretch: [2.9903632420408162, 3.5054332170008893]}}\n"},
+    /* a lens whose load no longer grows over so short a way that samples on both sides of it are alike: it is lost there */
+    {DEA_STATE_PULL_IN, 6, 0,
+     "actuator: {kind: lens, frame_radius: 0.0037235650074266373 m, coverage: 0.65892924399140651,\n"
+     "  film_thickness: 0.00012265137178827455 m, prestretch: 1.284208513437614}\n"
+     "material: {mooney_rivlin: {C10: 37305.062023472325 Pa, C01: 14461.121845205096 Pa}, permittivity: 4.0583266690606}\n"
+     "drive: {voltage: 6774 V}\nmodel: coverage\nstudy: {sweep: {voltage: [4750 V, 4760 V, 4800 V, 6774 V]}}\n"},
+    /* a lens whose capacitance is the worst of its columns */
+    {DEA_STATE_OK, 6, 0,
+     "actuator: {kind: lens, frame_radius: 0.062489568780049444 m, coverage: 0.91870117653889005,\n"
+     "  film_thickness: 3.2066263769474084e-05 m, prestretch: 2.5071439743865209}\n"
+     "material: {neo_hookean: {mu: 99919.530865173147 Pa}, permittivity: {constant: 4.0437560590970199, per_stretch: "
+     "-0.37319324986150926}}\n"
+     "drive: {voltage: 400 V}\nmodel: field\nstudy: {sweep: {voltage: [397.82527412185522 V, 401.32986440797646 V]}}\n"},
     /* a narrow annulus that loses its ellipticity at a small strain of the disc, behind which there are other roots */
     {DEA_STATE_PULL_IN, 6, 0,
      "actuator: {kind: lens, frame_radius: 0.0018328892777835966 m, coverage: 0.97152469858042112,\n"

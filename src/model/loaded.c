@@ -140,8 +140,9 @@ void dea_loaded_solve(const dea_holder *holder, const dea_point *point, dea_row 
     const dea_point second = dea_point_second(point);
     parties p = parties_of(holder, point, &second);
     edge_forces f;
-    if (!grow(&p, false) || !grow(&p, true) || !look(&p, p.base, true, &f)) {
-        dea_row_refuse(row, DEA_STATE_PULL_IN);
+    const bool stands = grow(&p, false) && (isnan(p.base) || grow(&p, true)); /* it may stand, and not be found */
+    if (!stands || !look(&p, p.base, true, &f)) {
+        dea_row_refuse(row, stands ? DEA_STATE_FAILED : DEA_STATE_PULL_IN);
         return;
     }
     fill(&p, &f, row);

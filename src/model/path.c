@@ -85,16 +85,16 @@ static double locate_fold(const dea_path *path, double before, double after)
     return before;
 }
 
-/* Root of R - m weight in [low, high], where it changes sign from - to +: Newton, with bisection where Newton leaves the bracket.
- */
+/* Root of R - m weight in [low, high], where it changes sign from - to +: Newton, with bisection where Newton leaves the bracket. NAN
+ * where the film is not solved at a place between. */
 static double bracketed_root(const dea_path *path, double m, double low, double high)
 {
     double x = 0.5 * (low + high);
     for (int i = 0; i < 200 && high - low > 1e-16 * high; i++) {
         const dea_path_place place = path->at(path->film, x);
         const double residual = place.held - m * place.weight;
-        if (residual == 0.0) {
-            return x;
+        if (residual == 0.0 || isnan(residual)) {
+            return residual == 0.0 ? x : residual;
         }
         *(residual < 0.0 ? &low : &high) = x;
         const double next = x - residual / (place.slope - m * place.weight_slope);

@@ -37,7 +37,7 @@ bool dea_path_cannot_fold(const dea_path *path, double m, double x, const dea_pa
 /* True where the load grows all the way from rest to x, so that an equilibrium there is the first one. */
 bool dea_path_grows(const dea_path *path, double x);
 
-/* The first equilibrium from rest under the load m > 0; false where there is none: pull-in. */
+/* The first equilibrium from rest under the load m > 0, NAN where it is there and was not found; false where there is none: pull-in. */
 bool dea_path_trace(const dea_path *path, double m, double *x);
 
 #endif

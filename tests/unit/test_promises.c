@@ -520,6 +520,12 @@ static const struct {
      "material: {neo_hookean: {mu: 99919.530865173147 Pa}, permittivity: {constant: 4.0437560590970199, per_stretch: "
      "-0.37319324986150926}}\n"
      "drive: {voltage: 400 V}\nmodel: field\nstudy: {sweep: {voltage: [397.82527412185522 V, 401.32986440797646 V]}}\n"},
+    /* a pulled film deep in slack, at a place of which the tightest search of the shooting once ended in a circle */
+    {DEA_STATE_SLACK, 4, 0,
+     "actuator: {kind: dot, frame_radius: 0.0093991722183387957 m, coverage: 0.79978347932217841,\n"
+     "  film_thickness: 4.0252806916949911e-06 m, prestretch: 1.3210016414242731}\n"
+     "load: {force: 0.00019527745846592237 N}\nmaterial: {neo_hookean: {mu: 13400 Pa}, permittivity: 4.8}\n"
+     "drive: {voltage: 34 V}\nmodel: field\nstudy: {sweep: {voltage: [134.2648217464681 V, 184.1826018420245 V]}}\n"},
     /* a narrow annulus that loses its ellipticity at a small strain of the disc, behind which there are other roots */
     {DEA_STATE_PULL_IN, 6, 0,
      "actuator: {kind: lens, frame_radius: 0.0018328892777835966 m, coverage: 0.97152469858042112,\n"

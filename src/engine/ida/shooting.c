@@ -588,10 +588,9 @@ static double held_at(dea_shooting *s, double edge, double *push)
     return held;
 }
 
-static bool hold(void *user, const dea_point *point, double strain, dea_hold *hold)
+static bool hold_once(dea_shooting *s, const dea_point *point, double strain, dea_hold *hold)
 {
     const double nudge = 1e-5; /* of the stretch: slopes tell folds and steer Newton's steps, no digit hangs on them */
-    dea_shooting *s = user;
     dea_point bare = *point;
     const double nominal = dea_point_nominal_field(point), pre = point->film.prestretch, edge = pre * strain, step = pre * nudge;
     double above, below;
@@ -612,12 +611,29 @@ static bool hold(void *user, const dea_point *point, double strain, dea_hold *ho
     set_load(s, 1.0);
     s->strain = edge != 0.0 ? fabs(edge) : step;
     s->stress = s->point->film.w11 * s->strain;
-    const bool there = isfinite(hold->held) && isfinite(hold->push) && !isnan(miss_at_frame(s, edge));
+    const bool sloped = isfinite(hold->held_slope) && isfinite(hold->push_slope);
+    const bool there = sloped && isfinite(hold->held) && isfinite(hold->push) && !isnan(miss_at_frame(s, edge));
     if (there) {
         hold->found = found_at(s, edge);
         hold->found.capacitance = edge == 0.0 ? dea_point_capacitance(point) : hold->found.capacitance; /* IDA has no steps to sum over */
     }
     s->pull = s->uniform = 0.0;
+    return there;
+}
+
+/* At the tightest tolerance a search may end where rounding leads it in a circle, in the middle of a sound film: a tolerance that differs
+ * a little leads it past that. */
+static bool hold(void *user, const dea_point *point, double strain, dea_hold *hold)
+{
+    enum { TURNS = 3 };
+    dea_shooting *s = user;
+    const double tolerance = s->tolerance;
+    bool there = false;
+    for (int i = 0; i < TURNS && !there; i++) {
+        s->tolerance = tolerance * (double)(i + 1);
+        there = hold_once(s, point, strain, hold);
+    }
+    s->tolerance = tolerance;
     return there;
 }
 

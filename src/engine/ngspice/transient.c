@@ -299,13 +299,21 @@ static double work_of(const dea_route *route, double fineness)
            (linear ? netlist : nonlinear_netlist) * (double)route->pieces->count;
 }
 
-/* Runs that are wanted at least, each finer by 2: two to compare, then as many as a fourth order takes from here. */
+/* An error as large as the motion says nothing yet of how it falls, [1]. */
+static const double unknown = 0.5;
+
+/* Runs that are wanted at least, each finer by 2: two to compare, then as many as a fourth order takes from here, one more where two
+ * differ as far as they can; of a film that the last one carried through where it turns back, three that do not. */
 static double least_runs(const levels *l, double wanted)
 {
     if (l->runs < 3) {
         return l->runs == 1 ? 2.0 : 1.0;
     }
-    return isfinite(l->error) ? fmax(1.0, ceil(log(l->error / wanted) / log(16.0))) : 1.0;
+    if (l->fine.bounces) {
+        return 3.0;
+    }
+    const double falling = fmax(1.0, ceil(log(fmin(l->error, 1.0) / wanted) / log(16.0)));
+    return l->error < unknown ? falling : falling + 1.0;
 }
 
 /* What the next runs would take. */

@@ -17,6 +17,7 @@ enum { MOST_RUNS = 8, MOST_FITS = 4 };
 static const double order = 0.8;
 static const double safety = 9.0;
 static const double doubt = 1.5;       /* most that an error is taken for, over the difference of two runs */
+static const double shared = 0.1;      /* of the accuracy: error that two runs may have alike, so that none is told as less */
 static const double first_share = 0.1; /* from one tolerance to the next */
 static const double least_tolerance = 1e-14;
 static const double tight = 1e-11; /* a tolerance that sees every swing that rounding leaves */
@@ -175,7 +176,7 @@ static bool refine(dea_flight *flight, const dea_scales *scales, double accuracy
         const bool failed = traces[1].end == DEA_STATE_FAILED;
         const bool doubtful = traces[1].end == DEA_STATE_PULL_IN && tolerance > certain;
         const bool comparable = failed || traces[0].count == traces[1].count;
-        const double trust = fmin(doubt, safety * shrinks), least = fmax(10.0 * tolerance, 0.1 * accuracy);
+        const double trust = fmin(doubt, safety * shrinks), least = fmax(10.0 * tolerance, shared * accuracy);
         const double worst = fmax(apart.answer * trust, least);
         summary->error = fmax(apart.displacement * trust, least);
         *rates = (dea_rate_errors){apart.rates.velocity * trust, apart.rates.current * trust};
@@ -217,6 +218,12 @@ static void explain(const dea_flight *flight, const dea_summary *summary, dea_er
     }
 }
 
+/* NAN, of a column that is not there, stays. */
+static double at_least(double error, double least)
+{
+    return error < least ? least : error;
+}
+
 /* Runs until the answer is good enough, and tells it. */
 static void fly_on(dea_flight *flight, const dea_scales *scales, dea_trace traces[2], dea_sample *samples, dea_summary *summary,
                    dea_error *error)
@@ -238,6 +245,8 @@ static void fly_on(dea_flight *flight, const dea_scales *scales, dea_trace trace
         rates.current = scales->motional * rates.velocity;
     }
     dea_scales_tell(scales, samples, flight->rows, rates, summary);
+    summary->velocity_error = at_least(summary->velocity_error, shared * accuracy);
+    summary->current_error = at_least(summary->current_error, shared * accuracy);
     if (flight->peaks && traces[1].end == DEA_STATE_OK) {
         dea_peak_tell(&traces[0].peak, &traces[1].peak, flight->scene->accuracy, summary);
     }

@@ -23,7 +23,7 @@ static bool fits(const dea_wave_bounds *b, dea_wave_fault *fault)
     const double off = high[DUTY] < 1.0 ? 1.0 - high[DUTY] : 1.0, on = low[DUTY] > 0.0 ? low[DUTY] : 1.0;
     const double most = fmin(on, off) / high[FREQUENCY];
     snprintf(accepted, sizeof accepted, "0 s, which is a jump, or 1e-12 s to %.4g s, the shorter part of a period", most);
-    return (dea_wave_apart(most - high[RISE], high[RISE], b->shortest) && (low[RISE] == 0.0 || low[RISE] >= b->shortest)) ||
+    return (dea_wave_apart(dea_wave_gap(most, high[RISE]), high[RISE], b->shortest) && (low[RISE] == 0.0 || low[RISE] >= b->shortest)) ||
            dea_wave_blame(fault, &numbers[RISE], "does not fit into the pulses", accepted);
 }
 

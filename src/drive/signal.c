@@ -54,9 +54,13 @@ static bool joins(builder *b, double to, double start, double end)
     return true;
 }
 
-/* An edge that rounding alone keeps off the time of a sample lies there, so that the sample sees what is before the edge. */
+/* An edge that rounding alone keeps off the end of the run, or off the time of a sample, lies there, so that the sample sees what is
+ * before the edge. */
 static double on_grid(const builder *b, double time)
 {
+    if (dea_wave_gap(b->until, time) == 0.0) {
+        return b->until;
+    }
     const double index = round(dea_layout_index(b->scene, time));
     if (!(index >= 0.0 && index < DEA_SAMPLES_MAX)) {
         return time;
@@ -65,7 +69,7 @@ static double on_grid(const builder *b, double time)
     return fabs(sample - time) <= 4.0 * DBL_EPSILON * time ? sample : time;
 }
 
-/* Adds a segment, cut at the end of the run. */
+/* Adds a segment, cut at the end of the run; none that is but the rounding of its ends. */
 static void add(builder *b, double from, double to, double start, double end, bool sine)
 {
     dea_signal *signal = b->signal;
@@ -77,7 +81,7 @@ static void add(builder *b, double from, double to, double start, double end, bo
         /* a sine that ends where it crosses a level ends there but for rounding */
         last->end = last->sine && fabs(last->end - start) <= 1e-12 * signal->largest ? start : last->end;
     }
-    if (!(to > from) || from >= b->until || b->exhausted) {
+    if (!(dea_wave_gap(to, from) > 0.0) || from >= b->until || b->exhausted) {
         return;
     }
     if (to > b->until) {
@@ -156,7 +160,7 @@ static dea_status check_order(const dea_scene *scene, const dea_wave *kind, dea_
     if (kind->extent) {
         kind->extent(&bounds, &first, &last, &rise);
     }
-    if (!isnan(wave->period) && !(wave->period >= last)) {
+    if (!isnan(wave->period) && !(dea_wave_gap(wave->period, last) >= 0.0)) {
         return dea_fail(error, DEA_ERROR_USAGE, "the edges of the waveform are out of order");
     }
     if (kind->fits && !kind->fits(&bounds, &fault)) {

@@ -20,7 +20,7 @@ static bool fits(const dea_wave_bounds *b, dea_wave_fault *fault)
     const double half = 0.5 / high[FREQUENCY];
     char accepted[100];
     snprintf(accepted, sizeof accepted, "0 s, which is a jump, or 1e-12 s to %.4g s, half a period", half);
-    return (dea_wave_apart(half - high[RISE], high[RISE], b->shortest) && (low[RISE] == 0.0 || low[RISE] >= b->shortest)) ||
+    return (dea_wave_apart(dea_wave_gap(half, high[RISE]), high[RISE], b->shortest) && (low[RISE] == 0.0 || low[RISE] >= b->shortest)) ||
            dea_wave_blame(fault, &numbers[RISE], "does not fit into half a period", accepted);
 }
 

@@ -20,7 +20,7 @@ static bool fits(const dea_wave_bounds *b, dea_wave_fault *fault)
     if (!(low->rise == 0.0 || low->rise >= b->shortest)) {
         return dea_wave_blame(fault, &numbers[RISE], "two edges closer than 1e-12 s", "0 s, which is a jump, or at least 1e-12 s");
     }
-    const double gap = low->off - (high->on + high->rise);
+    const double gap = dea_wave_gap(low->off, high->on + high->rise);
     if (isnan(low->off) || dea_wave_apart(gap, high->rise, b->shortest)) {
         fault->period = !isnan(b->low->period) && isnan(low->off);
         return !fault->period || dea_wave_blame(fault, &numbers[OFF], "missing; a step with a period goes off again",

@@ -80,6 +80,8 @@ double *dea_wave_at(const dea_wave *wave, dea_waveform *waveform, size_t index, 
 dea_waveform dea_waveform_none(void);
 /* Fills a fault; for fits(). */
 bool dea_wave_blame(dea_wave_fault *fault, const dea_wave_number *number, const char *problem, const char *accepted);
+/* Time between two moments that are sums of others: 0 where it is their rounding. */
+double dea_wave_gap(double to, double from);
 /* True where edges that take that time and lie so far apart touch in a corner, or keep the shortest distance. */
 bool dea_wave_apart(double gap, double rise, double shortest);
 

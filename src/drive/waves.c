@@ -1,4 +1,5 @@
 /* The kinds of waveform: one row and one file each. */
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -46,6 +47,12 @@ bool dea_wave_blame(dea_wave_fault *fault, const dea_wave_number *number, const 
     fault->problem = problem;
     snprintf(fault->accepted, sizeof fault->accepted, "%s", accepted);
     return false;
+}
+
+double dea_wave_gap(double to, double from)
+{
+    const double gap = to - from;
+    return fabs(gap) <= 4.0 * DBL_EPSILON * fabs(to) ? 0.0 : gap;
 }
 
 bool dea_wave_apart(double gap, double rise, double shortest)

@@ -243,10 +243,11 @@ static dea_status period_finish(dea_reader *reader, const dea_wave *wave, const 
     }
     double first, last, rise;
     wave->extent(bounds, &first, &last, &rise);
-    if (period >= last && period >= DEA_EDGE_MIN && dea_wave_apart(period - last + first, rise, DEA_EDGE_MIN)) {
+    const double rest = dea_wave_gap(period, last);
+    if (rest >= 0.0 && period >= DEA_EDGE_MIN && dea_wave_apart(rest + first, rise, DEA_EDGE_MIN)) {
         return DEA_OK;
     }
-    return fail_at(reader, AT(period), "drive.waveform.period", period < last ? "out of range" : "two edges closer than 1e-12 s",
+    return fail_at(reader, AT(period), "drive.waveform.period", rest < 0.0 ? "out of range" : "two edges closer than 1e-12 s",
                    wave->until);
 }
 

@@ -83,16 +83,22 @@ static void set_mass(radial *r)
     r->heavy = f->density > 0.0L;
 }
 
-bool radial_open(radial *r, const true_film *film, double fineness)
+/* Width of the elements of a disc or annulus. */
+static long double widest_of(long double width, long double rim, double fineness, int more)
+{
+    return width / (ceill(width * (long double)fineness / rim) + (long double)more);
+}
+
+bool radial_open(radial *r, const true_film *film, double fineness, int more)
 {
     const long double edge = film->divide / film->prestretch, rim = film->frame / film->prestretch;
     memset(r, 0, sizeof *r);
     r->film = film;
-    if (!cut(r, 0.0L, edge, fminl(edge, rim / fineness), false)) {
+    if (!cut(r, 0.0L, edge, widest_of(edge, rim, fineness, more), false)) {
         return false;
     }
     r->disc = r->elements;
-    if (!cut(r, edge, rim, fminl(rim - edge, rim / fineness), true)) {
+    if (!cut(r, edge, rim, widest_of(rim - edge, rim, fineness, more), true)) {
         return false;
     }
     r->size = r->elements * RADIAL_DEGREE - 1;

@@ -40,8 +40,9 @@ typedef struct radial {
     bool heavy;
 } radial;
 
-/* Elements no wider than the film over @p fineness, and in the annulus no wider than their radius. False: there are too many. */
-bool radial_open(radial *r, const true_film *film, double fineness);
+/* Elements no wider than the film over @p fineness, and in the annulus no wider than their radius; disc and annulus have @p more than
+ * that each, so that one which is finer is so in both, however narrow. False: there are too many. */
+bool radial_open(radial *r, const true_film *film, double fineness, int more);
 
 /* Changes of the stretches at a place, or their rates. */
 void radial_strain(const radial *r, const long double *u, int spot, long double d[2]);

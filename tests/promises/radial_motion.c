@@ -917,7 +917,7 @@ static void refine(motion *m, true_run *truth)
     m->tolerance = fmaxl(first_tolerance, first_share * (long double)m->scene->accuracy);
     truth->error = (double)INFINITY;
     for (int level = 0; level < LEVELS && !is_enough(m, truth->error); level++) {
-        if (!radial_open(&m->mesh, &m->film, fineness)) {
+        if (!radial_open(&m->mesh, &m->film, fineness, level)) {
             break;
         }
         m->why = NULL;

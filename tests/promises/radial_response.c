@@ -70,7 +70,7 @@ double radial_response(const dea_scene *scene, const dea_model *model, dea_respo
     const size_t count = dea_layout_of(scene).rows;
     const double none = (double)NAN;
     double error = (double)INFINITY;
-    for (int level = 0; level < 5 && !(error < 1e-13) && radial_open(&b->mesh, &film, 5.0 * (1 << level)); level++) {
+    for (int level = 0; level < 5 && !(error < 1e-13) && radial_open(&b->mesh, &film, 5.0 * (1 << level), level); level++) {
         dea_state state;
         const bool rests = rest_at(b, film.kept * (long double)scene->ac.bias, &state);
         double most = 0.0;

@@ -1,4 +1,5 @@
 /* Sources, samples and figures of motion against closed forms. */
+#include "drive/signal.h"
 #include "network/peak.h"
 #include "scenes.h"
 
@@ -69,6 +70,35 @@ static void logarithmic_samples_see_a_film_relax_over_decades(void **state)
         free(samples);
     }
     dea_scene_free(&scene);
+}
+
+/* Times of decimal places: an edge may begin where another ends, though the sum of two is off the third by rounding (0.1 + 0.2). */
+static void edges_may_touch_whatever_the_decimals(void **state)
+{
+    (void)state;
+    for (int on = 0; on < 10; on++) {
+        for (int rise = 1; rise < 10; rise++) {
+            char drive[200];
+            dea_scene scene;
+            dea_signal signal;
+            dea_error error = {0};
+            snprintf(drive, sizeof drive, "waveform: {step: {on: 0.%d ms, rise: 0.%d ms, off: %.1f ms, voltage: 1 kV}, period: %.1f ms}", on, rise,
+                     0.1 * (on + rise), 0.1 * (on + 2 * rise));
+            if (parse(drive, "lumped", "until: 100 ms, every: 0.37 ms", &scene, &error) != DEA_OK) {
+                fail_msg("%s: %s", drive, error.message);
+            }
+            if (dea_signal_open(&scene, &signal, &error) != DEA_OK) {
+                fail_msg("%s: %s", drive, error.message);
+            }
+            for (size_t i = 0; i < signal.count; i++) {
+                if (!(signal.segments[i].to - signal.segments[i].from > 1e-5)) {
+                    fail_msg("%s: segment %zu from %.17g to %.17g s", drive, i, signal.segments[i].from, signal.segments[i].to);
+                }
+            }
+            dea_signal_close(&signal);
+            dea_scene_free(&scene);
+        }
+    }
 }
 
 /* Dot in true geometry (physics: section 5): C = eps pi r_a^2 lambda_pre^2 lambda_a^4/H. */
@@ -346,6 +376,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(logarithmic_samples_see_a_film_relax_over_decades),
+        cmocka_unit_test(edges_may_touch_whatever_the_decimals),
         cmocka_unit_test(capacitance_over_time_is_that_of_the_stretched_disc),
         cmocka_unit_test(a_film_stretched_past_its_chains_names_them),
         cmocka_unit_test(a_source_at_its_limit_charges_a_stiff_film_evenly),

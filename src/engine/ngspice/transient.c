@@ -312,6 +312,9 @@ static double least_runs(const levels *l, double wanted)
     if (l->fine.bounces) {
         return 3.0;
     }
+    if (!isfinite(l->error)) {
+        return 1.0; /* runs that cannot be compared tell nothing */
+    }
     const double falling = fmax(1.0, ceil(log(fmin(l->error, 1.0) / wanted) / log(16.0)));
     return l->error < unknown ? falling : falling + 1.0;
 }

@@ -89,7 +89,7 @@ static bool look(const dea_motion *m, double time, const double *y, local_state 
     dea_dynamics *d = m->dynamics;
     at->u = y[0] * m->size[0];
     at->v = m->v >= 0 ? y[m->v] * m->size[m->v] : 0.0;
-    if (!d->linear && !dea_motion_inside(m, at->u)) {
+    if (d->framed && !dea_motion_inside(m, at->u)) {
         return false;
     }
     at->edge = dea_dynamics_edge(d, at->u);

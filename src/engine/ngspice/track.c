@@ -290,7 +290,7 @@ static void see_current(runner *r, const node *b)
     }
 }
 
-/* The edge lies between centre and frame. A linear film knows no frame: of what it does there only the samples tell; but what
+/* The edge lies between centre and frame. A film of linear springs knows no frame: of what it does there only the samples tell; but what
  * charges it through a resistance ends with its capacitance. */
 static bool is_inside(dea_dynamics *d, const node *n)
 {
@@ -298,7 +298,7 @@ static bool is_inside(dea_dynamics *d, const node *n)
     if (!isfinite(u) || !isfinite(n->moment.v)) {
         return false;
     }
-    return d->linear ? d->series == 0.0 || dea_dynamics_edge(d, u).capacitance > 0.0 : dea_dynamics_inside(d, u);
+    return d->framed ? dea_dynamics_inside(d, u) : d->series == 0.0 || dea_dynamics_edge(d, u).capacitance > 0.0;
 }
 
 /* What a sample sees where its segment stands for lines: the voltage of the line, and the velocity that a damper lets it have. */
@@ -464,7 +464,7 @@ static bool turns_back(const runner *r, const node *n)
         *(isfinite(push_at(d, middle, voltage)) ? &low : &high) = middle;
     }
     force = isfinite(force) ? force : push_at(d, low, voltage);
-    return !d->linear && isfinite(n->moment.u) && force * high < 0.0;
+    return d->framed && isfinite(n->moment.u) && force * high < 0.0;
 }
 
 /* Mass or damper carry the film out of its frame: pull_in. Where it would turn back the steps are too long. */
@@ -800,12 +800,12 @@ static bool start(runner *r)
     return r->track->end == DEA_STATE_OK;
 }
 
-/* Linear films, and those without mass and damper, end at a time that is known. */
+/* Films of linear springs, and those without mass and damper, end at a time that is known. */
 static bool is_vague(const runner *r)
 {
     const dea_route *route = r->route;
     const dea_track *track = r->track;
-    return track->end == DEA_STATE_PULL_IN && !route->dynamics->linear && !dea_dynamics_is_free(route->dynamics) &&
+    return track->end == DEA_STATE_PULL_IN && route->dynamics->framed && !dea_dynamics_is_free(route->dynamics) &&
            track->reached < route->samples && dea_layout_place(route->scene, track->reached) <= track->last.time + r->step;
 }
 

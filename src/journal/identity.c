@@ -49,36 +49,26 @@ static void put_numbers(FILE *out, const char *name, const double *values, size_
     fprintf(out, "%s=%zu values %s ... %s (%016" PRIx64 ")\n", name, count, first, last, dea_digest_end(&digest));
 }
 
-/* Does the key name a scalar that this kind of actuator and this law of its material have? */
-static bool is_scalar(const dea_scene *scene, const dea_key *key)
+/* Where scalars go, and whose they are. */
+typedef struct scalars {
+    FILE *out;
+    const dea_scene *scene;
+} scalars;
+
+static void put_scalar(void *user, const dea_key *key)
 {
-    const unsigned kind = scene->actuator.kind == DEA_DOT ? DEA_KEY_DOT : DEA_KEY_LENS;
-    return key->offset != DEA_KEY_NOWHERE && key->stride == 0 && (key->kinds & kind) != 0 &&
-           (!key->law || key->law == scene->material.law);
+    const scalars *to = user;
+    put_number(to->out, key->path, dea_layout_number(to->scene, key->offset));
 }
 
-/* Two keys can name one scalar; the first of them that the scene has stands for it. */
-static bool stands_for_its_place(const dea_scene *scene, const dea_key *key, size_t index)
+/* Constants are scalars too, but for those of a list. */
+static void put_law(FILE *out, const char *of, const dea_law *law, const double *constants, size_t entries)
 {
-    dea_key before;
-    if (!is_scalar(scene, key)) {
-        return false;
-    }
-    for (size_t i = 0; i < index && dea_key_at(i, &before); i++) {
-        if (before.offset == key->offset && is_scalar(scene, &before)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-static void put_scalars(FILE *out, const dea_scene *scene)
-{
-    dea_key key;
-    for (size_t i = 0; dea_key_at(i, &key); i++) {
-        if (stands_for_its_place(scene, &key, i)) {
-            put_number(out, key.path, dea_layout_number(scene, key.offset));
-        }
+    char name[DEA_NAME_LENGTH];
+    fprintf(out, "%s.law=%s\n", of, law ? law->name : "");
+    if (law && law->entries > 1) {
+        snprintf(name, sizeof name, "%s.constants", of);
+        put_numbers(out, name, constants, entries * law->constant_count);
     }
 }
 
@@ -86,17 +76,14 @@ static void put_lists(FILE *out, const dea_scene *scene)
 {
     const dea_material *material = &scene->material;
     const dea_waveform *wave = &scene->drive.waveform;
-    if (material->law->entries > 1) {
-        fprintf(out, "material.law=%s\n", material->law->name);
-        put_numbers(out, "material.constants", material->constants, material->entry_count * material->law->constant_count);
-    }
+    put_law(out, "material", material->law, material->constants, material->entry_count);
+    put_law(out, "electrode", scene->electrode.law, scene->electrode.constants, scene->electrode.entry_count);
     const dea_antagonist *other = &scene->antagonist;
     if (other->there) {
         fprintf(out, "antagonist.kind=%d\nantagonist.material.law=%s\n", (int)other->kind, other->own_material ? other->material.law->name : "");
         put_numbers(out, "antagonist.material.constants", other->material.constants, other->own_material ? DEA_LAW_CONSTANTS : 0);
         put_number(out, "antagonist.material.permittivity", other->material.permittivity);
         put_number(out, "antagonist.material.permittivity.per_stretch", other->material.permittivity_per_stretch);
-        fprintf(out, "antagonist.material.permittivity.follows=%d\n", other->material.permittivity_follows ? 1 : 0);
         put_number(out, "antagonist.material.modulus_slope.per_kelvin", other->material.modulus_slope);
         put_number(out, "antagonist.material.modulus_slope.reference", other->material.modulus_reference);
         put_number(out, "antagonist.material.density", other->material.density);
@@ -192,7 +179,7 @@ dea_status dea_identity_write(const dea_scene *scene, const dea_engine *engine, 
         fprintf(out, "program version=%s\n", DEA_VERSION);
         put_engines(out, scene, engine);
         put_study(out, scene);
-        put_scalars(out, scene);
+        dea_keys_visit(scene, dea_key_is_scalar, put_scalar, &(scalars){out, scene});
         put_lists(out, scene);
     }
     status = dea_memory_text_end(&memory, status, error);

@@ -163,11 +163,10 @@ static bool begins_with(const char *path, const char *with)
     return strncmp(path, with, strlen(with)) == 0;
 }
 
-/* Does the scene use this scalar? Windows and branches are lists, which have places of their own. */
-static bool is_used(const dea_scene *scene, const dea_key *key)
+/* Does the scene use this scalar, and the same in all points? Windows and branches are lists, which have places of their own. */
+static bool is_used(const dea_key *key, const dea_scene *scene)
 {
     const dea_wave *wave = dea_wave_of(scene->drive.waveform.kind);
-    const unsigned kind = scene->actuator.kind == DEA_DOT ? DEA_KEY_DOT : DEA_KEY_LENS;
     const struct {
         const char *path;
         bool used;
@@ -185,27 +184,14 @@ static bool is_used(const dea_scene *scene, const dea_key *key)
     while (!begins_with(key->path, parts[part].path)) {
         part++;
     }
-    const dea_law *law = begins_with(key->path, "electrode.") ? scene->electrode.law : scene->material.law;
-    const bool listed = (key->law && key->law != law) || key->stride > 0;
-    return parts[part].used && key->offset != DEA_KEY_NOWHERE && (key->kinds & kind) != 0 && !listed;
-}
-
-/* Two keys can name one scalar; the first of them stands for it. */
-static bool is_first_of_its_place(const dea_scene *scene, const dea_key *key, size_t index)
-{
-    dea_key before;
-    for (size_t i = 0; i < index && dea_key_at(i, &before); i++) {
-        if (before.offset == key->offset && is_used(scene, &before)) {
-            return false;
-        }
-    }
-    return true;
+    return parts[part].used && dea_key_is_scalar(key, scene) && !is_swept(scene, key->offset);
 }
 
 /* A scalar under its path without the section, one of the electrode under its whole path: a skin has a law and a density as the
  * film has. */
-static void put_scalar(grid *file, const dea_key *key)
+static void put_scalar(void *user, const dea_key *key)
 {
+    grid *file = user;
     char name[DEA_NAME_LENGTH];
     const double value = dea_layout_number(file->scene, key->offset);
     dea_ref ref;
@@ -218,18 +204,6 @@ static void put_scalar(grid *file, const dea_key *key)
     }
     dea_ref_column(&ref, components > 0 ? components : 1, name);
     put_number(file, NC_GLOBAL, name, value);
-}
-
-/* Every scalar of the scene that is given and not swept. */
-static void put_scalars(grid *file)
-{
-    const dea_scene *scene = file->scene;
-    dea_key key;
-    for (size_t i = 0; dea_key_at(i, &key); i++) {
-        if (is_used(scene, &key) && is_first_of_its_place(scene, &key, i) && !is_swept(scene, key.offset)) {
-            put_scalar(file, &key);
-        }
-    }
 }
 
 /* The constants of a law, entry after entry, under one name each. */
@@ -321,7 +295,7 @@ static void put_provenance(grid *file, const char *engine)
     put_text(file, NC_GLOBAL, "actuator", scene->actuator.kind == DEA_DOT ? "dot" : "lens");
     put_text(file, NC_GLOBAL, "material", scene->material.name);
     put_text(file, NC_GLOBAL, "material_source", scene->material.source);
-    put_scalars(file);
+    dea_keys_visit(scene, is_used, put_scalar, file);
     put_listed_law(file, "", scene->material.law, scene->material.constants, scene->material.entry_count);
     put_listed_law(file, "electrode_", scene->electrode.law, scene->electrode.constants, scene->electrode.entry_count);
     put_antagonist(file);

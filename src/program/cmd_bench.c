@@ -267,6 +267,8 @@ const dea_command dea_command_bench = {
             "another setting of the model is at least as fast and as accurate, and better in\n"
             "one. The error of the model is that of its strain against field, over time that of\n"
             "its displacement over the peak, over frequency that of its displacement per volt.\n"
+            "--engine leaves out all others. There is one job unless --jobs says more, so that\n"
+            "the times of the engines compare.\n"
             "\n",
     .further = "Exit status: 0 done, 1 nothing measured or a file not written, 2 usage or a bad\n"
                "scene, 3 a promise was broken.\n"

@@ -114,6 +114,7 @@ static bool check_engine(const dea_arguments *arguments, const dea_engine *engin
                                      .points = take_points,
                                      .log = take_log,
                                      .stop = dea_signals_stop,
+                                     .apart = true,
                                      .user = comparison};
     const double start = dea_clock();
     const dea_status status = dea_study_run(comparison->scene, engine, &options, &error);
@@ -132,7 +133,6 @@ static bool check_engine(const dea_arguments *arguments, const dea_engine *engin
     }
     return true;
 }
-
 
 static void check_engines(const dea_arguments *arguments, dea_comparison *comparison, double tolerance, dea_tally *tally)
 {
@@ -261,6 +261,9 @@ const dea_command dea_command_check = {
             "Of a transient that leaves out parts of the network, each omission is measured\n"
             "against its bound, by runs at two accuracies: where their difference hides\n"
             "the bound it is not judged. Of a model that `auto` chose, its model error.\n"
+            "\n"
+            "--engine leaves out all others but direct. There is one job unless --jobs says\n"
+            "more, so that the times of the engines compare.\n"
             "\n",
     .further = "Exit status: 0 all agree, 1 an engine failed, 2 usage or a bad scene, 3 they\n"
                "disagree or a bound is broken.\n"

@@ -63,7 +63,8 @@ const dea_command dea_command_run = {
     .help = "Usage: deaspice run [OPTION]... SCENE\n"
             "\n"
             "Solves the study of a scene. The result goes to standard output as CSV unless -o\n"
-            "or --plot is given. SCENE is a YAML file, - is standard input.\n"
+            "or --plot is given. SCENE is a YAML file, - is standard input. Unless --jobs says\n"
+            "less, a worker process on each core solves a part of the points.\n"
             "\n",
     .further = "Points past a limit (slack, pull_in, breakdown) are told in the state column.\n"
                "Averages of a transient go to standard output, or to standard error where the\n"

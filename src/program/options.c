@@ -244,8 +244,7 @@ WORDS_OF(axes, "x", "y", "xy")
 
 static const dea_option entries[] = {
     TEXT("engine", 0, "ENGINE", dea_engine_word, DEA_TAKES_ENGINE, take_text, engine,
-         "engine that solves: auto, direct, ngspice, ida, or several with commas between, in the order in which they are asked; "
-         "of check and bench the one that takes part"),
+         "engine that solves: auto, direct, ngspice, ida, or several with commas between, in the order in which they are asked"),
     TEXT("model", 0, "MODEL", dea_model_word, DEA_TAKES_SCENE, take_text, model,
          "model instead of the scene's; several with commas between; auto: the cheapest that is within the model error of the "
          "finest"),
@@ -272,7 +271,7 @@ static const dea_option entries[] = {
          "draw these columns of a sweep, e.g. capacitance_F,force_N"),
     FLAG("force", 0, DEA_TAKES_SCENE | DEA_TAKES_OUTPUT | DEA_TAKES_PLOT, force, "overwrite also a file that was read or that is there"),
     COUNT("jobs", 'j', "N", DEA_TAKES_JOBS, take_jobs, jobs, 1024, "a whole number up to 1024, or auto",
-         "worker processes, auto: one per core, as run has it; check and bench have 1, so that the times of the engines compare"),
+         "worker processes, auto: one per core"),
     FLAG("quiet", 'q', DEA_TAKES_QUIET, quiet, "no table, no notes, no summary and no progress"),
     FLAG("full", 0, DEA_TAKES_FULL, full, "a transient leaves out nothing, whatever its accuracy"),
     FLAG("no-truth", 0, DEA_TAKES_LOG, no_truth, "do not hold the models against the membrane (field)"),

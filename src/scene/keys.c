@@ -104,6 +104,35 @@ bool dea_key_has_place(const dea_key *key, const dea_node *root)
     return (!key->within || dea_tree_find(root, key->within)) && !(key->instead && dea_tree_find(root, key->instead));
 }
 
+bool dea_key_is_scalar(const dea_key *key, const dea_scene *scene)
+{
+    const unsigned kind = scene->actuator.kind == DEA_DOT ? DEA_KEY_DOT : DEA_KEY_LENS;
+    const dea_law *law = key->within ? scene->electrode.law : scene->material.law;
+    return key->offset != DEA_KEY_NOWHERE && key->stride == 0 && (key->kinds & kind) != 0 && (!key->law || key->law == law);
+}
+
+/* True where no key in use before this one, number @p index, names the same number. */
+static bool is_first(const dea_scene *scene, const dea_key *key, size_t index, dea_key_use *used)
+{
+    dea_key before;
+    for (size_t i = 0; i < index && dea_key_at(i, &before); i++) {
+        if (before.offset == key->offset && used(&before, scene)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void dea_keys_visit(const dea_scene *scene, dea_key_use *used, void (*each)(void *user, const dea_key *key), void *user)
+{
+    dea_key key;
+    for (size_t i = 0; dea_key_at(i, &key); i++) {
+        if (used(&key, scene) && is_first(scene, &key, i, used)) {
+            each(user, &key);
+        }
+    }
+}
+
 bool dea_key_resolve(const char *name, const dea_node *root, dea_ref *ref)
 {
     char wanted[DEA_NAME_LENGTH];

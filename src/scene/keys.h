@@ -56,6 +56,13 @@ bool dea_key_find(const char *path, dea_ref *ref);
 bool dea_key_resolve(const char *name, const dea_node *root, dea_ref *ref);
 /* True where the scene @p root has what the key stands in, and nothing that takes its place. */
 bool dea_key_has_place(const dea_key *key, const dea_node *root);
+/* True where the key names one number that the scene's kind of actuator and its laws have. */
+bool dea_key_is_scalar(const dea_key *key, const dea_scene *scene);
+
+/* Whether the scene uses what a key names. */
+typedef bool dea_key_use(const dea_key *key, const dea_scene *scene);
+/* Calls @p each for all keys that name a number in use: once a number, though two keys can name it. */
+void dea_keys_visit(const dea_scene *scene, dea_key_use *used, void (*each)(void *user, const dea_key *key), void *user);
 /* Lists the keys that end in @p name where there are several ("a, b"); false where there is one or none. */
 bool dea_key_ambiguous(const char *name, char out[DEA_KEY_ROOM]);
 /* Place of the scalar in dea_scene. */

@@ -7,9 +7,10 @@
 #include "drive/waves.h"
 
 enum { OFFSET, AMPLITUDE, FROM, TO, DURATION, PHASE, DELAY };
-enum { LINEAR, LOGARITHMIC };
+/* As on an axis; the long word is taken too. */
+enum { LINEAR, LOG, LOGARITHMIC };
 
-static const char *const spacings[] = {[LINEAR] = "linear", [LOGARITHMIC] = "logarithmic", NULL};
+static const char *const spacings[] = {[LINEAR] = "linear", [LOG] = "log", [LOGARITHMIC] = "logarithmic", NULL};
 
 static const dea_wave_number numbers[] = {
     [OFFSET] = DEA_WAVE_VOLTAGE("offset", DEA_WAVE_PLACE(OFFSET), false, 0.0, "a voltage, e.g. 2 kV"),
@@ -60,7 +61,7 @@ const dea_wave dea_wave_chirp = {
     .number_count = sizeof numbers / sizeof *numbers,
     .word = "spacing",
     .words = spacings,
-    .choices = "linear, logarithmic",
+    .choices = "linear, log",
     .once = "which runs once",
     .fits = fits,
     .lay = lay,

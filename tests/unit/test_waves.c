@@ -166,7 +166,7 @@ static void chirps_run_from_one_frequency_to_another(void **state)
         snprintf(wave, sizeof wave,
                  "chirp: {offset: %.17g V, amplitude: %.17g V, from: %.17g Hz, to: %.17g Hz, duration: %.17g s, phase: %.17g rad, "
                  "delay: %.17g s, spacing: %s}",
-                 n[0], n[1], n[2], n[3], n[4], n[5], n[6], i % 2 ? "linear" : "logarithmic");
+                 n[0], n[1], n[2], n[3], n[4], n[5], n[6], i % 2 ? "linear" : i % 4 ? "log" : "logarithmic");
         judge(wave, i % 2 ? chirp : log_chirp, n, 0.0, fabs(n[0]) + n[1]);
     }
 }

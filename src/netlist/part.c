@@ -28,21 +28,25 @@ enum {
     CONSTANT, /* the first of those of the law */
     DAMP = CONSTANT + DEA_LAW_CONSTANTS, /* made by the checks; of the membrane alone */
     EPS_SLOPE,                           /* of a permittivity that follows the strain */
-    SYMBOLS
+    SKIN_THICK,
+    SKIN_CONSTANT, /* the first of those of the skin's law */
+    SYMBOLS = SKIN_CONSTANT + DEA_LAW_CONSTANTS
 };
 
 static const char *const symbol_names[SYMBOLS] = {"radius",  "cover",  "thick", "stretch", "eps_r",
                                                   "y_given", "y_free", "rho",   "areal",   "layer", "",
                                                   "film1",   "film2",  "film3", "film4",   "film5",
-                                                  "film6",   "film7",  "film8", "damp",    "permittivity_per_stretch"};
+                                                  "film6",   "film7",  "film8", "damp",    "permittivity_per_stretch",
+                                                  "skin",    "skin1",  "skin2", "skin3",   "skin4",
+                                                  "skin5",   "skin6",  "skin7", "skin8"};
 _Static_assert(DEA_LAW_CONSTANTS == 8, "one name a constant");
 
 typedef struct part {
     const dea_dialect *dialect;
     FILE *out;
     dea_kind kind;
-    const dea_law *law;
-    size_t constants; /* of the law, in use */
+    const dea_law *law, *skin; /* of the film; of the electrodes' skin, NULL: there is none */
+    size_t constants, skin_constants; /* of the laws, in use */
     bool follows;     /* the permittivity follows the strain */
     bool linear;
     size_t branches;
@@ -52,7 +56,7 @@ typedef struct part {
     dea_rings_part *rings; /* owned; NULL: one node */
     dea_expr push_slope;          /* of phi [N/V^2 m] */
     dea_expr c_rest;              /* C(0) [F] */
-    dea_expr k_rest;              /* stiffness at rest [N/m] */
+    dea_expr k_rest, k_film;      /* stiffness at rest, and of that what damps and relaxes [N/m] */
     dea_expr field;               /* true field of 1 V */
     dea_expr mass;                /* of film and electrodes */
     dea_expr divide, width;       /* r_a, r - r_a */
@@ -77,8 +81,8 @@ static dea_expr at_volts(dea_pool *pool, dea_expr ref, double volts)
 
 static dea_symbols symbols_of(dea_pool *pool, const part *p)
 {
-    dea_expr s[DAMP];
-    for (int i = 0; i < DAMP; i++) {
+    dea_expr s[SYMBOLS];
+    for (int i = 0; i < SYMBOLS; i++) {
         s[i] = dea_expr_symbol(pool, i);
     }
     dea_symbols symbols = {.pool = pool,
@@ -90,12 +94,15 @@ static dea_symbols symbols_of(dea_pool *pool, const part *p)
                            .layers = s[LAYERS],
                            .prestretch = s[STRETCH],
                            .permittivity = MUL(SCALE(DEA_EPSILON_0, s[EPS_R]), SQUARE(s[LAYERS])),
-                           .electrostriction = p->follows ? DIV(dea_expr_symbol(pool, EPS_SLOPE), s[EPS_R]) : NUM(0.0),
+                           .electrostriction = p->follows ? DIV(s[EPS_SLOPE], s[EPS_R]) : NUM(0.0),
                            .breakdown = NUM(INFINITY),
+                           .skin = p->skin,
                            .voltage = s[VOLTAGE]};
     for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
         symbols.constants[i] = i < p->constants ? s[(size_t)CONSTANT + i] : NUM(0.0);
+        symbols.skin_constants[i] = i < p->skin_constants ? s[(size_t)SKIN_CONSTANT + i] : NUM(0.0);
     }
+    symbols.skin_share = p->skin ? DIV(s[SKIN_THICK], symbols.film_thickness) : NUM(0.0);
     symbols.modulus = ADD(s[Y_GIVEN], MUL(s[Y_FREE], dea_symbols_modulus(&symbols)));
     return symbols;
 }
@@ -178,6 +185,7 @@ static dea_status derive(part *p, const dea_model *model, dea_error *error)
     p->push_slope = dea_expr_slope(pool, p->film.push);
     p->k_rest =
         SCALE(of->stress, dea_expr_at_rest(pool, ADD(dea_expr_slope(pool, p->film.tension), p->film.resistance)));
+    p->k_film = SCALE(of->stress, dea_expr_at_rest(pool, p->film.resistance));
     p->c_rest = dea_expr_at_rest(pool, network->capacitance);
     p->field = at_volts(pool, network->field, 1.0);
     p->mass = moving_mass(&symbols);
@@ -200,6 +208,9 @@ static void line(const part *p, const char *format, ...)
     va_end(values);
     fputc('\n', p->out);
 }
+
+/* What stands before the names of a skin's parameters. */
+#define SKIN "skin_"
 
 /* A parameter of the subcircuit, the name under which it is used once it is in its range, and that range. */
 typedef struct range {
@@ -248,21 +259,32 @@ static void check_optics(const part *p, int *count)
     line(p, ".param flat={height*height/(a_lens*a_lens)}");
 }
 
-/* Constants of the law, moduli in the part's unit of stress: those with a bound of their own are put behind it. */
-static void check_law(const part *p, const dea_model_part *of, int *count)
+/* @p used constants of a law, moduli in the part's unit of stress: those with a bound of their own are put behind it. @p whose
+ * stands before their names. */
+static void check_law(const part *p, double stress, const dea_law *law, size_t used, const char *whose, const char *const *symbols, int *count)
 {
-    char name[DEA_PART_NAME], raw[2 * DEA_PART_NAME];
-    line(p, "* constants of the law, moduli in units of %.0f Pa", of->stress);
-    for (size_t i = 0; i < p->constants; i++) {
-        const dea_constant *constant = &p->law->constants[i % p->law->constant_count];
-        dea_constant_name(p->law, i, name);
-        snprintf(raw, sizeof raw, constant->modulus ? "%s/%.0f" : "%s", name, of->stress);
+    char name[DEA_QUANTITY_NAME], raw[2 * DEA_PART_NAME];
+    for (size_t i = 0; i < used; i++) {
+        const dea_constant *constant = &law->constants[i % law->constant_count];
+        dea_constant_name(law, i, name);
+        snprintf(raw, sizeof raw, constant->modulus ? "%s%s/%.0f" : "%s%s", whose, name, stress);
         if (constant->low == 0.0) {
-            const bool small = constant->modulus && of->stress > 1.0;
-            check(p, &(range){raw, symbol_names[(size_t)CONSTANT + i], small ? "1e-6" : "1e-3", small ? "1e6" : "1e12"}, count);
+            const bool small = constant->modulus && stress > 1.0;
+            check(p, &(range){raw, symbols[i], small ? "1e-6" : "1e-3", small ? "1e6" : "1e12"}, count);
         } else {
-            line(p, ".param %s={%s}", symbol_names[(size_t)CONSTANT + i], raw);
+            line(p, ".param %s={%s}", symbols[i], raw);
         }
+    }
+}
+
+static void check_laws(const part *p, double stress, int *count)
+{
+    line(p, "* constants of the law, moduli in units of %.0f Pa", stress);
+    check_law(p, stress, p->law, p->constants, "", &symbol_names[CONSTANT], count);
+    if (p->skin) {
+        line(p, "* skin of the electrodes: its thickness, constants of its law");
+        check(p, &(range){"skin_thickness", symbol_names[SKIN_THICK], "1e-12", "1"}, count);
+        check_law(p, stress, p->skin, p->skin_constants, SKIN, &symbol_names[SKIN_CONSTANT], count);
     }
 }
 
@@ -311,7 +333,7 @@ static int write_checks(const part *p, const dea_model_part *of)
     if (p->follows) {
         check(p, &(range){"permittivity+1.25*permittivity_per_stretch*prestretch", "eps_pull", "1e-3", "1e9"}, &count);
     }
-    check_law(p, of, &count);
+    check_laws(p, of->stress, &count);
     if (of->modulus) {
         check(p, &(range){"modulus", "y_given", "0", "1e15"}, &count);
         line(p, ".param y_free={1-min(y_given*1e30,1)}");
@@ -334,6 +356,7 @@ static void declare_node(part *p)
     if (p->linear) {
         dea_part_text_root(text, "rest");
         dea_part_text_use(text, p->push_slope);
+        dea_part_text_use(text, p->k_film);
     }
     for (int i = 0; i < p->film.network.tension_count; i++) {
         dea_part_text_root(text, "taut");
@@ -388,6 +411,7 @@ static void give_names(part *p)
         }
     }
     dea_part_text_name(text, p->k_rest, "k_rest", "stiffness of the relaxed film at rest [N/m]");
+    dea_part_text_name(text, p->k_film, "k_film", "of that what damps and relaxes [N/m]");
     dea_part_text_name(text, p->c_rest, "c_rest", "capacitance of the film at rest [F]");
     dea_part_text_name(text, p->mass, "m_film", "mass that moves with the edge [kg]");
     dea_part_text_name(text, p->film.push, "push", "force on the edge per square of the voltage, (1/2) dC/du [N/V^2], Eq. 21");
@@ -413,14 +437,15 @@ static void write_numbers(const part *p)
 static void write_node_numbers(const part *p)
 {
     const dea_cures *cures = &dea_part_cures;
-    char k[DEA_PART_NAME];
+    char k[DEA_PART_NAME], film[DEA_PART_NAME];
     (void)dea_part_text_parameter(&p->cards.text, p->k_rest, k);
+    (void)dea_part_text_parameter(&p->cards.text, p->k_film, film);
     line(p, ".param inertia={m_film+%.15g*%s}", cures->lightest, k);
     if (p->linear) {
         line(p, "* springs of film and branches [N/um], damper [N s/m]");
-        line(p, ".param k_um={many*%s/%.15g}\n.param r_damp={many*damp*%s}", k, cures->per_metre, k);
+        line(p, ".param k_um={many*%s/%.15g}\n.param r_damp={many*damp*%s}", k, cures->per_metre, film);
         for (size_t i = 1; i <= p->branches; i++) {
-            line(p, ".param k_um%zu={share%zu*k_um}", i, i);
+            line(p, ".param k_um%zu={share%zu*many*%s/%.15g}", i, i, film, cures->per_metre);
         }
     } else {
         line(p, "* areas in um^2, stop behind the reach of the film [N/um]");
@@ -530,36 +555,45 @@ static void add(dea_part_parameter *list, size_t *count, const char *name, const
     snprintf(entry->meaning, sizeof entry->meaning, "%s", meaning);
 }
 
-static size_t constants_in_use(const dea_material *material)
+static size_t constants_in_use(const dea_law *law, size_t entries)
 {
-    return material->law->constant_count * (material->law->entries > 1 ? material->entry_count : 1);
+    return law ? law->constant_count * (law->entries > 1 ? entries : 1) : 0;
 }
 
-static void add_constants(const dea_material *material, dea_part_parameter *list, size_t *count)
+static void add_constants(const dea_law *law, const double *constants, size_t used, const char *whose, dea_part_parameter *list, size_t *count)
 {
-    double constants[DEA_LAW_CONSTANTS];
-    dea_material_long_term(material, constants);
-    for (size_t i = 0; i < constants_in_use(material); i++) {
-        const dea_constant *constant = &material->law->constants[i % material->law->constant_count];
-        char name[DEA_PART_NAME];
-        dea_constant_name(material->law, i, name);
+    for (size_t i = 0; i < used; i++) {
+        const dea_constant *constant = &law->constants[i % law->constant_count];
+        char own[DEA_QUANTITY_NAME], name[DEA_PART_NAME];
+        dea_constant_name(law, i, own);
+        snprintf(name, sizeof name, "%s%s", whose, own);
         add(list, count, name, constant->unit, "", constants[i]);
         dea_part_parameter *entry = &list[*count - 1];
-        snprintf(entry->meaning, sizeof entry->meaning, "%s constant %s%s", material->law->title, constant->name,
-                 constant->modulus ? ", long-term" : "");
+        snprintf(entry->meaning, sizeof entry->meaning, "%s constant %s%s", law->title, constant->name,
+                 constant->modulus && !*whose ? ", long-term" : "");
+    }
+}
+
+static void add_skin(const dea_electrode *electrode, dea_part_parameter *list, size_t *count)
+{
+    if (electrode->law) {
+        add(list, count, SKIN "thickness", "m", "of all electrodes together, as laid on the pre-stretched film", electrode->thickness);
+        add_constants(electrode->law, electrode->constants, constants_in_use(electrode->law, electrode->entry_count), SKIN, list, count);
     }
 }
 
 static void add_film(const dea_scene *scene, dea_part_parameter *list, size_t *count)
 {
     const dea_material *material = &scene->material;
-    add_constants(material, list, count);
+    double constants[DEA_LAW_CONSTANTS];
+    dea_material_long_term(material, constants);
+    add_constants(material->law, constants, constants_in_use(material->law, material->entry_count), "", list, count);
     add(list, count, "permittivity", "1", "relative permittivity at stretch 0", material->permittivity);
     add(list, count, "permittivity_per_stretch", "1",
         material->permittivity_follows ? "its slope over the stretch, which it follows" : "its slope over the stretch",
         material->permittivity_per_stretch);
     add(list, count, "density", "kg/m^3", "density of the film, 0: no inertia", or_zero(material->density));
-    add(list, count, "electrode_mass", "kg/m^2", "mass per area of the electrodes", or_zero(scene->actuator.electrode_mass));
+    add(list, count, "electrode_mass", "kg/m^2", "mass per area of the electrodes", or_zero(dea_electrode_mass(scene)));
     add(list, count, "retardation", "s", "Kelvin-Voigt retardation time, 0: none", or_zero(material->retardation));
     for (size_t i = 0; i < material->prony_count || i < PART_BRANCHES; i++) {
         const dea_prony branch = i < material->prony_count ? dea_material_branch(material, i) : (dea_prony){0.0, 1.0};
@@ -584,6 +618,7 @@ size_t dea_part_parameters(const dea_scene *scene, const dea_model *model, dea_p
     add(list, &count, "layers", "1", "films of that thickness, electrically parallel", actuator->layers);
     add(list, &count, "prestretch", "1", "equi-biaxial pre-stretch", actuator->prestretch);
     add_film(scene, list, &count);
+    add_skin(&scene->electrode, list, &count);
     if (model->part->modulus) {
         const double share = dea_material_long_term_share(&scene->material);
         add(list, &count, "modulus", "Pa", "operating modulus Y, 0: from the constants of the law",
@@ -635,10 +670,6 @@ static dea_status write_part(part *p, const dea_scene *defaults, const dea_model
 /* A part is one bare film, driven between two pins. */
 static dea_status refuse_what_is_no_part(const dea_scene *scene, const dea_model *model, dea_error *error)
 {
-    if (scene->electrode.law) {
-        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "a circuit part has no skin of its electrodes: --as netlist has it; a part has its weight, "
-                                                      "as actuator.electrode_mass without electrode");
-    }
     if (scene->antagonist.there) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "a circuit part is one film: write each from a scene without antagonist, and join their pins "
                                                       "edge in the circuit; --as netlist has both");
@@ -668,7 +699,9 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
               .out = text.out,
               .kind = defaults->actuator.kind,
               .law = defaults->material.law,
-              .constants = constants_in_use(&defaults->material),
+              .skin = defaults->electrode.law,
+              .constants = constants_in_use(defaults->material.law, defaults->material.entry_count),
+              .skin_constants = constants_in_use(defaults->electrode.law, defaults->electrode.entry_count),
               .follows = defaults->material.permittivity_follows,
               .linear = model->linear != NULL,
               .branches = branches > PART_BRANCHES ? branches : PART_BRANCHES};

@@ -309,7 +309,10 @@ void dea_rings_moving_write(const dea_rings_moving *m, const char *volts, const 
     const writer w = {.base = {.cards = &m->cards, .text = text, .out = text->out, .pinned = true}, .moving = m, .rate = rate};
     dea_rings_begin(&w.base, "pressure");
     dea_part_text_write(text, m->push);
-    fprintf(text->out, "*%s*%s", volts, volts);
+    for (int factor = 0; factor < 2; factor++) {
+        fputc('*', text->out);
+        dea_part_text_format(text, volts);
+    }
     dea_rings_end(&w.base);
     for (size_t q = 0; q < m->cards.ring_count; q++) {
         stand at;

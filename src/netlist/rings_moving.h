@@ -48,7 +48,7 @@ void dea_rings_moving_declare(const dea_rings_moving *moving, bool charged, dea_
 /* What a ring writes besides. */
 typedef void dea_rings_extra(const void *user, const dea_rings_writer *w, size_t ring);
 
-/* Strains, stresses, branches and forces of all rings; @p volts: the film's voltage in an expression; @p rate: what turns a
+/* Strains, stresses, branches and forces of all rings; @p volts: the film's voltage as a piece of dea_part_text_format(); @p rate: what turns a
  * `radial` into rates over velocities, "/radius". @p extra may be NULL. */
 void dea_rings_moving_write(const dea_rings_moving *moving, const char *volts, const char *rate, dea_rings_extra *extra, const void *user,
                             dea_part_text *text);

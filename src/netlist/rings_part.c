@@ -93,7 +93,7 @@ void dea_rings_part_write(const dea_rings_part *part, dea_part_text *text)
     for (size_t n = 1; n <= m->cards.node_count; n++) {
         write_node(&w, m, n);
     }
-    dea_rings_moving_write(m, "v(p,n)", "/radius", write_outputs, part, text);
+    dea_rings_moving_write(m, "[ok]*v(p,n)", "/radius", write_outputs, part, text);
     dea_rings_moving_swell(m, text);
     write_tension(&w, m);
 }

@@ -697,7 +697,7 @@ static void what_no_circuit_file_holds_is_refused_or_told(void **state)
         {"antagonist: {actuator: {kind: lens}}\n", "field", false, "--model ring has them", ""},
         {"load: {stiffness: 100 N/m}\n", "field", false, NULL, ""},
         {"load: {force: 0.1 N}\n", "ring", false, NULL, ""},
-        {SKIN, "ring", true, "actuator.electrode_mass without electrode", ""},
+        {SKIN, "ring", true, NULL, ""},
         {"antagonist: {actuator: {kind: lens}}\n", "ring", true, "--as netlist has both", ""},
         {"electrode: {sheet_resistance: 40 kOhm}\n", "field", true, "--model ring is one", ""},
         {"electrode: {sheet_resistance: 40 kOhm}\nload: {mass: 1 g}\n", "ring", true, NULL,

@@ -49,6 +49,36 @@ static void run_circuit(FILE *file, child_run *run)
     child_must_run("circuit.cir", run);
 }
 
+/* What a scene has beside a film, of which the library has no part. */
+typedef void dress(dea_scene *scene);
+
+/* Two layers with a skin on them, which neither damps nor relaxes. */
+static void coat(dea_scene *scene)
+{
+    scene->actuator.layers = 2.0;
+    scene->electrode = (dea_electrode){.law = dea_law_find("gent"),
+                                       .constants = {30e3, 20.0},
+                                       .entry_count = 1,
+                                       .thickness = 25e-6,
+                                       .density = 1010.0,
+                                       .sheet_resistance = (double)NAN};
+    scene->actuator.electrode_mass = (double)NAN;
+}
+
+/* The name of the part of a scene: of the library, or of its own one, which is written. */
+static const char *name_part(FILE *file, const dea_scene *scene, const struct kind *kind, char own[16])
+{
+    dea_error error = {0};
+    if (!scene->electrode.law && !scene->antagonist.there) {
+        return kind->name;
+    }
+    snprintf(own, 16, "own%d", (int)(kind - kinds));
+    if (dea_part_write(scene, scene->models[0], own, dea_dialect_find("ngspice"), file, &error) != DEA_OK) {
+        fail_msg("%s", error.message);
+    }
+    return own;
+}
+
 /* The parameters of a scene behind the name of its part. */
 static void write_parameters(FILE *file, const dea_scene *scene)
 {
@@ -127,7 +157,7 @@ enum { SAMPLES = 41 };
 static const double moving_end = 8e-3; /* five periods of the film and two of its quicker branch behind the ramp */
 
 /* A damped film with branches, load of its electrodes, series and leakage resistance, under a ramp of 0.2 ms to 4 kV. */
-static dea_scene moving_scene(const struct kind *kind)
+static dea_scene moving_scene(const struct kind *kind, dress *more)
 {
     static double times[] = {1e-3, 1.2e-3}, volts[] = {0.0, 4000.0};
     dea_scene scene = scene_of(kind, (double)NAN);
@@ -148,6 +178,9 @@ static dea_scene moving_scene(const struct kind *kind)
     scene.study = DEA_STUDY_TRANSIENT;
     scene.transient = (dea_transient){.until = moving_end, .every = moving_end / (SAMPLES - 1)};
     scene.accuracy = 1e-9;
+    if (more) {
+        more(&scene);
+    }
     return scene;
 }
 
@@ -165,16 +198,24 @@ static void fly(const dea_scene *scene, dea_sample *samples)
     engine->end(session);
 }
 
+/* The part of a scene behind a resistor at node a, its second film, if it has one, at a source of its own. */
+static void write_driven(FILE *file, const dea_scene *scene, int i)
+{
+    char own[16];
+    const char *name = name_part(file, scene, &kinds[i], own);
+    fprintf(file, ".save v(x%d.u) i(vi%d)\nr%d a c%d 2e6\nvi%d c%d b%d 0\nx%d b%d 0 e%d %s", i, i, i, i, i, i, i, i, i, i, name);
+    write_parameters(file, scene);
+}
+
 /* All parts under one source, each with its resistor; all that a test wants to see is saved. */
-static FILE *begin_moving_circuit(double step, const char *uic)
+static FILE *begin_moving_circuit(double step, const char *uic, dress *more)
 {
     FILE *file = begin_circuit();
     fputs("vsource a 0 pwl(0 0 1e-3 0 1.2e-3 4000)\n", file);
     for (int i = 0; i < KINDS; i++) {
-        const dea_scene scene = moving_scene(&kinds[i]);
-        fprintf(file, ".save v(x%d.u) v(e%d) v(x%d.q) v(x%d.c) v(b%d) i(vi%d)\n", i, i, i, i, i, i);
-        fprintf(file, "r%d a c%d 2e6\nvi%d c%d b%d 0\nx%d b%d 0 e%d %s", i, i, i, i, i, i, i, i, kinds[i].name);
-        write_parameters(file, &scene);
+        const dea_scene scene = moving_scene(&kinds[i], more);
+        write_driven(file, &scene, i);
+        fprintf(file, ".save v(e%d) v(x%d.q) v(x%d.c) v(b%d)\n", i, i, i, i);
     }
     fprintf(file, ".save v(x1.focal)\n.options reltol=1e-6\n.tran %g %g 0 %g %s\n", step, moving_end, step, uic);
     return file;
@@ -201,10 +242,10 @@ static double at_time(const child_run *run, const char *name, const char *slope,
 /* Of the trapezoidal rule, whose error falls with the square of the step [s]. */
 static const double fine_step = 2e-6, step_error = 4e-6;
 
-static void compare_motion(const child_run *run, int kind)
+static void compare_motion(const child_run *run, int kind, dress *more)
 {
     static dea_sample samples[SAMPLES];
-    const dea_scene scene = moving_scene(&kinds[kind]);
+    const dea_scene scene = moving_scene(&kinds[kind], more);
     double peak = 0.0, current = 0.0, most = 0.0;
     char u[32], velocity[32], i[32], q[32], c[32], b[32];
     snprintf(u, sizeof u, "v(x%d.u)", kind);
@@ -232,34 +273,42 @@ static void compare_motion(const child_run *run, int kind)
     }
 }
 
-static void motion_is_that_of_the_engine_ida(void **state)
+static void compare_motions(dress *more)
 {
-    (void)state;
     simulate_without_sanitizers();
     child_run run;
-    run_circuit(begin_moving_circuit(fine_step, ""), &run);
+    run_circuit(begin_moving_circuit(fine_step, "", more), &run);
     for (int i = 0; i < KINDS; i++) {
-        compare_motion(&run, i);
+        compare_motion(&run, i, more);
     }
     child_end(&run);
 }
 
-/* Displacement and current per volt about 3 kV, through the series resistance. */
-static void responses_are_those_of_the_linearised_equations(void **state)
+static void motion_is_that_of_the_engine_ida(void **state)
 {
     (void)state;
+    compare_motions(NULL);
+}
+
+static void coated_films_move_as_in_the_engine_ida(void **state)
+{
+    (void)state;
+    compare_motions(coat);
+}
+
+/* Displacement and current per volt about 3 kV, through the series resistance. */
+static void compare_responses(dress *more)
+{
     child_run run;
     FILE *file = begin_circuit();
     dea_scene scenes[KINDS];
     fputs("vsource a 0 dc 3000 ac 1\n.options reltol=1e-6\n", file);
     for (int i = 0; i < KINDS; i++) {
-        scenes[i] = moving_scene(&kinds[i]);
+        scenes[i] = moving_scene(&kinds[i], more);
         scenes[i].drive.waveform = (dea_waveform){.kind = DEA_WAVE_NONE, .period = (double)NAN};
         scenes[i].study = DEA_STUDY_AC;
         scenes[i].ac = (dea_ac){.from = 0.1, .to = 1e4, .points_per_decade = 10, .bias = 3000.0};
-        fprintf(file, ".save v(x%d.u) i(vi%d)\nr%d a c%d 2e6\nvi%d c%d b%d 0\nx%d b%d 0 e%d %s", i, i, i, i, i, i, i, i, i, i,
-                kinds[i].name);
-        write_parameters(file, &scenes[i]);
+        write_driven(file, &scenes[i], i);
     }
     fputs(".ac dec 10 0.1 1e4\n", file);
     run_circuit(file, &run);
@@ -285,6 +334,13 @@ static void responses_are_those_of_the_linearised_equations(void **state)
         }
     }
     child_end(&run);
+}
+
+static void responses_are_those_of_the_linearised_equations(void **state)
+{
+    (void)state;
+    compare_responses(NULL);
+    compare_responses(coat);
 }
 
 /* A spring of the library, and its stiffness, beside a part: K u + k u = phi U^2. */
@@ -329,7 +385,7 @@ static void the_energy_drawn_is_work_and_stores_and_losses(void **state)
         child_run run;
         dea_dynamics d;
         dea_error error = {0};
-        dea_scene scene = moving_scene(&kinds[kind]);
+        dea_scene scene = moving_scene(&kinds[kind], NULL);
         scene.material.prony_count = 0;
         scene.material.retardation = 2e-4;
         scene.drive.leakage_resistance = (double)NAN;
@@ -468,7 +524,7 @@ static void neither_compatibility_modes_nor_uic_change_a_number(void **state)
         fclose(start);
         const bool uic = m + 1 == sizeof modes / sizeof *modes;
         const double same = uic ? 1e-5 : 1e-6; /* its steps begin otherwise */
-        run_circuit(begin_moving_circuit(2e-5, uic ? "uic" : ""), &run);
+        run_circuit(begin_moving_circuit(2e-5, uic ? "uic" : "", NULL), &run);
         for (int i = 0; i < KINDS; i++) {
             char u[32], velocity[32];
             snprintf(u, sizeof u, "v(x%d.u)", i);
@@ -582,23 +638,25 @@ static void parameters_out_of_range_are_flagged_and_move_nothing(void **state)
                                         "m=0",
                                         "m=-2",
                                         "permittivity_per_stretch=-3"};
-    enum { WRONG = sizeof wrong / sizeof *wrong };
+    static const char *const membranes[] = {"dea_dot_field", "dea_lens_field"};
+    enum { WRONG = sizeof wrong / sizeof *wrong, ALL = KINDS + 2 };
     child_run run;
     FILE *file = begin_circuit();
     fputs("va a 0 4000\n.op\n", file);
-    for (int i = 0; i < WRONG * KINDS; i++) {
+    for (int i = 0; i < WRONG * ALL; i++) {
+        const int kind = i % ALL;
         fprintf(file, ".save v(x%d.bad) v(x%d.u) v(x%d.force) v(x%d.q)\nx%d a 0 e%d %s %s\n", i, i, i, i, i, i,
-                kinds[i % KINDS].name, wrong[i / KINDS]);
+                kind < KINDS ? kinds[kind].name : membranes[kind - KINDS], wrong[i / ALL]);
     }
     fputs(".save v(xgood.bad) v(xlens.bad) v(xflat.bad)\nxgood a 0 eg dea_dot_hyper coverage=0.999999 prestretch=1\n", file);
     fputs("xlens a 0 el dea_lens focal_length=1e-2\nxflat a 0 ef dea_lens modulus=-1\n", file);
     run_circuit(file, &run);
-    for (int i = 0; i < WRONG * KINDS; i++) {
+    for (int i = 0; i < WRONG * ALL; i++) {
         static const char *const still[] = {"u", "force", "q"};
         char name[32];
         snprintf(name, sizeof name, "v(x%d.bad)", i);
         if (child_value(&run, name, 0) != 1.0) {
-            fail_msg("%s of %s is not flagged", wrong[i / KINDS], kinds[i % KINDS].name);
+            fail_msg("%s of part %d is not flagged", wrong[i / ALL], i % ALL);
         }
         for (size_t k = 0; k < 3; k++) {
             snprintf(name, sizeof name, "v(x%d.%s)", i, still[k]);
@@ -688,6 +746,55 @@ static void a_part_whose_permittivity_follows_the_strain_stands_where_the_model_
         snprintf(name, sizeof name, "v(x%d.bad)", i);
         assert_true(child_value(&run, name, 0) == 0.0);
     }
+    child_end(&run);
+}
+
+/* Thickness and law of a skin are parameters; the membrane has the strains of physics.md, section 8, where one has the default. */
+static void a_part_with_a_skin_stands_where_the_model_does(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"lumped", "lame", "coverage", "ring", "field"};
+    enum { MODELS = 5, PARTS = 2 * MODELS };
+    dea_row wanted[PARTS];
+    child_run run;
+    FILE *file = begin_circuit();
+    fputs("va a 0 4500\n.options reltol=1e-7 rshunt=1e12\n.op\n", file);
+    for (int i = 0; i < PARTS; i++) {
+        char name[32];
+        dea_scene scene = paper_scene(i % 2 ? DEA_LENS : DEA_DOT, 1.2, 0.5, 4500.0);
+        scene.electrode = (dea_electrode){.law = dea_law_find("neo_hookean"), .constants = {20e3}, .entry_count = 1, .thickness = 25e-6};
+        wanted[i] = solve_direct(&scene, models[i / 2]);
+        scene.electrode.thickness = 5e-5; /* defaults, which the instances do not keep */
+        scene.electrode.constants[0] = 99e3;
+        snprintf(name, sizeof name, "coated%d", i);
+        assert_int_equal(dea_part_write(&scene, dea_model_find(models[i / 2]), name, dea_dialect_find("ngspice"), file, NULL), DEA_OK);
+        fprintf(file, ".save v(x%d.strain) v(x%d.c) v(x%d.q) v(x%d.bad)\n", i, i, i, i);
+        fprintf(file, "x%d a 0 e%d %s skin_thickness=25e-6 skin_mu=20e3\n", i, i, name);
+        fprintf(file, "xy%d a 0 f%d %s skin_thickness=25e-6 skin_mu=20e3 m=2\n.save v(xy%d.u) v(xy%d.q)\n", i, i, name, i, i);
+        fprintf(file, "xz%d a 0 g%d %s skin_thickness=0\n.save v(xz%d.bad) v(xz%d.u)\n", i, i, name, i, i);
+    }
+    run_circuit(file, &run);
+    for (int i = 0; i < PARTS; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "v(x%d.strain)", i);
+        assert_relative(child_value(&run, name, 0), wanted[i].strain, 1e-6);
+        snprintf(name, sizeof name, "v(x%d.c)", i);
+        assert_relative(1e-12 * child_value(&run, name, 0), wanted[i].capacitance, 1e-6);
+        snprintf(name, sizeof name, "v(x%d.q)", i);
+        assert_relative(1e-9 * child_value(&run, name, 0), wanted[i].charge, 1e-6);
+        snprintf(name, sizeof name, "v(x%d.bad)", i);
+        assert_true(child_value(&run, name, 0) == 0.0);
+        snprintf(name, sizeof name, "v(xy%d.u)", i);
+        assert_relative(1e-6 * child_value(&run, name, 0), wanted[i].displacement, 1e-6);
+        snprintf(name, sizeof name, "v(xy%d.q)", i);
+        assert_relative(1e-9 * child_value(&run, name, 0), 2.0 * wanted[i].charge, 1e-6);
+        snprintf(name, sizeof name, "v(xz%d.bad)", i);
+        assert_true(child_value(&run, name, 0) == 1.0);
+        snprintf(name, sizeof name, "v(xz%d.u)", i);
+        assert_near(child_value(&run, name, 0), 0.0, 1e-12);
+    }
+    assert_relative(child_value(&run, "v(x8.strain)", 0), 0.0442776413, 1e-6);
+    assert_relative(child_value(&run, "v(x9.strain)", 0), -0.0370009643, 1e-6);
     child_end(&run);
 }
 
@@ -1196,6 +1303,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(statics_are_those_of_the_models),
         cmocka_unit_test(motion_is_that_of_the_engine_ida),
+        cmocka_unit_test(coated_films_move_as_in_the_engine_ida),
         cmocka_unit_test(responses_are_those_of_the_linearised_equations),
         cmocka_unit_test(springs_in_parallel_share_the_force_at_the_operating_point),
         cmocka_unit_test(the_energy_drawn_is_work_and_stores_and_losses),
@@ -1208,6 +1316,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(parameters_out_of_range_are_flagged_and_move_nothing),
         cmocka_unit_test(a_part_of_any_law_stands_where_the_model_does),
         cmocka_unit_test(a_part_whose_permittivity_follows_the_strain_stands_where_the_model_does),
+        cmocka_unit_test(a_part_with_a_skin_stands_where_the_model_does),
         cmocka_unit_test(a_film_past_pull_in_is_flagged),
         cmocka_unit_test(a_spring_on_the_edge_is_the_load_of_a_scene),
         cmocka_unit_test(a_force_and_a_film_on_the_edge_are_those_of_a_scene),

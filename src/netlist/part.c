@@ -8,6 +8,7 @@
 #include "expression/derivative.h"
 #include "expression/formula.h"
 #include "film/point.h"
+#include "film/second.h"
 #include "netlist/mobility.h"
 #include "netlist/rings_part.h"
 #include "support/memory_text.h"
@@ -49,6 +50,7 @@ typedef struct part {
     size_t constants, skin_constants; /* of the laws, in use */
     bool follows;     /* the permittivity follows the strain */
     bool linear;
+    bool joined; /* one of two films on an edge: a subcircuit inside the part, whose outputs are pins */
     size_t branches;
     dea_dynamics elements; /* which there are: all, whatever their numbers turn out to be */
     dea_mobility film;     /* owned; of the membrane that of `ring`, for ranges and numbers at rest. The voltage is taken out */
@@ -96,6 +98,7 @@ static dea_symbols symbols_of(dea_pool *pool, const part *p)
                            .permittivity = MUL(SCALE(DEA_EPSILON_0, s[EPS_R]), SQUARE(s[LAYERS])),
                            .electrostriction = p->follows ? DIV(s[EPS_SLOPE], s[EPS_R]) : NUM(0.0),
                            .breakdown = NUM(INFINITY),
+                           .loaded = p->joined,
                            .skin = p->skin,
                            .voltage = s[VOLTAGE]};
     for (size_t i = 0; i < DEA_LAW_CONSTANTS; i++) {
@@ -483,10 +486,13 @@ static void write_outputs(const part *p)
     line(p, "* bad = 1: a parameter out of its range, the edge past centre or frame, or of linear springs no stable equilibrium of the");
     line(p, "* relaxed film here (pull-in)");
     dea_part_text_source(text, DEA_VOLTAGE, "outside", "outside", "0", "max(v(u)-[u_high],[u_low]-v(u))");
-    if (p->linear) {
+    if (p->linear && p->joined) {
+        dea_part_text_source(text, DEA_VOLTAGE, "net", "net", "0", "[]-[]*v(p,n)*v(p,n)", p->k_rest, p->push_slope);
+    } else if (p->linear) {
         dea_part_text_source(text, DEA_VOLTAGE, "net", "net", "0", "([]-[]*v(p,n)*v(p,n))/[k_rest]", p->k_rest, p->push_slope);
         dea_part_text_source(text, DEA_VOLTAGE, "bad", "bad", "0", "min(max(max(1-[ok],-1e6*v(net)),max(1e3*v(outside),0)),1)");
-    } else {
+    }
+    if (!p->linear || p->joined) {
         dea_part_text_source(text, DEA_VOLTAGE, "bad", "bad", "0", "min(max(1-[ok],max(1e3*v(outside),0)),1)");
     }
     line(p, "* slack = 1: a region lost its tension, the film wrinkles");
@@ -605,7 +611,8 @@ static void add_film(const dea_scene *scene, dea_part_parameter *list, size_t *c
     }
 }
 
-size_t dea_part_parameters(const dea_scene *scene, const dea_model *model, dea_part_parameter list[DEA_PART_PARAMETERS])
+/* Those of one film. */
+static size_t film_parameters(const dea_scene *scene, const dea_model *model, dea_part_parameter *list)
 {
     const dea_actuator *actuator = &scene->actuator;
     const double coverage = isnan(actuator->coverage) ? actuator->divide_radius / actuator->frame_radius : actuator->coverage;
@@ -634,21 +641,68 @@ size_t dea_part_parameters(const dea_scene *scene, const dea_model *model, dea_p
     return count;
 }
 
-/* `.subckt` with its parameters and defaults, in lines that every simulator takes. */
-static void write_header(const part *p, const char *name, const dea_part_parameter *list, size_t count)
+/* True of what both films of a part have in common. */
+static bool is_shared(const dea_part_parameter *parameter)
 {
-    fprintf(p->out, ".subckt %s p n edge\n+ params:", name);
-    for (size_t i = 0; i < count; i++) {
-        fprintf(p->out, "%s %s=", i > 0 && i % 4 == 0 ? "\n+" : "", list[i].name);
-        dea_part_number(p->out, list[i].value);
+    static const char *const shared[] = {"frame_radius", "coverage", "m"};
+    bool found = false;
+    for (size_t i = 0; i < sizeof shared / sizeof *shared; i++) {
+        found = found || strcmp(parameter->name, shared[i]) == 0;
     }
-    fputc('\n', p->out);
+    return found;
+}
+
+/* What stands before the names of the second film's parameters. */
+#define SECOND "second_"
+
+size_t dea_part_parameters(const dea_scene *scene, const dea_model *model, dea_part_parameter list[DEA_PART_PARAMETERS])
+{
+    size_t count = film_parameters(scene, model, list);
+    if (scene->antagonist.there) {
+        dea_part_parameter own[DEA_FILM_PARAMETERS];
+        dea_scene second;
+        dea_second_scene(scene, &second);
+        const size_t all = film_parameters(&second, model, own);
+        for (size_t i = 0; i < all; i++) {
+            if (!is_shared(&own[i])) {
+                list[count] = own[i];
+                snprintf(list[count++].name, sizeof own[i].name, SECOND "%.*s", (int)(sizeof own[i].name - sizeof SECOND), own[i].name);
+            }
+        }
+    }
+    return count;
+}
+
+/* What can be read of one of two films, its pins beside p, n and edge; names end in @p read, of flags in @p watched. */
+static void write_pins(FILE *out, dea_kind kind, bool linear, const char *read, const char *watched)
+{
+    static const char *const names[] = {"u", "strain", "force", "field", "c", "q"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        fprintf(out, " %s%s", names[i], read);
+    }
+    if (kind == DEA_LENS) {
+        fprintf(out, " focal%s", read);
+    }
+    fprintf(out, " bad%s slack%s", watched, watched);
+    if (linear) {
+        fprintf(out, " net%s", watched);
+    }
+}
+
+/* The parameters of `.subckt` and their defaults, in lines that every simulator takes. */
+static void write_parameters(FILE *out, const dea_part_parameter *list, size_t count)
+{
+    fputs("\n+ params:", out);
+    for (size_t i = 0; i < count; i++) {
+        fprintf(out, "%s %s=", i > 0 && i % 4 == 0 ? "\n+" : "", list[i].name);
+        dea_part_number(out, list[i].value);
+    }
+    fputc('\n', out);
 }
 
 static dea_status write_part(part *p, const dea_scene *defaults, const dea_model *model, const char *name, dea_error *error)
 {
-    char own[DEA_PART_TITLE];
-    dea_part_parameter list[DEA_PART_PARAMETERS];
+    dea_part_parameter list[DEA_FILM_PARAMETERS];
     const dea_status status = derive(p, model, error);
     if (status != DEA_OK) {
         return status;
@@ -658,22 +712,19 @@ static dea_status write_part(part *p, const dea_scene *defaults, const dea_model
         return tell_memory(error);
     }
     p->cards.text.symbols = symbol_names;
-    dea_part_name_of(p->kind, model, own);
-    name = name ? name : own;
     line(p, "* %s: %s", name, model->part->meaning);
-    write_header(p, name, list, dea_part_parameters(defaults, model, list));
+    fprintf(p->out, ".subckt %s p n edge", name);
+    if (p->joined) {
+        write_pins(p->out, p->kind, p->linear, "", "");
+    }
+    write_parameters(p->out, list, film_parameters(defaults, model, list));
     write_body(p, model->part);
     line(p, ".ends %s", name);
     return p->cards.text.exhausted ? tell_memory(error) : DEA_OK;
 }
 
-/* A part is one bare film, driven between two pins. */
 static dea_status refuse_what_is_no_part(const dea_scene *scene, const dea_model *model, dea_error *error)
 {
-    if (scene->antagonist.there) {
-        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "a circuit part is one film: write each from a scene without antagonist, and join their pins "
-                                                      "edge in the circuit; --as netlist has both");
-    }
     if (model->membrane && scene->electrode.sheet_resistance > 0.0) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the potential along a sheet resistance of the model %s is no part: --model ring is one, with "
                                                       "one resistance before it", model->name);
@@ -681,17 +732,9 @@ static dea_status refuse_what_is_no_part(const dea_scene *scene, const dea_model
     return DEA_OK;
 }
 
-dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, const char *name, const dea_dialect *dialect,
-                          FILE *out, dea_error *error)
+static dea_status write_film(const dea_scene *defaults, const dea_model *model, const char *name, bool joined, const dea_dialect *dialect,
+                             FILE *out, dea_error *error)
 {
-    if (!model->part) {
-        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is no circuit part: lumped, lame, coverage, ring and field are",
-                        model->name);
-    }
-    const dea_status outside = refuse_what_is_no_part(defaults, model, error);
-    if (outside) {
-        return outside;
-    }
     const size_t branches = defaults->material.prony_count;
     dea_memory_text text;
     dea_status status = dea_memory_text_begin(&text, error);
@@ -704,6 +747,7 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
               .skin_constants = constants_in_use(defaults->electrode.law, defaults->electrode.entry_count),
               .follows = defaults->material.permittivity_follows,
               .linear = model->linear != NULL,
+              .joined = joined,
               .branches = branches > PART_BRANCHES ? branches : PART_BRANCHES};
     p.elements = (dea_dynamics){.model = model,
                                 .linear = p.linear,
@@ -725,6 +769,84 @@ dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, con
     free(p.taut);
     free(p.loosen);
     return status;
+}
+
+/* Behind the nodes of an instance: the film that it is, its parameters those of the whole part under the names that they have there. */
+static void write_instance(FILE *out, const dea_scene *scene, const dea_model *model, const char *name, const char *which, const char *whose)
+{
+    dea_part_parameter list[DEA_FILM_PARAMETERS];
+    const size_t count = film_parameters(scene, model, list);
+    fprintf(out, " %s_%s params:", name, which);
+    for (size_t i = 0; i < count; i++) {
+        fprintf(out, " %s={%s%s}", list[i].name, is_shared(&list[i]) ? "" : whose, list[i].name);
+    }
+    fputc('\n', out);
+}
+
+static void write_flag(const dea_dialect *dialect, FILE *out, const char *name, const char *expression)
+{
+    dea_dialect_source_begin(dialect, out, DEA_VOLTAGE, name, name, "0");
+    fputs(expression, out);
+    dea_dialect_source_end(dialect, out);
+}
+
+/* Two films on one edge. Of linear ones the springs of both have to hold what both soften. */
+static void write_pair(const dea_scene *scene, const dea_scene *second, const dea_model *model, const char *name, const dea_dialect *dialect, FILE *out)
+{
+    const bool linear = model->linear != NULL;
+    dea_part_parameter list[DEA_PART_PARAMETERS];
+    fprintf(out, "* %s: two films on one edge, p2 and n2 are those of the second; to be read of it: force2, field2, c2, q2\n", name);
+    fprintf(out, ".subckt %s p n edge p2 n2", name);
+    write_parameters(out, list, dea_part_parameters(scene, model, list));
+    fputs("XFIRST p n edge", out);
+    write_pins(out, scene->actuator.kind, linear, "", "1");
+    write_instance(out, scene, model, name, "first", "");
+    fputs("XSECOND p2 n2 edge", out);
+    write_pins(out, second->actuator.kind, linear, "2", "2");
+    write_instance(out, second, model, name, "second", SECOND);
+    write_flag(dialect, out, "bad", linear ? "min(max(max(v(bad1),v(bad2)),-1e6*(v(net1)+v(net2))),1)" : "max(v(bad1),v(bad2))");
+    write_flag(dialect, out, "slack", "max(v(slack1),v(slack2))");
+    fprintf(out, ".ends %s\n", name);
+}
+
+/* Each film is a subcircuit, and the part joins them. */
+static dea_status write_films(const dea_scene *scene, const dea_model *model, const char *name, const dea_dialect *dialect, FILE *out, dea_error *error)
+{
+    char own[DEA_PART_TITLE + 8];
+    dea_scene second;
+    dea_memory_text text;
+    dea_second_scene(scene, &second);
+    snprintf(own, sizeof own, "%s_first", name);
+    dea_status status = write_film(scene, model, own, true, dialect, out, error);
+    snprintf(own, sizeof own, "%s_second", name);
+    status = status ? status : write_film(&second, model, own, true, dialect, out, error);
+    status = status ? status : dea_memory_text_begin(&text, error);
+    if (status == DEA_OK) {
+        write_pair(scene, &second, model, name, dialect, text.out);
+        status = dea_memory_text_end(&text, DEA_OK, error);
+        if (status == DEA_OK) {
+            dea_dialect_wrap(out, text.text);
+        }
+        free(text.text);
+    }
+    return status;
+}
+
+dea_status dea_part_write(const dea_scene *defaults, const dea_model *model, const char *name, const dea_dialect *dialect,
+                          FILE *out, dea_error *error)
+{
+    char own[DEA_PART_TITLE];
+    if (!model->part) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is no circuit part: lumped, lame, coverage, ring and field are",
+                        model->name);
+    }
+    const dea_status outside = refuse_what_is_no_part(defaults, model, error);
+    if (outside) {
+        return outside;
+    }
+    name = name ? name : dea_part_name_of(defaults->actuator.kind, model, own);
+    return defaults->antagonist.there ? write_films(defaults, model, name, dialect, out, error)
+                                      : write_film(defaults, model, name, false, dialect, out, error);
 }
 
 void dea_part_write_mechanics(const char *prefix, FILE *out)
@@ -805,7 +927,9 @@ void dea_part_note(const dea_scene *scene, char *note, size_t size)
 {
     const double series = dea_series_resistance(scene);
     char resistor[64] = "";
-    const bool loaded = dea_scene_is_loaded(scene);
+    dea_scene alone = *scene;
+    alone.antagonist.there = false;
+    const bool loaded = dea_scene_is_loaded(&alone);
     if (series > 0.0) {
         snprintf(resistor, sizeof resistor, "a resistor of %g Ohm before its pin p", series);
     }

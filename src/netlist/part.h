@@ -1,6 +1,7 @@
 /* The actuator as a part for circuit designers: subcircuits with electrical pins p and n and a mechanical pin edge.
  *
  *   .subckt dea_dot p n edge params: frame_radius=... coverage=... film_thickness=... prestretch=... c1=... permittivity=... ...
+ *   .subckt NAME p n edge p2 n2 params: ..., of a scene with a second film, on p2 and n2
  *
  * Mobility analogy: v(edge) is the outward velocity of the disc edge [m/s], the current into the pin the force on it [N]; the
  * frame is node 0. All parameters are SI numbers, moduli of the law long-term ones. Derived numbers come from the model's own
@@ -55,9 +56,10 @@ typedef struct dea_part_parameter {
     double value; /* its default */
 } dea_part_parameter;
 
-enum { DEA_PART_PARAMETERS = 32 + 2 * DEA_PRONY_MAX };
+enum { DEA_FILM_PARAMETERS = 32 + 2 * DEA_PRONY_MAX, DEA_PART_PARAMETERS = 2 * DEA_FILM_PARAMETERS };
 
-/* The parameters of the part of a scene, in the order of the .subckt card; returns how many there are. */
+/* The parameters of the part of a scene, in the order of the .subckt card; returns how many there are. Those of a second film alone
+ * are called second_... */
 size_t dea_part_parameters(const dea_scene *scene, const dea_model *model, dea_part_parameter list[DEA_PART_PARAMETERS]);
 
 /* The scene behind the library's defaults: the film of the base paper, at rest. It owns nothing. */

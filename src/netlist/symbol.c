@@ -5,8 +5,8 @@ bool dea_symbol_of_part(const dea_scene *scene, const dea_model *model, const ch
     dea_part_parameter list[DEA_PART_PARAMETERS];
     *symbol = (dea_symbol){.meaning = scene->actuator.kind == DEA_DOT ? "dielectric elastomer dot actuator"
                                                                       : "dielectric elastomer lens actuator",
-                           .pins = {"p", "n", "edge"},
-                           .pin_count = 3,
+                           .pins = {"p", "n", "edge", "p2", "n2"},
+                           .pin_count = scene->antagonist.there ? 5 : 3,
                            .parameter_count = DEA_SYMBOL_PARAMETERS};
     if (!dea_part_name_of(scene->actuator.kind, model, symbol->name)) {
         return false;

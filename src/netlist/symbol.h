@@ -7,7 +7,7 @@
 
 #include "netlist/part.h"
 
-enum { DEA_SYMBOL_PINS = 3, DEA_SYMBOL_PARAMETERS = 4 };
+enum { DEA_SYMBOL_PINS = 5, DEA_SYMBOL_PARAMETERS = 4 };
 
 typedef struct dea_symbol {
     char name[DEA_PART_TITLE];

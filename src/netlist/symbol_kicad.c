@@ -45,12 +45,11 @@ void dea_symbol_kicad(FILE *out, const dea_symbol *symbol, const char *library)
           "    )\n",
           out);
     fprintf(out, "    (symbol \"%s_1_1\"\n", symbol->name);
-    const bool three = symbol->pin_count > 2;
-    pin(out, symbol->pins[0], 1, three ? "-7.62 2.54 0" : "-7.62 0 0");
-    if (three) {
-        pin(out, symbol->pins[1], 2, "-7.62 -2.54 0");
+    for (size_t i = 0; i < symbol->pin_count; i++) {
+        static const char *const film[DEA_SYMBOL_PINS] = {"-7.62 2.54 0", "-7.62 -2.54 0", "7.62 0 180", "7.62 2.54 180", "7.62 -2.54 180"};
+        static const char *const helper[] = {"-7.62 0 0", "7.62 0 180"};
+        pin(out, symbol->pins[i], i + 1, symbol->pin_count > 2 ? film[i] : helper[i]);
     }
-    pin(out, symbol->pins[symbol->pin_count - 1], symbol->pin_count, "7.62 0 180");
     fputs("    )\n  )\n", out);
 }
 

@@ -17,10 +17,9 @@ void dea_symbol_ltspice(FILE *out, const dea_symbol *symbol, const char *library
         dea_part_number(out, symbol->parameters[i].value);
     }
     fputc('\n', out);
-    const bool three = symbol->pin_count > 2;
-    pin(out, symbol->pins[0], 1, -64, three ? -32 : 0);
-    if (three) {
-        pin(out, symbol->pins[1], 2, -64, 32);
+    for (size_t i = 0; i < symbol->pin_count; i++) {
+        static const int film[DEA_SYMBOL_PINS][2] = {{-64, -32}, {-64, 32}, {64, 0}, {64, -32}, {64, 32}}, helper[][2] = {{-64, 0}, {64, 0}};
+        const int *place = symbol->pin_count > 2 ? film[i] : helper[i];
+        pin(out, symbol->pins[i], i + 1, place[0], place[1]);
     }
-    pin(out, symbol->pins[symbol->pin_count - 1], symbol->pin_count, 64, 0);
 }

@@ -698,7 +698,8 @@ static void what_no_circuit_file_holds_is_refused_or_told(void **state)
         {"load: {stiffness: 100 N/m}\n", "field", false, NULL, ""},
         {"load: {force: 0.1 N}\n", "ring", false, NULL, ""},
         {SKIN, "ring", true, NULL, ""},
-        {"antagonist: {actuator: {kind: lens}}\n", "ring", true, "--as netlist has both", ""},
+        {"antagonist: {actuator: {kind: lens}}\n", "ring", true, NULL, ""},
+        {"antagonist: {actuator: {kind: lens}}\nload: {mass: 1 g}\n", "ring", true, NULL, "the rest of the scene: the load at its pin edge"},
         {"electrode: {sheet_resistance: 40 kOhm}\n", "field", true, "--model ring is one", ""},
         {"electrode: {sheet_resistance: 40 kOhm}\nload: {mass: 1 g}\n", "ring", true, NULL,
          "a resistor of 3183.1 Ohm before its pin p, and the load at its pin edge"}, /* rho/(8 pi) of each of two electrodes */

@@ -17,6 +17,10 @@ static const double rest_share[2] = {0.1, 0.5};
 /* Longest edge that counts as short, over the film's fastest time: its netlist cuts it by corners of its own. */
 static const double short_edge = 0.1;
 
+/* Longest step that the library takes from one corner to the next, over what lies between: they begin short and double. Masses fit the
+ * steps that are taken, not those that would be good. */
+static const double between_corners = 1.0 / 3.0;
+
 typedef struct cutter {
     const dea_signal *signal;
     const dea_pace *pace;
@@ -55,6 +59,7 @@ static void add(cutter *c, dea_piece next)
         c->corners += last->segment != next.segment;
         last->to = next.to;
         last->step = fmin(last->step, next.step);
+        last->longest = fmax(last->longest, next.longest);
         return;
     }
     dea_piece *grown = dea_grow(pieces->pieces, pieces->count, &c->room, sizeof *grown);
@@ -122,6 +127,7 @@ static void cut_segment(cutter *c, size_t index, bool quiet)
         add(c, (dea_piece){.from = segment->from + age,
                            .to = until == length ? segment->to : segment->from + until,
                            .step = step,
+                           .longest = until - age,
                            .segment = index,
                            .rings = !quiet && c->pace->omega > 0.0 && age < c->life,
                            .jump = jump && age == 0.0});
@@ -144,7 +150,8 @@ dea_status dea_pieces_cut(const dea_signal *signal, const dea_pace *pace, double
         return dea_fail(error, DEA_ERROR_MEMORY, "out of memory for the pieces of a run");
     }
     for (size_t i = 0; i < pieces->count; i++) {
-        const dea_piece *piece = &pieces->pieces[i];
+        dea_piece *piece = &pieces->pieces[i];
+        piece->step = fmin(piece->step, between_corners * piece->longest);
         pieces->points += (piece->to - piece->from) / piece->step;
     }
     return DEA_OK;

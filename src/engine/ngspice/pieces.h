@@ -8,6 +8,7 @@
 typedef struct dea_piece {
     double from, to; /* [s] */
     double step;     /* time step at fineness 1 [s] */
+    double longest;  /* of the segments inside [s] */
     size_t segment;  /* of the signal, of `from` */
     bool jump;       /* the voltage jumps at `from` */
     bool rings;      /* the ring lives */

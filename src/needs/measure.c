@@ -36,8 +36,19 @@ static bool fly(judge *j, const dea_reduction *reduction, dea_trial_run runs[RUN
            dea_trial_fly(&j->trial, reduction, coarser * j->accuracy, &runs[COARSE]);
 }
 
-/* Largest difference of two runs from that age behind a corner of the voltage on: of displacement and charge over their peaks; of
- * a ring, of the amplitude that its velocity tells, v/omega. */
+/* Largest difference of a mean over a window that both runs cover [m]. */
+static double means_apart(const judge *j, const dea_trial_run *one, const dea_trial_run *other)
+{
+    const dea_summary *a = dea_layout_summary(&j->trial.layout, one->samples), *b = dea_layout_summary(&j->trial.layout, other->samples);
+    double apart = 0.0;
+    for (size_t i = 0; i < j->trial.scene.transient.average_count; i++) {
+        apart = fmax(apart, fabs(a->averages[i].displacement - b->averages[i].displacement));
+    }
+    return apart;
+}
+
+/* Largest difference of two runs from that age behind a corner of the voltage on: of displacement, its means and charge over their
+ * peaks; of a ring, of the amplitude that its velocity tells, v/omega. */
 static double difference(const judge *j, const dea_omission *omission, const dea_trial_run *one, const dea_trial_run *other)
 {
     double u = 0.0, charge = 0.0, peak = j->least, charge_peak = 0.0;
@@ -55,6 +66,7 @@ static double difference(const judge *j, const dea_omission *omission, const dea
         u = fmax(u, ring ? fabs(a->velocity - b->velocity) / j->omega : fabs(a->displacement - b->displacement));
         charge = ring ? 0.0 : fmax(charge, fabs(a->charge - b->charge));
     }
+    u = ring ? u : fmax(u, means_apart(j, one, other));
     return fmax(u > 0.0 ? u / peak : 0.0, charge > 0.0 ? charge / charge_peak : 0.0);
 }
 

@@ -125,7 +125,10 @@ static bool solve_with(planner *p, const dea_omission *omission)
  *     sum_i c_i/tau_i T D_i,   D_i = the changes of U^2 up to then over the largest U^2, each forgotten with tau_i,
  *
  * T being the time for which the part counts at a change. Parts that are simply left out differ by that integral in a linear film
- * as well. */
+ * as well, but there what a voltage's rise adds to it its fall takes away again.
+ *
+ * The mean over a window is such an integral too: it differs by about the variation times T over the window times the changes of
+ * U^2 within it. */
 
 static const double most_variation = 2.0; /* a film that stiffens much moves the less there */
 
@@ -135,6 +138,17 @@ typedef struct trace {
     double quick;   /* within which a voltage must change for the part to see more than a slope */
 } trace;
 
+/* Largest ratio of what the damper bridges to the stiffness of the relaxed film: the film follows in that part of the retardation. */
+static double slackest(const dea_surrogate *s)
+{
+    double ratio = 0.0;
+    for (int i = 0; i < s->point_count; i++) {
+        const dea_surrogate_point *point = &s->points[i];
+        ratio = fmax(ratio, point->viscous / (point->passive - point->push_slope * point->square));
+    }
+    return ratio;
+}
+
 static trace trace_of(const planner *p, const dea_omission *omission)
 {
     const dea_surrogate *s = &p->surrogate;
@@ -143,13 +157,17 @@ static trace trace_of(const planner *p, const dea_omission *omission)
         const bool swings = s->swing > 0.0;
         return (trace){s->fading * (swings ? s->swing * s->swing : 1.0), s->fading, swings ? (double)INFINITY : s->fading};
     }
-    if (omission->part == DEA_PART_BRANCH && omission->form == DEA_BRANCH_DAMPER) {
+    if (omission->part == DEA_PART_BRANCH && omission->form != DEA_BRANCH_SPRING) {
         const dea_prony prony = dea_material_branch(material, omission->branch);
         double rest = 1.0;
         for (size_t i = 0; i < material->prony_count; i++) {
             rest -= material->prony[i].g;
         }
         return (trace){prony.g / rest * prony.tau, prony.tau, prony.tau};
+    }
+    if (omission->part == DEA_PART_DAMPER) {
+        const double slowest = material->retardation * slackest(s);
+        return (trace){slowest, slowest, slowest};
     }
     return (trace){0.0, 0.0, 0.0};
 }
@@ -190,6 +208,22 @@ static double remembered(const planner *p, double tau, trace t)
     return most;
 }
 
+/* Changes of U^2 that count in a mean, over the largest U^2; what is before the window has died away. */
+static double changes_within(const dea_surrogate *s, const dea_window *window, trace t)
+{
+    const dea_signal *signal = dea_surrogate_signal(s);
+    const double first = signal->segments[0].start, length = window->to - window->from;
+    double sum = 0.0, before = s->scene->transient.from_bias ? first * first : 0.0;
+    for (size_t i = 0; i < signal->count && signal->segments[i].from < window->to; i++) {
+        const dea_segment *segment = &signal->segments[i];
+        const double jump = fabs(segment->start * segment->start - before) / (s->largest * s->largest);
+        sum += jump * exp(-fmax(0.0, window->from - segment->from) / t.fading);
+        sum += change_over(s, segment, t.quick, length) * exp(-fmax(0.0, window->from - segment->to) / t.fading);
+        before = segment->end * segment->end;
+    }
+    return sum;
+}
+
 /* Largest displacement of a stand-in over that of the film. */
 static double excess_of(const dea_surrogate *s)
 {
@@ -200,13 +234,26 @@ static double excess_of(const dea_surrogate *s)
     return excess;
 }
 
+/* What the largest voltage does at once over the peak that the film's changes are told by: no sample may have seen it. */
+static double unseen(const planner *p)
+{
+    const dea_surrogate *s = &p->surrogate;
+    double most = excess_of(s);
+    for (int i = 0; i < s->point_count; i++) {
+        const dea_surrogate_point *point = &s->points[i];
+        const double held = point->passive - point->push_slope * point->square + s->dynamics.total_share * point->viscous;
+        most = fmax(most, fabs(point->push) * s->largest * s->largest / held / p->peaks[i]);
+    }
+    return most;
+}
+
 /* Bound of that mark [1]. */
 static double mark_of(const planner *p, const dea_omission *omission)
 {
     const dea_surrogate *s = &p->surrogate;
     const trace t = trace_of(p, omission);
     const double lag = dea_surrogate_lag(s);
-    double rate = 0.0;
+    double rate = 0.0, mean = 0.0;
     if (!(s->variation > 0.0) || !(t.lasting > 0.0)) {
         return 0.0;
     }
@@ -215,7 +262,11 @@ static double mark_of(const planner *p, const dea_omission *omission)
         rate += branch->tau > t.fading ? branch->share / branch->tau * remembered(p, branch->tau, t) : 0.0;
     }
     rate += lag > t.fading ? s->coupling / lag * remembered(p, lag, t) : 0.0;
-    return excess_of(s) * fmin(s->variation, most_variation) * t.lasting * rate;
+    for (size_t i = 0; i < s->scene->transient.average_count; i++) {
+        const dea_window *window = &s->scene->transient.averages[i];
+        mean = fmax(mean, changes_within(s, window, t) / (window->to - window->from));
+    }
+    return unseen(p) * fmin(s->variation, most_variation) * t.lasting * fmax(rate, mean);
 }
 
 /* A mass acts by u'', and a damper differs from its branch by c tau^2 S'': where the film follows a slow voltage, u'' = u_P P'' +
@@ -415,7 +466,7 @@ static bool leaves_frame(const planner *p)
     return false;
 }
 
-/* Peaks of the displacement over the probes, and of the velocity, no less than what moves the film once within the run. The
+/* Peaks of the displacement over the samples, and of the velocity, no less than what moves the film once within the run. The
  * start of a film from rest, where its peak may be an edge's alone, counts where a sample sees it. */
 static void set_peaks(planner *p)
 {
@@ -423,7 +474,7 @@ static void set_peaks(planner *p)
     for (int i = 0; i < s->point_count; i++) {
         const dea_surrogate_point *point = &s->points[i];
         p->peaks[i] = missed * fabs(point->push) * s->largest * s->largest / point->passive;
-        for (size_t k = 0; k < s->count; k++) {
+        for (size_t k = 0; k < s->sampled; k++) {
             p->peaks[i] = fmax(p->peaks[i], fabs(p->now.u[(size_t)i * s->count + k]));
         }
         p->speeds[i] = p->peaks[i] / s->scene->transient.until;

@@ -334,18 +334,23 @@ static bool is_free(const true_film *f)
     return f->mass == 0.0L && f->retardation == 0.0L && f->load_damping == 0.0L;
 }
 
-/* Velocity: of the mass, the state's. Without one it follows from the balance of forces, with neither mass nor damper from the
- * rate of that balance: the stages of a step tell an algebraic displacement, not its slope. */
+/* Velocity that a damper sets: at the begin of the run. Behind a step its stages tell it, as a change over the step; the small force
+ * that drives it is the rounding of large ones where the film has come to rest. */
+static long double damped_velocity(const true_film *f, const state *s)
+{
+    const true_edge e = film_edge(f, s->u);
+    const long double rest = e.push.value * s->w * s->w - held_force(f, &e, s);
+    return rest / (f->retardation * edge_viscous(&e) + f->load_damping);
+}
+
+/* Velocity; with neither mass nor damper from the rate of the balance of forces: the stages of a step tell an algebraic displacement,
+ * not its slope. */
 static long double velocity_of(const motion *m, long double time, const state *s)
 {
     const true_film *f = &m->film;
     const true_edge e = film_edge(f, s->u);
-    if (f->mass > 0.0L) {
-        return s->v;
-    }
     if (!is_free(f)) {
-        const long double rest = e.push.value * s->w * s->w - held_force(f, &e, s);
-        return rest / (f->retardation * edge_viscous(&e) + f->load_damping);
+        return s->v;
     }
     const long double pull = 2.0L * e.push.value * s->w; /* dF/dU */
     long double rate = 0.0L, slope = source_slope(m, time);
@@ -577,6 +582,7 @@ static void run(motion *m, long double tolerance)
             s.q = film_edge(&m->film, s.u).capacitance * to;
         }
         if (i == 0 && !m->gone) {
+            s.v = m->film.mass > 0.0L || is_free(&m->film) ? s.v : damped_velocity(&m->film, &s);
             m->gone = !record(m, 0.0, 0.0L, &s);
         }
         if (m->gone || !run_segment(m, &s)) {

@@ -13,6 +13,16 @@ static const dea_engine *thrifty(void)
     return dea_engine_find("ngspice");
 }
 
+/* The whole run and a part of it, in which it need not be at rest. */
+static void average_somewhere(uint64_t seed, dea_scene *scene)
+{
+    dea_transient *t = &scene->transient;
+    const double from = random_between(&seed, 0.0, 0.9), to = random_between(&seed, from + 0.01, 1.0);
+    t->average_count = 2;
+    t->averages[0] = (dea_window){0.0, t->until};
+    t->averages[1] = (dea_window){from * t->until, to * t->until};
+}
+
 /* Omissions of random scenes, each measured; how many there were. */
 static size_t check_scene(int number, const dea_scene *scene)
 {
@@ -50,6 +60,7 @@ static void bounds_of_random_scenes_hold(void **state)
         dea_scene scene;
         random_transient(&seed, &scene);
         random_blur(&seed, &scene);
+        average_somewhere(seed, &scene);
         scene.accuracy = random_decades(&seed, 1e-6, 1e-2);
         if (is_quick(&scene) || integrated++ < BY_INTEGRATION) {
             omissions += check_scene(i, &scene);
@@ -88,6 +99,7 @@ static void bounds_hold_where_the_film_softens(void **state)
         dea_scene scene;
         random_transient(&seed, &scene);
         random_blur(&seed, &scene);
+        average_somewhere(seed, &scene);
         scene.models[0] = dea_model_find("coverage");
         scene.material.constants[1] = -0.2 * scene.material.constants[0];
         set_voltage(&scene, pull_in_voltage(&scene, "coverage") * (1.0 - random_decades(&seed, 1e-3, 0.2)));
@@ -167,6 +179,37 @@ static void a_branch_stays_where_its_mark_in_the_slow_ones_shows(void **state)
     needs = needs_of(&scene, "ida");
     assert_true(leaves_out(&needs, DEA_PART_BRANCH, 5, DEA_BRANCH_DAMPER));
     (void)check_scene(0, &scene);
+}
+
+/* A damper of half a second between samples 47 s apart. What it takes from a mean behind the rise of the voltage a linear film gives back
+ * behind its fall; this one gives back 2 % of that second less, 2e-6 of the peak over 12322 s. */
+static void a_mean_sees_a_damper_that_no_sample_does(void **state)
+{
+    (void)state;
+    dea_scene scene = paper_scene(DEA_LENS, 1.488, 0.0926, (double)NAN);
+    scene.models[0] = dea_model_find("coverage");
+    scene.material.law = dea_law_find("mooney_rivlin");
+    scene.material.constants[0] = 219510.0;
+    scene.material.constants[1] = 206685.0;
+    scene.material.retardation = 0.5105;
+    scene.study = DEA_STUDY_TRANSIENT;
+    scene.transient = (dea_transient){.until = 12322.0, .every = 47.76};
+    scene.drive.waveform = (dea_waveform){
+        .kind = DEA_WAVE_STEP, .step = {.on = 546.7, .off = 2029.0, .voltage = 4500.0, .rise = 0.0425}, .period = (double)NAN};
+    scene.accuracy = 1e-6;
+    dea_needs needs = needs_of(&scene, "ida");
+    assert_true(leaves_out(&needs, DEA_PART_DAMPER, 0, DEA_BRANCH_WHOLE));
+    scene.transient.average_count = 1;
+    scene.transient.averages[0] = (dea_window){0.0, scene.transient.until};
+    needs = needs_of(&scene, "ida");
+    assert_false(leaves_out(&needs, DEA_PART_DAMPER, 0, DEA_BRANCH_WHOLE));
+    scene.accuracy = 1e-3;
+    needs = needs_of(&scene, "ida");
+    assert_true(leaves_out(&needs, DEA_PART_DAMPER, 0, DEA_BRANCH_WHOLE));
+    dea_measured measured[DEA_OMISSIONS];
+    assert_int_equal(dea_needs_measure(&scene, scene.models[0], &needs, measured, NULL), DEA_OK);
+    assert_int_equal(measured[0].verdict, DEA_HELD);
+    assert_true(measured[0].change > 1e-6); /* of the mean: no sample changes by that */
 }
 
 /* Samples every 20 ms behind a wait of 0.1 s: neither the ring, nor a branch of 1 us, nor 1 Ohm shows, and one of 30 years is a
@@ -667,6 +710,7 @@ int main(void)
         cmocka_unit_test(bounds_of_random_scenes_hold),
         cmocka_unit_test(bounds_hold_where_the_film_softens),
         cmocka_unit_test(a_branch_stays_where_its_mark_in_the_slow_ones_shows),
+        cmocka_unit_test(a_mean_sees_a_damper_that_no_sample_does),
         cmocka_unit_test(samples_decide_what_is_left_out),
         cmocka_unit_test(a_series_resistance_is_left_out_where_nothing_shows_it),
         cmocka_unit_test(a_film_that_leaves_its_frame_keeps_all_its_parts),

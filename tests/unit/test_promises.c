@@ -67,6 +67,14 @@ static void the_truth_of_a_slow_film_ends_at_rest(void **state)
     assert_relative(run.samples[run.count - 1].displacement, rest.row.displacement, 1e-12);
     assert_true(run.samples[1].displacement < 0.96 * rest.row.displacement);
     true_run_free(&run);
+    scene.material.density = scene.material.retardation = (double)NAN; /* a light damper alone: 1e-14 m/s would be the rounding of forces */
+    *dea_scene_load(&scene, "damping") = 1e-4;
+    scene.drive.voltage = (double)NAN;
+    run = moving_truth(&scene, scene.models[0], 1.0);
+    assert_true(run.samples[1].velocity > 1e-6);
+    assert_true(fabs(run.samples[run.count - 1].velocity) < 1e-18);
+    dea_scene_unload(&scene);
+    true_run_free(&run);
 }
 
 /* The table of physics.md, section 3. */

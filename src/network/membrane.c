@@ -4,13 +4,31 @@
 #include <string.h>
 
 #include "film/point.h"
+#include "film/second.h"
 #include "study/study.h"
 #include "support/lapack.h"
+
+static double given(double number)
+{
+    return isnan(number) ? 0.0 : number;
+}
+
+/* The second film has no electrodes of mass. */
+static void add_second(const dea_scene *scene, const dea_rings *rings, dea_membrane *m)
+{
+    dea_scene other;
+    dea_second_scene(scene, &other);
+    for (size_t n = 0; n < rings->node_count; n++) {
+        const size_t node = n == rings->edge ? m->rings.edge : m->rings.node_count + n - (n > rings->edge ? 1 : 0);
+        m->masses[node] += m->heavy ? given(other.material.density) * m->second.point.film_thickness * rings->areas[n] : 0.0;
+    }
+    m->second.retardation = given(other.material.retardation);
+}
 
 static void set_masses(const dea_scene *scene, dea_membrane *m)
 {
     const dea_point *point = &m->film.point;
-    const double density = isnan(scene->material.density) ? 0.0 : scene->material.density;
+    const double density = given(scene->material.density);
     const double electrode = dea_electrode_mass(scene);
     m->heavy = m->film.mass > 0.0;
     for (size_t n = 0; n < m->rings.node_count && m->heavy; n++) {
@@ -18,21 +36,62 @@ static void set_masses(const dea_scene *scene, dea_membrane *m)
                        electrode * point->film.square * m->rings.coated[n]; /* it lies on the pre-stretched film */
     }
     m->masses[m->rings.edge] += m->heavy ? dea_scene_edge(scene).mass : 0.0;
+    if (point->second.there) {
+        add_second(scene, &m->second.rings, m);
+    }
 }
 
-const char dea_load_stalled[] = "a damper at the edge alone leaves the other nodes of the membrane without an equation of motion: it takes "
-                                "material.density or material.retardation too";
+const char dea_load_stalled[] = "a damper at the edge or of one film alone leaves the other nodes of the membrane without an equation of "
+                                "motion: it takes material.density or material.retardation too, of both films";
 
 bool dea_load_stalls(const dea_scene *scene)
 {
-    return dea_scene_edge(scene).damping > 0.0 && isnan(scene->material.density) && isnan(scene->material.retardation);
+    const bool damped = !isnan(scene->material.retardation);
+    dea_scene other = *scene; /* borrows */
+    if (scene->antagonist.there) {
+        dea_second_scene(scene, &other);
+    }
+    return isnan(scene->material.density) && ((dea_scene_edge(scene).damping > 0.0 && !damped) || damped == isnan(other.material.retardation));
 }
 
-/* A ring at the frame has no node of its own: any does, with a hoop of 0. */
+static bool is_first(const dea_membrane *m, size_t r)
+{
+    return r < m->rings.ring_count;
+}
+
+static const dea_point *point_at(const dea_membrane *m, size_t r)
+{
+    return is_first(m, r) ? &m->film.point : &m->second.point;
+}
+
+static const dea_film *film_at(const dea_membrane *m, size_t r)
+{
+    return &point_at(m, r)->film;
+}
+
+static double retardation_at(const dea_membrane *m, size_t r)
+{
+    return is_first(m, r) ? m->film.retardation : m->second.retardation;
+}
+
+static void cut(dea_rings_mesh mesh, dea_membrane *m)
+{
+    dea_rings_cut(&m->film.point, mesh, &m->rings);
+    m->nodes = m->rings.node_count;
+    if (m->film.point.second.there) {
+        m->second.point = dea_point_second(&m->film.point);
+        dea_rings_cut(&m->second.point, mesh, &m->second.rings);
+        dea_rings_tie(&m->second.rings, m->nodes);
+        m->nodes += m->second.rings.node_count - 1;
+    }
+    m->ring_total = m->rings.ring_count + m->second.rings.ring_count;
+}
+
+/* A ring without a node of its own, at the frame or where that is the edge it is tied to, takes any, with a hoop of 0. */
 static void find_own(dea_membrane *m)
 {
-    for (size_t r = 0; r < m->rings.ring_count; r++) {
-        const dea_ring *ring = &m->rings.rings[r];
+    for (size_t r = 0; r < m->ring_total; r++) {
+        const dea_ring *ring = dea_membrane_ring(m, r);
         for (size_t i = 0; i < ring->count; i++) {
             m->own[r] = ring->hoop[i] != 0.0 ? i : m->own[r];
         }
@@ -81,7 +140,7 @@ dea_status dea_membrane_open(const dea_scene *scene, const dea_model *model, dea
     *m = (dea_membrane){0};
     const dea_status status = dea_dynamics_settle(scene, model, &m->film, error);
     if (status == DEA_OK) {
-        dea_rings_cut(&m->film.point, mesh, &m->rings);
+        cut(mesh, m);
         lay_sheet(scene, m);
         set_masses(scene, m);
         find_own(m);
@@ -89,22 +148,26 @@ dea_status dea_membrane_open(const dea_scene *scene, const dea_model *model, dea
     return status;
 }
 
-static double square_of(const dea_membrane *m, double voltage)
+static double square_of(const dea_point *point, double voltage)
 {
-    const double field = voltage / m->film.point.film_thickness;
-    return m->film.point.film.permittivity * field * field; /* k [Pa] */
+    const double field = voltage / point->film_thickness;
+    return point->film.permittivity * field * field; /* k [Pa] */
 }
 
 /* k of a ring. */
 static double square_at(const dea_membrane *m, const dea_membrane_look *look, size_t r, double voltage)
 {
-    return square_of(m, dea_membrane_voltage(m, look, r, voltage));
+    if (!is_first(m, r)) {
+        const dea_point *point = &m->second.point;
+        return dea_membrane_ring(m, r)->electroded ? look->beside * square_of(point, point->voltage) : 0.0;
+    }
+    return square_of(&m->film.point, dea_membrane_voltage(m, look, r, voltage));
 }
 
 /* lambda_pre (1 + e_a): stretches of a ring, and their changes from rest. */
 static void strain_ring(const dea_membrane *m, size_t r, const double *u, double e[2])
 {
-    const dea_ring *ring = &m->rings.rings[r];
+    const dea_ring *ring = dea_membrane_ring(m, r);
     const double *at = u + ring->first;
     double sums[4] = {0.0}; /* one would wait for each of its terms */
     size_t i = 0;
@@ -118,6 +181,10 @@ static void strain_ring(const dea_membrane *m, size_t r, const double *u, double
     }
     e[0] = (sums[0] + sums[1]) + (sums[2] + sums[3]);
     e[1] = ring->hoop[m->own[r]] * at[m->own[r]];
+    if (!is_first(m, r)) {
+        e[0] += ring->tie[0] * u[m->rings.edge];
+        e[1] += ring->tie[1] * u[m->rings.edge];
+    }
 }
 
 /* The skin is elastic: no damper or branch follows its stresses. */
@@ -151,7 +218,7 @@ static void add_held(double held, dea_ring_look *at)
  * a = b. */
 static bool look_at_ring(const dea_membrane *m, size_t r, const double *u, dea_ring_look *at)
 {
-    const dea_film *film = &m->film.point.film;
+    const dea_film *film = film_at(m, r);
     const double l0 = film->prestretch;
     double e[2];
     strain_ring(m, r, u, e);
@@ -170,10 +237,10 @@ static bool look_at_ring(const dea_membrane *m, size_t r, const double *u, dea_r
             at->tangent[a][b] = w[a][b];
         }
     }
-    if (m->film.held > 0.0) {
+    if (m->film.held > 0.0 && is_first(m, r)) {
         add_held(m->film.held, at);
     }
-    if (m->rings.rings[r].electroded && m->film.point.skin_share > 0.0) {
+    if (point_at(m, r)->skin_share > 0.0 && dea_membrane_ring(m, r)->electroded) {
         add_skin(&m->film.point, e, at);
     }
     return isfinite(at->nominal[0]) && isfinite(at->nominal[1]);
@@ -183,14 +250,14 @@ bool dea_membrane_look_at(const dea_membrane *m, const double *u, dea_membrane_l
 {
     const double thickness = m->film.point.film_thickness, unit = m->film.point.film.permittivity / (thickness * thickness);
     double sum = 0.0;
-    for (size_t r = 0; r < m->rings.ring_count; r++) {
-        const dea_ring *ring = &m->rings.rings[r];
+    for (size_t r = 0; r < m->ring_total; r++) {
+        const dea_ring *ring = dea_membrane_ring(m, r);
         dea_ring_look *at = &look->rings[r];
         if (!look_at_ring(m, r, u, at)) {
             return false;
         }
-        const double area = at->stretch[0] * at->stretch[1], own = dea_film_electric(&m->film.point.film, area).own;
-        const double content = ring->electroded ? ring->volume * own * area * area : 0.0;
+        const double area = at->stretch[0] * at->stretch[1], own = dea_film_electric(film_at(m, r), area).own;
+        const double content = ring->electroded && is_first(m, r) ? ring->volume * own * area * area : 0.0;
         if (!(own > 0.0)) {
             return false; /* there is no such film */
         }
@@ -200,24 +267,28 @@ bool dea_membrane_look_at(const dea_membrane *m, const double *u, dea_membrane_l
     look->edge = u[m->rings.edge];
     look->capacitance = unit * sum;
     look->spread = false;
+    look->beside = 1.0;
     return true;
 }
 
 /* Subtracts what nominal stresses f_a of one ring do to its nodes. */
 static void pull_ring(const dea_membrane *m, size_t r, const double f[2], double *force)
 {
-    const dea_ring *ring = &m->rings.rings[r];
-    const double unit = ring->volume * m->film.point.film.prestretch, radial = unit * f[0];
+    const dea_ring *ring = dea_membrane_ring(m, r);
+    const double unit = ring->volume * film_at(m, r)->prestretch, radial = unit * f[0];
     double *at = force + ring->first;
     for (size_t i = 0; i < ring->count; i++) {
         at[i] -= radial * ring->radial[i];
     }
     at[m->own[r]] -= unit * f[1] * ring->hoop[m->own[r]];
+    if (!is_first(m, r)) {
+        force[m->rings.edge] -= radial * ring->tie[0] + unit * f[1] * ring->tie[1];
+    }
 }
 
 void dea_membrane_pull(const dea_membrane *m, double (*f)[2], double *force)
 {
-    for (size_t r = 0; r < m->rings.ring_count; r++) {
+    for (size_t r = 0; r < m->ring_total; r++) {
         pull_ring(m, r, f[r], force);
     }
 }
@@ -225,20 +296,20 @@ void dea_membrane_pull(const dea_membrane *m, double (*f)[2], double *force)
 /* Adds phi_n of one ring. */
 static void push_ring(const dea_membrane *m, const dea_membrane_look *look, size_t r, double *push)
 {
-    const double *l = look->rings[r].stretch, k = square_of(m, 1.0) * dea_film_electric(&m->film.point.film, l[0] * l[1]).first;
+    const double *l = look->rings[r].stretch, k = square_of(&m->film.point, 1.0) * dea_film_electric(&m->film.point.film, l[0] * l[1]).first;
     const double f[2] = {-k * l[0] * l[1] * l[1], -k * l[0] * l[0] * l[1]};
     pull_ring(m, r, f, push);
 }
 
 void dea_membrane_push_ring(const dea_membrane *m, const dea_membrane_look *look, size_t r, double *push)
 {
-    memset(push, 0, m->rings.node_count * sizeof *push);
+    memset(push, 0, m->nodes * sizeof *push);
     push_ring(m, look, r, push);
 }
 
 void dea_membrane_push(const dea_membrane *m, const dea_membrane_look *look, double *push)
 {
-    memset(push, 0, m->rings.node_count * sizeof *push);
+    memset(push, 0, m->nodes * sizeof *push);
     for (size_t r = 0; r < m->rings.ring_count; r++) {
         if (m->rings.rings[r].electroded) {
             push_ring(m, look, r, push);
@@ -248,10 +319,10 @@ void dea_membrane_push(const dea_membrane *m, const dea_membrane_look *look, dou
 
 void dea_membrane_rates(const dea_membrane *m, const double *v, double (*rates)[2])
 {
-    for (size_t r = 0; r < m->rings.ring_count; r++) {
+    for (size_t r = 0; r < m->ring_total; r++) {
         strain_ring(m, r, v, rates[r]);
-        rates[r][0] *= m->film.point.film.prestretch;
-        rates[r][1] *= m->film.point.film.prestretch;
+        rates[r][0] *= film_at(m, r)->prestretch;
+        rates[r][1] *= film_at(m, r)->prestretch;
     }
 }
 
@@ -269,30 +340,38 @@ static double branch_stress(const dea_membrane *m, const dea_membrane_look *look
 
 void dea_membrane_viscous(const dea_membrane *m, const dea_membrane_look *look, const double *v, const double *z, double (*x)[2])
 {
-    const double tau = m->film.retardation;
-    const bool damped = v && tau > 0.0;
+    const bool damped = v && (m->film.retardation > 0.0 || m->second.retardation > 0.0);
     if (damped) {
         dea_membrane_rates(m, v, x);
     }
-    for (size_t r = 0; r < m->rings.ring_count; r++) {
+    for (size_t r = 0; r < m->ring_total; r++) {
         const dea_ring_look *at = &look->rings[r];
+        const double tau = retardation_at(m, r);
         const double rates[2] = {damped ? x[r][0] : 0.0, damped ? x[r][1] : 0.0};
         for (int a = 0; a < 2; a++) {
-            x[r][a] = tau * (at->slope[a][0] * rates[0] + at->slope[a][1] * rates[1]) + (z ? branch_stress(m, look, r, a, z) : 0.0);
+            x[r][a] = tau * (at->slope[a][0] * rates[0] + at->slope[a][1] * rates[1]) + (z && is_first(m, r) ? branch_stress(m, look, r, a, z) : 0.0);
         }
     }
 }
 
+void dea_membrane_ring_stress(const dea_membrane *m, const dea_membrane_look *look, size_t r, double voltage, double s[2])
+{
+    const dea_ring_look *at = &look->rings[r];
+    const double area = at->stretch[0] * at->stretch[1];
+    const double pressure = square_at(m, look, r, voltage) * dea_film_electric(film_at(m, r), area).first * area;
+    s[0] = at->nominal[0] - pressure * at->stretch[1];
+    s[1] = at->nominal[1] - pressure * at->stretch[0];
+}
+
 void dea_membrane_force(const dea_membrane *m, const dea_membrane_look *look, double voltage, double (*x)[2], double *force)
 {
-    memset(force, 0, m->rings.node_count * sizeof *force);
-    for (size_t r = 0; r < m->rings.ring_count; r++) {
+    memset(force, 0, m->nodes * sizeof *force);
+    for (size_t r = 0; r < m->ring_total; r++) {
         const dea_ring_look *at = &look->rings[r];
-        const double area = at->stretch[0] * at->stretch[1];
-        const double pressure = square_at(m, look, r, voltage) * dea_film_electric(&m->film.point.film, area).first * area;
         double s[2];
+        dea_membrane_ring_stress(m, look, r, voltage, s);
         for (int a = 0; a < 2; a++) {
-            s[a] = at->nominal[a] - pressure * at->stretch[1 - a] + (x ? x[r][a] / at->stretch[a] : 0.0);
+            s[a] += x ? x[r][a] / at->stretch[a] : 0.0;
         }
         pull_ring(m, r, s, force);
     }
@@ -318,9 +397,9 @@ static void ring_tangent(const dea_film *film, const dea_ring_look *at, double k
 
 bool dea_membrane_elliptic(const dea_membrane *m, const dea_membrane_look *look, double voltage, double (*x)[2], double share)
 {
-    for (size_t r = 0; r < m->rings.ring_count; r++) {
+    for (size_t r = 0; r < m->ring_total; r++) {
         double t[2][2];
-        ring_tangent(&m->film.point.film, &look->rings[r], square_at(m, look, r, voltage), x ? x[r] : NULL, share, t);
+        ring_tangent(film_at(m, r), &look->rings[r], square_at(m, look, r, voltage), x ? x[r] : NULL, is_first(m, r) ? share : 0.0, t);
         if (!(t[0][0] > 0.0)) {
             return false;
         }
@@ -328,12 +407,26 @@ bool dea_membrane_elliptic(const dea_membrane *m, const dea_membrane_look *look,
     return true;
 }
 
+/* What of that goes with the edge that a ring is tied to. */
+static void tie_ring(const dea_membrane *m, const dea_ring *ring, size_t own, double unit, double t[2][2], double *matrix)
+{
+    const size_t n = m->nodes, edge = m->rings.edge;
+    const double radial = unit * (t[0][0] * ring->tie[0] + t[0][1] * ring->tie[1]);
+    const double hoop = unit * (t[0][1] * ring->tie[0] + t[1][1] * ring->tie[1]);
+    for (size_t i = 0; i < ring->count; i++) {
+        const double both = radial * ring->radial[i] + (i == own ? hoop * ring->hoop[i] : 0.0);
+        matrix[edge * n + ring->first + i] += both;
+        matrix[(ring->first + i) * n + edge] += both;
+    }
+    matrix[edge * (n + 1)] += radial * ring->tie[0] + hoop * ring->tie[1];
+}
+
 /* Adds lever^T t lever of one ring; t is symmetric. */
 static void assemble_ring(const dea_membrane *m, size_t r, double t[2][2], double *matrix)
 {
-    const dea_ring *ring = &m->rings.rings[r];
-    const double l0 = m->film.point.film.prestretch, unit = ring->volume * l0 * l0, hoop = ring->hoop[m->own[r]];
-    const size_t n = m->rings.node_count, own = m->own[r];
+    const dea_ring *ring = dea_membrane_ring(m, r);
+    const double l0 = film_at(m, r)->prestretch, unit = ring->volume * l0 * l0, hoop = ring->hoop[m->own[r]];
+    const size_t n = m->nodes, own = m->own[r];
     double *block = matrix + ring->first * n + ring->first;
     for (size_t j = 0; j < ring->count; j++) {
         const double radial = unit * t[0][0] * ring->radial[j];
@@ -345,24 +438,27 @@ static void assemble_ring(const dea_membrane *m, size_t r, double t[2][2], doubl
         block[j * n + own] += mixed;
     }
     block[own * n + own] += unit * t[1][1] * hoop * hoop;
+    if (!is_first(m, r)) {
+        tie_ring(m, ring, own, unit, t, matrix);
+    }
 }
 
 void dea_membrane_stiffness(const dea_membrane *m, const dea_membrane_look *look, double voltage, double (*x)[2], double share,
                             double *stiffness)
 {
-    memset(stiffness, 0, m->rings.node_count * m->rings.node_count * sizeof *stiffness);
-    for (size_t r = 0; r < m->rings.ring_count; r++) {
+    memset(stiffness, 0, m->nodes * m->nodes * sizeof *stiffness);
+    for (size_t r = 0; r < m->ring_total; r++) {
         double t[2][2];
-        ring_tangent(&m->film.point.film, &look->rings[r], square_at(m, look, r, voltage), x ? x[r] : NULL, share, t);
+        ring_tangent(film_at(m, r), &look->rings[r], square_at(m, look, r, voltage), x ? x[r] : NULL, is_first(m, r) ? share : 0.0, t);
         assemble_ring(m, r, t, stiffness);
     }
-    stiffness[m->rings.edge * (m->rings.node_count + 1)] += dea_point_spring(&m->film.point, look->edge).slope;
+    stiffness[m->rings.edge * (m->nodes + 1)] += dea_point_spring(&m->film.point, look->edge).slope;
 }
 
-void dea_membrane_damping(const dea_membrane *m, const dea_membrane_look *look, double share, double *damping)
+/* Of the rings from one number to another. */
+static void add_damping(const dea_membrane *m, const dea_membrane_look *look, size_t from, size_t to, double share, double *damping)
 {
-    memset(damping, 0, m->rings.node_count * m->rings.node_count * sizeof *damping);
-    for (size_t r = 0; r < m->rings.ring_count; r++) {
+    for (size_t r = from; r < to; r++) {
         const dea_ring_look *at = &look->rings[r];
         double t[2][2];
         for (int a = 0; a < 2; a++) {
@@ -371,6 +467,22 @@ void dea_membrane_damping(const dea_membrane *m, const dea_membrane_look *look, 
         }
         assemble_ring(m, r, t, damping);
     }
+}
+
+void dea_membrane_damping(const dea_membrane *m, const dea_membrane_look *look, double share, double *damping)
+{
+    memset(damping, 0, m->nodes * m->nodes * sizeof *damping);
+    add_damping(m, look, 0, m->rings.ring_count, share, damping);
+}
+
+void dea_membrane_damp_second(const dea_membrane *m, const dea_membrane_look *look, double pace, double *stiffness)
+{
+    add_damping(m, look, m->rings.ring_count, m->ring_total, pace * m->second.retardation, stiffness);
+}
+
+double dea_membrane_least_damper(const dea_membrane *m)
+{
+    return m->film.point.second.there ? fmin(m->film.retardation, m->second.retardation) : m->film.retardation;
 }
 
 void dea_membrane_relax(const dea_membrane *m, const dea_membrane_look *look, double *z)
@@ -393,7 +505,7 @@ static const double shortest_load = 1e-9; /* step of the load, over its change: 
 static double largest_strain(const dea_membrane *m, const double *u)
 {
     double largest = 0.0;
-    for (size_t r = 0; r < m->rings.ring_count; r++) {
+    for (size_t r = 0; r < m->ring_total; r++) {
         double e[2];
         strain_ring(m, r, u, e);
         largest = fmax(largest, fmax(fabs(e[0]), fabs(e[1])));
@@ -401,22 +513,28 @@ static double largest_strain(const dea_membrane *m, const double *u)
     return largest;
 }
 
+/* What grows: the voltage, or rather its square, and of that of the second film such a share. */
+typedef struct load {
+    double voltage, beside;
+} load;
+
 /* One round of Newton on F + remainder = 0 from u on; the size of its step as a strain, NAN where the film is not stable there. */
-static double newton_round(const dea_membrane *m, double voltage, const double *z, const double *remainder, double *u)
+static double newton_round(const dea_membrane *m, load on, const double *z, const double *remainder, double *u)
 {
-    const size_t n = m->rings.node_count;
-    double x[DEA_RINGS_MOST][2], step[DEA_RINGS_NODES], stiffness[DEA_RINGS_NODES * DEA_RINGS_NODES];
+    const size_t n = m->nodes;
+    double x[DEA_MEMBRANE_RINGS][2], step[DEA_RINGS_NODES], stiffness[DEA_RINGS_NODES * DEA_RINGS_NODES];
     dea_membrane_look look;
     if (!dea_membrane_look_at(m, u, &look)) {
         return (double)NAN;
     }
+    look.beside = on.beside;
     dea_membrane_viscous(m, &look, NULL, z, x);
     const double share = z ? m->film.total_share : 0.0;
-    if (!dea_membrane_elliptic(m, &look, voltage, x, share)) {
+    if (!dea_membrane_elliptic(m, &look, on.voltage, x, share)) {
         return (double)NAN;
     }
-    dea_membrane_force(m, &look, voltage, x, step);
-    dea_membrane_stiffness(m, &look, voltage, x, share, stiffness);
+    dea_membrane_force(m, &look, on.voltage, x, step);
+    dea_membrane_stiffness(m, &look, on.voltage, x, share, stiffness);
     for (size_t i = 0; i < n; i++) {
         step[i] += remainder[i];
     }
@@ -431,11 +549,11 @@ static double newton_round(const dea_membrane *m, double voltage, const double *
 }
 
 /* Newton over stable states only. */
-static bool newton(const dea_membrane *m, double voltage, const double *z, const double *remainder, double *u)
+static bool newton(const dea_membrane *m, load on, const double *z, const double *remainder, double *u)
 {
     double last = INFINITY;
     for (int i = 0; i < MOST_ROUNDS; i++) {
-        const double size = newton_round(m, voltage, z, remainder, u);
+        const double size = newton_round(m, on, z, remainder, u);
         if (isnan(size)) {
             return false;
         }
@@ -448,33 +566,37 @@ static bool newton(const dea_membrane *m, double voltage, const double *z, const
 }
 
 /* F at u [N]; false where the film cannot be there. */
-static bool force_at(const dea_membrane *m, double voltage, const double *z, const double *u, double *force)
+static bool force_at(const dea_membrane *m, load on, const double *z, const double *u, double *force)
 {
-    double x[DEA_RINGS_MOST][2];
+    double x[DEA_MEMBRANE_RINGS][2];
     dea_membrane_look look;
     if (!dea_membrane_look_at(m, u, &look)) {
         return false;
     }
+    look.beside = on.beside;
     dea_membrane_viscous(m, &look, NULL, z, x);
-    dea_membrane_force(m, &look, voltage, x, force);
+    dea_membrane_force(m, &look, on.voltage, x, force);
     return true;
 }
 
-/* The load grows from what holds u now, in steps over stable states: the square of the voltage, and what F is short of at first. */
-static bool follow(const dea_membrane *m, double before, double voltage, const double *z, double *u)
+/* The load grows from what holds u now to that under a voltage and all of the second film's, in steps over stable states: squares of
+ * voltages, and what F is short of at first. */
+static bool follow(const dea_membrane *m, load from, double voltage, const double *z, double *u)
 {
-    const size_t n = m->rings.node_count;
+    const size_t n = m->nodes;
+    const double before = from.voltage * from.voltage;
     double start[DEA_RINGS_NODES], remainder[DEA_RINGS_NODES], guess[DEA_RINGS_NODES];
-    if (!force_at(m, sqrt(before), z, u, start)) {
+    if (!force_at(m, from, z, u, start)) {
         return false;
     }
     for (double at = 0.0, step = 1.0; at < 1.0;) {
         const double next = fmin(1.0, at + step), square = before + next * (voltage * voltage - before);
+        const load on = {next < 1.0 ? sqrt(square) : voltage, from.beside + next * (1.0 - from.beside)};
         for (size_t i = 0; i < n; i++) {
             remainder[i] = -(1.0 - next) * start[i];
             guess[i] = u[i];
         }
-        if (newton(m, next < 1.0 ? sqrt(square) : voltage, z, remainder, guess)) {
+        if (newton(m, on, z, remainder, guess)) {
             memcpy(u, guess, n * sizeof *u);
             at = next;
             step *= 2.0;
@@ -490,11 +612,11 @@ static double holding_square(const dea_membrane *m, const double *z, const doubl
 {
     double still[DEA_RINGS_NODES], push[DEA_RINGS_NODES], up = 0.0, down = 0.0;
     dea_membrane_look look;
-    if (!force_at(m, 0.0, z, u, still) || !dea_membrane_look_at(m, u, &look)) {
+    if (!force_at(m, (load){0.0, 1.0}, z, u, still) || !dea_membrane_look_at(m, u, &look)) {
         return 0.0;
     }
     dea_membrane_push(m, &look, push);
-    for (size_t i = 0; i < m->rings.node_count; i++) {
+    for (size_t i = 0; i < m->nodes; i++) {
         up -= still[i] * push[i];
         down += push[i] * push[i];
     }
@@ -503,21 +625,21 @@ static double holding_square(const dea_membrane *m, const double *z, const doubl
 
 bool dea_membrane_follow(const dea_membrane *m, double voltage, const double *z, double *u)
 {
-    return follow(m, holding_square(m, z, u), voltage, z, u);
+    return follow(m, (load){sqrt(holding_square(m, z, u)), 1.0}, voltage, z, u);
 }
 
 bool dea_membrane_still(const dea_membrane *m, double voltage, double *u)
 {
-    memset(u, 0, m->rings.node_count * sizeof *u);
-    if (m->film.point.force != 0.0 && !follow(m, 0.0, 0.0, NULL, u)) {
+    memset(u, 0, m->nodes * sizeof *u);
+    if (dea_point_is_pulled(&m->film.point) && !follow(m, (load){0.0, 0.0}, 0.0, NULL, u)) {
         return false;
     }
-    return follow(m, 0.0, voltage, NULL, u);
+    return follow(m, (load){0.0, 1.0}, voltage, NULL, u);
 }
 
 bool dea_membrane_modes(const dea_membrane *m, double *stiffness, double *frequencies, double *shapes)
 {
-    const size_t n = m->rings.node_count;
+    const size_t n = m->nodes;
     if (!m->heavy) {
         return false;
     }
@@ -553,42 +675,64 @@ static double edge_force(const dea_membrane *m, const dea_membrane_look *look, d
 
 /* Largest of values at the rings of an element, between them too where it could pass a limit: a polynomial leaves the range of its
  * values at Lobatto's places by less than that range (Lebesgue constant below 3 up to degree 40). */
-static double largest_up_to(const dea_membrane *m, bool disc, const double *values, double limit)
+static double largest_up_to(const dea_rings *rings, bool disc, const double *values, double limit)
 {
     double low = INFINITY, high = -INFINITY;
-    for (size_t r = 0; r < m->rings.ring_count; r++) {
-        const bool counts = m->rings.rings[r].disc == disc;
+    for (size_t r = 0; r < rings->ring_count; r++) {
+        const bool counts = rings->rings[r].disc == disc;
         low = counts ? fmin(low, values[r]) : low;
         high = counts ? fmax(high, values[r]) : high;
     }
-    return high + (high - low) < limit ? high : dea_rings_largest(&m->rings, disc, values, NULL);
+    return high + (high - low) < limit ? high : dea_rings_largest(rings, disc, values, NULL);
+}
+
+/* Whether a film is in tension, and its largest lambda_1 lambda_2, of that of the ring under the peak of a voltage. */
+static void find(const dea_membrane *m, const dea_membrane_look *look, const dea_rings *rings, double peak, double limit, dea_found *found)
+{
+    const size_t from = rings == &m->rings ? 0 : m->rings.ring_count;
+    const dea_point *point = point_at(m, from);
+    double loss[2][DEA_RINGS_MOST], area[DEA_RINGS_MOST], most = -INFINITY; /* of stresses */
+    for (size_t r = 0; r < rings->ring_count; r++) {
+        const dea_ring_look *at = &look->rings[from + r];
+        double s[2];
+        dea_membrane_ring_stress(m, look, from + r, peak, s);
+        loss[0][r] = -s[0];
+        loss[1][r] = -s[1];
+        area[r] = at->stretch[0] * at->stretch[1];
+        area[r] *= look->spread && peak > 0.0 && from == 0 ? fabs(dea_membrane_voltage(m, look, r, peak)) / peak : 1.0;
+    }
+    for (int i = 0; i < 4; i++) {
+        most = fmax(most, largest_up_to(rings, i < 2, loss[i % 2], point->film.tension));
+    }
+    found->stretch = largest_up_to(rings, point->kind == DEA_DOT, area, limit);
+    found->taut = point->film.tension > most;
+}
+
+/* A row has the state of the worse film, broken down or slack. */
+static void fill_second(const dea_membrane *m, const dea_membrane_look *look, dea_row *row)
+{
+    const dea_point *point = &m->second.point;
+    const double field = fabs(dea_point_nominal_field(point)) * point->layers;
+    dea_found found = {.strain = look->edge / m->film.radius};
+    dea_row other;
+    find(m, look, &m->second.rings, 0.0, field > 0.0 ? point->film.breakdown / field : (double)INFINITY, &found);
+    dea_row_fill(&other, point, found);
+    row->second_field = other.field;
+    if (other.state == DEA_STATE_BREAKDOWN || (other.state == DEA_STATE_SLACK && row->state == DEA_STATE_OK)) {
+        row->state = other.state;
+    }
 }
 
 void dea_membrane_fill(const dea_membrane *m, const dea_membrane_look *look, double peak, const double *u, double limit, dea_row *row)
 {
-    const double tension = m->film.point.film.tension;
-    double loss[2][DEA_RINGS_MOST], area[DEA_RINGS_MOST], most = -INFINITY; /* of stresses */
-    for (size_t r = 0; r < m->rings.ring_count; r++) {
-        const dea_ring_look *at = &look->rings[r];
-        const double k = square_at(m, look, r, peak);
-        area[r] = at->stretch[0] * at->stretch[1];
-        const double electric = dea_film_electric(&m->film.point.film, area[r]).first;
-        for (int a = 0; a < 2; a++) {
-            loss[a][r] = k * electric * area[r] * at->stretch[1 - a] - at->nominal[a];
-        }
-        area[r] *= look->spread && peak > 0.0 ? fabs(dea_membrane_voltage(m, look, r, peak)) / peak : 1.0;
-    }
-    for (int i = 0; i < 4; i++) {
-        most = fmax(most, largest_up_to(m, i < 2, loss[i % 2], tension));
-    }
     dea_point point = m->film.point;
+    dea_found found = {.strain = u[m->rings.edge] / m->film.radius, .force = edge_force(m, look, peak), .capacitance = look->capacitance};
+    find(m, look, &m->rings, peak, limit, &found);
     point.voltage = peak;
-    dea_row_fill(row, &point,
-                 (dea_found){.strain = u[m->rings.edge] / m->film.radius,
-                             .force = edge_force(m, look, peak),
-                             .stretch = largest_up_to(m, m->film.point.kind == DEA_DOT, area, limit),
-                             .capacitance = look->capacitance,
-                             .taut = tension > most});
+    dea_row_fill(row, &point, found);
+    if (point.second.there) {
+        fill_second(m, look, row);
+    }
 }
 
 void dea_membrane_row(const dea_membrane *m, const dea_membrane_look *look, double voltage, const double *u, dea_row *row)
@@ -613,13 +757,13 @@ static bool find_modes(const dea_membrane *m, double *stiffness, dea_membrane_re
         return false;
     }
     rest->slowest = frequencies[0];
-    rest->fastest = frequencies[m->rings.node_count - 1];
+    rest->fastest = frequencies[m->nodes - 1];
     return true;
 }
 
 bool dea_membrane_at_rest(const dea_membrane *m, dea_membrane_rest *rest)
 {
-    const size_t n = m->rings.node_count, edge = m->rings.edge;
+    const size_t n = m->nodes, edge = m->rings.edge;
     double still[DEA_RINGS_NODES], stiffness[DEA_RINGS_NODES * DEA_RINGS_NODES], held[DEA_RINGS_NODES * DEA_RINGS_NODES];
     double push[DEA_RINGS_NODES], shape[DEA_RINGS_NODES], stiff[DEA_RINGS_NODES];
     dea_membrane_look look;

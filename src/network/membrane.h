@@ -5,11 +5,14 @@
  *   s_a = P_a + x_a/lambda_a,   x_a = tau_KV S_a' + sum_i c_i (S_a - z_ai),   z_ai' = (S_a - z_ai)/tau_i,
  *
  * with the changes P_a of the long-term nominal stresses from rest and S_a of the Cauchy stresses lambda_a P_a. All is 0 at rest,
- * relaxed is z_ai = S_a. Where branches are held (springs alone) they belong to P_a and S_a. The state is u, v [node_count], z
+ * relaxed is z_ai = S_a. Where branches are held (springs alone) they belong to P_a and S_a. The state is u, v [nodes], z
  * [dea_membrane_relaxed()], numbered by ring, then a, then branch, and the charge where there is a series resistance.
  *
- * Vectors over the nodes have node_count elements, those over the rings ring_count pairs, matrices are node_count x node_count,
- * column by column. */
+ * A second film on the edge has rings of its own on the same mesh, behind those of the first, and nodes behind those but for the edge,
+ * which both share. It has a damper, no branches and a voltage that stays.
+ *
+ * Vectors over the nodes have `nodes` elements, those over the rings ring_total pairs, matrices are nodes x nodes, column by
+ * column. */
 #ifndef DEA_MEMBRANE_H
 #define DEA_MEMBRANE_H
 
@@ -29,14 +32,25 @@ typedef struct dea_sheet {
     double front; /* width of charge that comes in from the rim, by the first sample, over the radius: sqrt(4 D t), D = 1/(c rho) [1] */
 } dea_sheet;
 
+/* Most rings of two films. */
+enum { DEA_MEMBRANE_RINGS = 2 * DEA_RINGS_MOST };
+
+typedef struct dea_membrane_second {
+    dea_point point;
+    dea_rings rings; /* none: there is no second film */
+    double retardation;
+} dea_membrane_second;
+
 typedef struct dea_membrane {
     dea_dynamics film; /* all of the scene's network but its functions of u: damper, branches, port */
-    dea_rings rings;
+    dea_rings rings;   /* of the first film */
+    dea_membrane_second second;
+    size_t nodes, ring_total; /* of both films */
     dea_sheet sheet; /* charges and potentials of its electrodes */
     double masses[DEA_RINGS_NODES]; /* m_n [kg]; all 0: none */
     bool heavy;
     double unseen; /* least time between a kink of the voltage and the sample behind it [s], 0: not known */
-    size_t own[DEA_RINGS_MOST]; /* place, among the nodes of a ring, of the one at its own radius, which alone strains its hoop */
+    size_t own[DEA_MEMBRANE_RINGS]; /* place, among the nodes of a ring, of the one at its own radius, which alone strains its hoop */
 } dea_membrane;
 
 /* A ring at a state. */
@@ -51,20 +65,29 @@ typedef struct dea_ring_look {
 
 /* Where `spread`, functions that take a film voltage look at those of the rings instead. */
 typedef struct dea_membrane_look {
-    dea_ring_look rings[DEA_RINGS_MOST];
+    dea_ring_look rings[DEA_MEMBRANE_RINGS];
     bool spread;                     /* the potential is not the same all over the electrode: dea_sheet_look() */
     double voltages[DEA_RINGS_MOST]; /* then those of electroded rings [V] */
     double edge;        /* displacement of the edge [m] */
-    double capacitance; /* [F] */
+    double capacitance; /* of the first film [F] */
+    double beside;      /* share of the second film's voltage squared that acts: 1 but on the way to rest */
 } dea_membrane_look;
 
 /* Cuts the film of a scene whose axes are at their place; nothing is to be closed. DEA_ERROR_USAGE for numbers out of range. */
 dea_status dea_membrane_open(const dea_scene *scene, const dea_model *model, dea_rings_mesh mesh, dea_membrane *membrane,
                              dea_error *error);
 
-/* True where a load's damper alone would resist a membrane: its other nodes have no equation of motion then; and that in words. */
+/* True where dampers would resist some nodes alone of a membrane without mass: the others have no equation of motion then; and that in
+ * words. */
 bool dea_load_stalls(const dea_scene *scene);
 extern const char dea_load_stalled[];
+
+/* A ring of either film. */
+static inline const dea_ring *dea_membrane_ring(const dea_membrane *membrane, size_t r)
+{
+    const size_t first = membrane->rings.ring_count;
+    return r < first ? &membrane->rings.rings[r] : &membrane->second.rings.rings[r - first];
+}
 
 /* Number of the z. */
 static inline size_t dea_membrane_relaxed(const dea_membrane *membrane)
@@ -74,6 +97,8 @@ static inline size_t dea_membrane_relaxed(const dea_membrane *membrane)
 
 /* The rings at displacements u [m]; false where a stretch is not positive or the energy of the film has ended. */
 bool dea_membrane_look_at(const dea_membrane *membrane, const double *u, dea_membrane_look *look);
+/* s_a of a ring under a film voltage, without x_a [Pa]. */
+void dea_membrane_ring_stress(const dea_membrane *membrane, const dea_membrane_look *look, size_t r, double voltage, double s[2]);
 /* phi_n = (1/2) dC/du_n [N/V^2]. */
 void dea_membrane_push(const dea_membrane *membrane, const dea_membrane_look *look, double *push);
 /* That of one electroded ring. */
@@ -96,6 +121,10 @@ void dea_membrane_stiffness(const dea_membrane *membrane, const dea_membrane_loo
                             double share, double *stiffness);
 /* That share of its own. */
 void dea_membrane_damping(const dea_membrane *membrane, const dea_membrane_look *look, double share, double *damping);
+/* Adds what the damper of the second film resists at rates of @p pace times the displacements [N/m]; neither of both above knows it. */
+void dea_membrane_damp_second(const dea_membrane *membrane, const dea_membrane_look *look, double pace, double *stiffness);
+/* The lesser of the retardation times of both films [s]. */
+double dea_membrane_least_damper(const dea_membrane *membrane);
 /* True where ds_1/dlambda_1 is positive at every ring: without that the film thins somewhere at once, however fine its rings are.
  */
 bool dea_membrane_elliptic(const dea_membrane *membrane, const dea_membrane_look *look, double voltage, double (*x)[2],
@@ -113,7 +142,7 @@ bool dea_membrane_follow(const dea_membrane *membrane, double voltage, const dou
 /* The relaxed equilibrium under the film voltage that is connected to rest; false where there is none. */
 bool dea_membrane_still(const dea_membrane *membrane, double voltage, double *u);
 /* Undamped angular frequencies [rad/s], slowest first, of small motion about a state whose stiffness this is, which is lost;
- * shapes[k node_count + n]: mode k, of sum m_n shape_n^2 = 1 [kg^-1/2]. False without mass or where LAPACK fails; the square of a
+ * shapes[k nodes + n]: mode k, of sum m_n shape_n^2 = 1 [kg^-1/2]. False without mass or where LAPACK fails; the square of a
  * frequency that is not real counts as 0. */
 bool dea_membrane_modes(const dea_membrane *membrane, double *stiffness, double *frequencies, double *shapes);
 

@@ -22,7 +22,7 @@ static double capacitance_rate(const dea_membrane *m, const dea_membrane_look *l
 {
     double push[DEA_RINGS_NODES], sum = 0.0;
     dea_membrane_push(m, look, push);
-    for (size_t i = 0; i < m->rings.node_count; i++) {
+    for (size_t i = 0; i < m->nodes; i++) {
         sum += 2.0 * push[i] * v[i];
     }
     return sum;
@@ -95,8 +95,8 @@ bool dea_membrane_sample(const dea_membrane *m, const dea_membrane_look *look, c
 static double ring_power(const dea_membrane *m, double (*f)[2], double (*rates)[2])
 {
     double sum = 0.0;
-    for (size_t r = 0; r < m->rings.ring_count; r++) {
-        sum += m->rings.rings[r].volume * (f[r][0] * rates[r][0] + f[r][1] * rates[r][1]);
+    for (size_t r = 0; r < m->ring_total; r++) {
+        sum += dea_membrane_ring(m, r)->volume * (f[r][0] * rates[r][0] + f[r][1] * rates[r][1]);
     }
     return sum;
 }
@@ -104,7 +104,7 @@ static double ring_power(const dea_membrane *m, double (*f)[2], double (*rates)[
 static double kinetic_energy(const dea_membrane *m, const double *v)
 {
     double sum = 0.0;
-    for (size_t i = 0; i < m->rings.node_count && m->heavy; i++) {
+    for (size_t i = 0; i < m->nodes && m->heavy; i++) {
         sum += 0.5 * m->masses[i] * v[i] * v[i];
     }
     return sum;
@@ -113,7 +113,7 @@ static double kinetic_energy(const dea_membrane *m, const double *v)
 /* f_a = x_a/lambda_a. */
 static void nominal_of(const dea_membrane *m, const dea_membrane_look *look, double (*x)[2])
 {
-    for (size_t r = 0; r < m->rings.ring_count; r++) {
+    for (size_t r = 0; r < m->ring_total; r++) {
         x[r][0] /= look->rings[r].stretch[0];
         x[r][1] /= look->rings[r].stretch[1];
     }
@@ -129,7 +129,7 @@ void dea_membrane_audit_add(dea_audit *audit, const dea_membrane *m, const dea_m
     const double leak = look->spread ? sheets.heat : square * d->conductance;
     const double fed = look->spread ? sheets.fed : 0.5 * capacitance_rate(m, look, v) * square + leak;
     const double flow = series ? dea_membrane_current(m, look, moment, v) : 0.0;
-    double rates[DEA_RINGS_MOST][2], x[DEA_RINGS_MOST][2];
+    double rates[DEA_MEMBRANE_RINGS][2], x[DEA_MEMBRANE_RINGS][2];
     dea_membrane_rates(m, v, rates);
     if (d->branch_count > 0) {
         dea_membrane_viscous(m, look, NULL, z, x);
@@ -137,7 +137,7 @@ void dea_membrane_audit_add(dea_audit *audit, const dea_membrane *m, const dea_m
         audit->branch += weight * ring_power(m, x, rates);
     }
     double ohmic = leak + flow * flow * d->series;
-    if (d->retardation > 0.0) {
+    if (d->retardation > 0.0 || m->second.retardation > 0.0) {
         dea_membrane_viscous(m, look, v, NULL, x);
         nominal_of(m, look, x);
         ohmic += ring_power(m, x, rates);
@@ -151,8 +151,8 @@ void dea_membrane_audit_add(dea_audit *audit, const dea_membrane *m, const dea_m
 /* Work against the film, z NULL, or against its branches at z alone, along the straight way from u to @p to [J]. */
 static double way_integral(const dea_membrane *m, const double *u, const double *to, const double *z)
 {
-    const size_t n = m->rings.node_count;
-    double sum = 0.0, way[DEA_RINGS_NODES], at[DEA_RINGS_NODES], rates[DEA_RINGS_MOST][2], f[DEA_RINGS_MOST][2];
+    const size_t n = m->nodes;
+    double sum = 0.0, way[DEA_RINGS_NODES], at[DEA_RINGS_NODES], rates[DEA_MEMBRANE_RINGS][2], f[DEA_MEMBRANE_RINGS][2];
     dea_membrane_look look;
     for (size_t i = 0; i < n; i++) {
         way[i] = to[i] - u[i];
@@ -167,8 +167,8 @@ static double way_integral(const dea_membrane *m, const double *u, const double 
         }
         dea_membrane_viscous(m, &look, NULL, z, f);
         nominal_of(m, &look, f);
-        for (size_t r = 0; r < m->rings.ring_count && !z; r++) {
-            memcpy(f[r], look.rings[r].nominal, sizeof f[r]);
+        for (size_t r = 0; r < m->ring_total && !z; r++) {
+            dea_membrane_ring_stress(m, &look, r, 0.0, f[r]);
         }
         const double load = z ? 0.0 : dea_point_spring(&m->film.point, look.edge).force - m->film.point.force;
         sum += dea_gauss_weight(g) * (ring_power(m, f, rates) + load * way[m->rings.edge]);

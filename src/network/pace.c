@@ -151,7 +151,7 @@ static double square_of(size_t n, const double *a, const double *x)
 /* The slowest mode at a state, as a film of mass 1 whose displacement is that mode's share. */
 static bool slowest_at(const dea_membrane *m, const dea_membrane_look *look, double voltage, film *f)
 {
-    const size_t n = m->rings.node_count;
+    const size_t n = m->nodes;
     const dea_dynamics *d = &m->film;
     double stiffness[DEA_RINGS_NODES * DEA_RINGS_NODES], viscous[DEA_RINGS_NODES * DEA_RINGS_NODES], shapes[DEA_RINGS_NODES * DEA_RINGS_NODES];
     double frequencies[DEA_RINGS_NODES], push[DEA_RINGS_NODES], pushed = 0.0;

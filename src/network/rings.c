@@ -124,6 +124,24 @@ void dea_rings_cut(const dea_point *point, dea_rings_mesh mesh, dea_rings *rings
     cut_element(&annulus, mesh.annulus, frame, point, rings);
 }
 
+/* The edge is the last node of the disc's rings, and the first of the annulus's. */
+void dea_rings_tie(dea_rings *rings, size_t first)
+{
+    for (size_t r = 0; r < rings->ring_count; r++) {
+        dea_ring *ring = &rings->rings[r];
+        const size_t edge = ring->disc ? ring->count - 1 : 0;
+        ring->tie[0] = ring->radial[edge];
+        ring->tie[1] = ring->hoop[edge];
+        ring->radial[edge] = ring->hoop[edge] = 0.0;
+        for (size_t i = edge; i + 1 < ring->count; i++) {
+            ring->radial[i] = ring->radial[i + 1];
+            ring->hoop[i] = ring->hoop[i + 1];
+        }
+        ring->first += first;
+        ring->count--;
+    }
+}
+
 void dea_rings_slopes_of(size_t degree, dea_rings_slopes *slopes)
 {
     lobatto rule;

@@ -12,8 +12,8 @@
 
 #include "deaspice/model.h"
 
-/* Largest degree of an element, and what follows: most moving nodes and rings. */
-enum { DEA_RINGS_DEGREE = 40, DEA_RINGS_NODES = 2 * DEA_RINGS_DEGREE - 1, DEA_RINGS_MOST = 2 * DEA_RINGS_DEGREE + 1 };
+/* Largest degree of an element, and what follows: most rings of a film, and moving nodes of two on one edge. */
+enum { DEA_RINGS_DEGREE = 40, DEA_RINGS_MOST = 2 * DEA_RINGS_DEGREE + 1, DEA_RINGS_NODES = 4 * DEA_RINGS_DEGREE - 3 };
 
 /* How fine: degrees of the elements of disc and annulus, 1 ... DEA_RINGS_DEGREE, and whether the nodes of the annulus lie evenly in
  * ln R, which statics and small discs want, or in R. */
@@ -30,6 +30,7 @@ typedef struct dea_ring {
     size_t first, count;                 /* the moving nodes that strain it: first ... first + count - 1 */
     double radial[DEA_RINGS_DEGREE + 1]; /* de_1/du of each [1/m] */
     double hoop[DEA_RINGS_DEGREE + 1];   /* de_2/du of each [1/m] */
+    double tie[2];                       /* de_a/du of the edge where it is none of these, else 0 [1/m] */
 } dea_ring;
 
 typedef struct dea_rings {
@@ -46,6 +47,8 @@ typedef struct dea_rings {
 
 /* Cuts the film of a point into rings; its numbers are in their ranges. */
 void dea_rings_cut(const dea_point *point, dea_rings_mesh mesh, dea_rings *rings);
+/* Numbers the nodes that strain a film's rings anew, from @p first on, without the edge, by which they are tied to another film. */
+void dea_rings_tie(dea_rings *rings, size_t first);
 
 /* Reference element of a degree, 1 ... DEA_RINGS_DEGREE, over x in [-1, 1]: its places and their weights, and the derivatives of
  * its polynomials there. */

@@ -53,7 +53,7 @@ static bool solve(small *s, double omega, answer *a)
 {
     const dea_membrane *m = &s->biased->membrane;
     const dea_dynamics *film = &m->film;
-    const size_t n = m->rings.node_count;
+    const size_t n = m->nodes;
     const double complex at = omega * I;
     double complex share = at * film->retardation, x[DEA_RINGS_NODES], current = s->biased->look.capacitance;
     lapack_int pivots[DEA_RINGS_NODES];

@@ -27,7 +27,7 @@ static double smoothness(const dea_membrane *m, const dea_membrane_rest *rest)
 {
     const double crossing = crossing_of(rest), age = fmax(1.0, m->unseen / crossing);
     const double charging = m->film.series * rest->capacitance;
-    const double waves = m->heavy ? fmax(2.0 * DEA_PI * m->film.retardation * age, charging) / crossing : INFINITY;
+    const double waves = m->heavy ? fmax(2.0 * DEA_PI * dea_membrane_least_damper(m) * age, charging) / crossing : INFINITY;
     return fmin(resolved * sqrt(m->sheet.front), waves); /* nodes lie closer to the rim by their number squared */
 }
 

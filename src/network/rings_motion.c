@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "film/point.h"
 #include "support/lapack.h"
 
 /* Solves the symmetric positive definite A x = b in place; false where A is not. */
@@ -57,9 +58,9 @@ static bool set_sizes(dea_rings_motion *m)
 void dea_rings_motion_lay(const dea_membrane *membrane, const dea_signal *signal, dea_rings_motion *m)
 {
     *m = (dea_rings_motion){.membrane = membrane, .signal = signal, .segment = signal->segments};
-    m->nodes = membrane->rings.node_count;
+    m->nodes = membrane->nodes;
     m->heavy = membrane->heavy;
-    m->damped = membrane->film.retardation > 0.0;
+    m->damped = membrane->film.retardation > 0.0 || membrane->second.retardation > 0.0;
     m->charges = membrane->sheet.charges;
     m->charged = m->charges > 0;
     m->z = m->heavy ? 2 * m->nodes : m->nodes;
@@ -157,7 +158,7 @@ static void held_stiffness(const dea_rings_motion *m, dea_rings_state *state, do
 static void add_relaxation(const dea_rings_motion *m, const dea_rings_state *state, const double *rates, double *out)
 {
     const dea_dynamics *d = &m->membrane->film;
-    double f[DEA_RINGS_MOST][2];
+    double f[DEA_MEMBRANE_RINGS][2] = {{0.0}};
     for (size_t k = 0; k < 2 * m->membrane->rings.ring_count; k++) {
         double sum = 0.0;
         for (size_t i = 0; i < d->branch_count; i++) {
@@ -175,6 +176,7 @@ static bool massless_rates(const dea_rings_motion *m, double time, dea_rings_sta
     if (m->damped) {
         memcpy(rates, state->force, m->nodes * sizeof *rates);
         dea_membrane_damping(m->membrane, &state->look, m->membrane->film.retardation, matrix);
+        dea_membrane_damp_second(m->membrane, &state->look, 1.0, matrix);
         matrix[m->membrane->rings.edge * (m->nodes + 1)] += m->membrane->film.damping;
     } else {
         held_stiffness(m, state, matrix);
@@ -274,11 +276,12 @@ bool dea_rings_schur_fill(const dea_rings_motion *m, const dea_rings_state *stat
         const double turn = pace * d->branches[i].tau;
         share += d->branches[i].share * turn / (1.0 + turn);
     }
-    for (size_t r = 0; r < membrane->rings.ring_count; r++) {
+    for (size_t r = 0; r < membrane->ring_total; r++) {
         memcpy(schur->slope[r], state->look.rings[r].slope, sizeof schur->slope[r]);
         memcpy(schur->stretch[r], state->look.rings[r].stretch, sizeof schur->stretch[r]);
     }
     dea_membrane_stiffness(membrane, &state->look, state->voltage, (double(*)[2])state->x, share, matrix);
+    dea_membrane_damp_second(membrane, &state->look, pace, matrix);
     for (size_t n = 0; n < m->nodes && m->heavy; n++) {
         matrix[n * m->nodes + n] += pace * pace * membrane->masses[n];
     }
@@ -298,12 +301,14 @@ static void reduce_rings(const dea_rings_motion *m, const dea_rings_schur *schur
     if (drags) {
         dea_membrane_rates(m->membrane, b, f);
     }
-    for (size_t r = 0; r < m->membrane->rings.ring_count; r++) {
+    for (size_t r = 0; r < m->membrane->ring_total; r++) {
+        const bool first = r < m->membrane->rings.ring_count;
+        const double tau = first ? d->retardation : m->membrane->second.retardation;
         const double rates[2] = {drags ? f[r][0] : 0.0, drags ? f[r][1] : 0.0};
         for (int a = 0; a < 2; a++) {
-            double sum = d->retardation * (schur->slope[r][a][0] * rates[0] + schur->slope[r][a][1] * rates[1]);
+            double sum = tau * (schur->slope[r][a][0] * rates[0] + schur->slope[r][a][1] * rates[1]);
             const double *own = b + m->z + (2 * r + (size_t)a) * d->branch_count;
-            for (size_t i = 0; i < d->branch_count; i++) {
+            for (size_t i = 0; i < d->branch_count && first; i++) {
                 sum += d->branches[i].share * d->branches[i].tau * own[i] / (1.0 + schur->pace * d->branches[i].tau);
             }
             f[r][a] = -sum / schur->stretch[r][a];
@@ -319,7 +324,7 @@ void dea_rings_schur_reduce(const dea_rings_motion *m, const dea_rings_schur *sc
     const size_t edge = m->membrane->rings.edge;
     reduced[edge] += m->heavy ? m->membrane->film.damping * b[edge] : 0.0;
     if (m->membrane->film.branch_count > 0 || (m->heavy && m->damped)) {
-        double f[DEA_RINGS_MOST][2];
+        double f[DEA_MEMBRANE_RINGS][2];
         reduce_rings(m, schur, b, f);
         dea_membrane_pull(m->membrane, f, reduced);
     }
@@ -336,7 +341,7 @@ void dea_rings_schur_reduce(const dea_rings_motion *m, const dea_rings_schur *sc
 static void expand_rings(const dea_rings_motion *m, const dea_rings_schur *schur, const double *b, double *x)
 {
     const dea_dynamics *d = &m->membrane->film;
-    double strains[DEA_RINGS_MOST][2];
+    double strains[DEA_MEMBRANE_RINGS][2];
     size_t k = m->z;
     dea_membrane_rates(m->membrane, x, strains);
     for (size_t r = 0; r < m->membrane->rings.ring_count; r++) {
@@ -374,7 +379,7 @@ bool dea_rings_start(const dea_rings_motion *m, bool from_bias, double *y)
     dea_membrane_look look;
     dea_charges charges;
     memset(y, 0, m->count * sizeof *y);
-    if (!from_bias && d->point.force == 0.0) {
+    if (!from_bias && !dea_point_is_pulled(&d->point)) {
         return true;
     }
     if (!dea_membrane_still(m->membrane, voltage, y) || !dea_membrane_look_at(m->membrane, y, &look)) {
@@ -437,12 +442,18 @@ double dea_rings_firmness(const dea_rings_motion *m, double time, const double *
     return solve_definite(m->nodes, matrix, shape) ? m->rest.softness / dot(m->nodes, state.push, shape) : 0.0;
 }
 
+/* Damping over stiffness at rest. */
+static double lag_of(const dea_film *film)
+{
+    return 1.0 + film->tension / (film->prestretch * film->w11);
+}
+
 double dea_rings_stiffest(const dea_rings_motion *m)
 {
     const dea_dynamics *d = &m->membrane->film;
-    const dea_film *film = &d->point.film;
-    const double lag = 1.0 + film->tension / (film->prestretch * film->w11); /* damping over stiffness at rest */
-    double largest = fmax(m->rest.fastest, d->retardation * lag * m->rest.fastest * m->rest.fastest);
+    const dea_membrane_second *second = &m->membrane->second;
+    const double tau = fmax(d->retardation * lag_of(&d->point.film), second->retardation > 0.0 ? second->retardation * lag_of(&second->point.film) : 0.0);
+    double largest = fmax(m->rest.fastest, tau * m->rest.fastest * m->rest.fastest);
     for (size_t i = 0; i < d->branch_count; i++) {
         largest = fmax(largest, (1.0 + d->branches[i].share) / d->branches[i].tau);
     }
@@ -458,7 +469,8 @@ double dea_rings_decay(const dea_rings_motion *m)
         const double tau = d->branches[i].tau;
         sum += d->branches[i].share / (1.0 + d->total_share) * tau / (1.0 + square * tau * tau);
     }
-    return 0.5 * square * sum;
+    const bool second = m->membrane->second.rings.ring_count > 0;
+    return 0.5 * square * (second ? fmin(sum, m->membrane->second.retardation) : sum); /* a mode of one film dies by its damper alone */
 }
 
 dea_moment dea_rings_moment(const dea_rings_motion *m, double time, const dea_rings_state *state)

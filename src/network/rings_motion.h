@@ -29,7 +29,7 @@ typedef struct dea_rings_motion {
 /* The film at a state. */
 typedef struct dea_rings_state {
     dea_membrane_look look;
-    double x[DEA_RINGS_MOST][2]; /* viscous and branch stresses */
+    double x[DEA_MEMBRANE_RINGS][2]; /* viscous and branch stresses */
     double push[DEA_RINGS_NODES];
     double force[DEA_RINGS_NODES];
     dea_charges charges;
@@ -60,8 +60,8 @@ bool dea_rings_massless(const dea_rings_motion *motion, double time, const doubl
 /* The matrix of Newton's method with all unknowns but u eliminated. */
 typedef struct dea_rings_schur {
     double pace;                        /* alpha: y' = alpha y + ... of the method [1/s] */
-    double slope[DEA_RINGS_MOST][2][2]; /* dS_a/dlambda_b [Pa] */
-    double stretch[DEA_RINGS_MOST][2];
+    double slope[DEA_MEMBRANE_RINGS][2][2]; /* dS_a/dlambda_b [Pa] */
+    double stretch[DEA_MEMBRANE_RINGS][2];
     double pull[DEA_SHEET_PLACES][DEA_RINGS_NODES];        /* P: dF/dV_k at constant u, which is C_k dF/dq_k [N/V] */
     double inverse[DEA_SHEET_PLACES * DEA_SHEET_PLACES];   /* of C + Y/alpha [1/F] */
     double capacitances[DEA_SHEET_PLACES];                 /* [F] */

@@ -110,7 +110,7 @@ static double rim_rate(const dea_membrane *m, const dea_membrane_look *look, con
 {
     double push[DEA_RINGS_NODES], sum = 0.0;
     dea_sheet_push(m, look, rim_of(&m->sheet), push);
-    for (size_t i = 0; i < m->rings.node_count; i++) {
+    for (size_t i = 0; i < m->nodes; i++) {
         sum += 2.0 * push[i] * v[i];
     }
     return sum;

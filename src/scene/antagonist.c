@@ -88,25 +88,26 @@ static dea_status sweep_check(dea_reader *reader)
     return DEA_OK;
 }
 
-/* Its own relaxation has no place in the moving network, whose branches follow the first film. */
+/* Branches follow the first film, and so does the damper of models of one node. A membrane's inner nodes all have mass, or none has. */
 static dea_status motion_check(dea_reader *reader)
 {
     const dea_scene *scene = reader->scene;
     const dea_material *material = scene->antagonist.own_material ? &scene->antagonist.material : &scene->material;
     const dea_study *study = dea_study_of(scene);
-    const bool moves = study->along && !study->still;
-    const dea_node *node = dea_tree_child(reader->root, "antagonist");
-    for (size_t i = 0; i < scene->model_count && moves; i++) {
-        if (scene->models[i]->membrane) {
-            return dea_place_fail(&node->place, reader->error, "antagonist",
-                                  "a second film beside a %s of the model %s; accepted there: a static study, or models of one node, e.g. ring",
+    const bool damped = !isnan(material->retardation), alike = isnan(material->density) == isnan(scene->material.density);
+    const dea_place *place = &dea_tree_child(reader->root, "antagonist")->place;
+    for (size_t i = 0; i < scene->model_count && study->along && !study->still; i++) {
+        const bool membrane = scene->models[i]->membrane;
+        if (material->prony_count > 0 || (damped && !membrane)) {
+            return dea_place_fail(place, reader->error, "antagonist.material",
+                                  "relaxes beside a %s of the model %s; accepted there: a material without %s, or a static study",
+                                  study->title, scene->models[i]->name, membrane ? "prony" : "prony and retardation");
+        }
+        if (membrane && !alike) {
+            return dea_place_fail(place, reader->error, "antagonist.material.density",
+                                  "of one film alone beside a %s of the model %s; accepted there: a density of both, or of neither",
                                   study->title, scene->models[i]->name);
         }
-    }
-    if (moves && (material->prony_count > 0 || !isnan(material->retardation))) {
-        return dea_place_fail(&node->place, reader->error, "antagonist.material",
-                              "relaxes, and a second film moves as an elastic one; accepted: a material without prony and retardation, "
-                              "or a static study");
     }
     return DEA_OK;
 }

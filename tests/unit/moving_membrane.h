@@ -182,10 +182,11 @@ static inline void fe_stress(const fe_film *f, size_t p, const fe_state *s, cons
     }
 }
 
-static inline void fe_rates(const fe_film *f, double time, const fe_state *s, fe_state *d)
+/* Forces on all nodes; the rates of the branches into @p d. */
+static inline void fe_forces(const fe_film *f, double time, const fe_state *s, double *force, fe_state *d)
 {
-    double force[FE_NODES] = {0.0};
-    const double voltage = fe_voltage(f, time, s), field = voltage / f->thickness;
+    const double field = fe_voltage(f, time, s) / f->thickness;
+    memset(force, 0, FE_NODES * sizeof *force);
     for (size_t p = 0; p < FE_PLACES; p++) {
         const size_t e = p / DEA_GAUSS_POINTS * FE_DEGREE, g = p % DEA_GAUSS_POINTS;
         const double own = f->potential ? f->potential[p] / f->thickness : field;
@@ -199,6 +200,13 @@ static inline void fe_rates(const fe_film *f, double time, const fe_state *s, fe
             force[e + n] -= unit * (f->radius[p] * f->slope[p][n] * s1 + f->shape[g][n] * s2);
         }
     }
+}
+
+static inline void fe_rates(const fe_film *f, double time, const fe_state *s, fe_state *d)
+{
+    double force[FE_NODES];
+    const double voltage = fe_voltage(f, time, s);
+    fe_forces(f, time, s, force, d);
     for (size_t i = 0; i < FE_NODES; i++) {
         d->u[i] = s->v[i];
         d->v[i] = 0.0;

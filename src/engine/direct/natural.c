@@ -112,7 +112,7 @@ static dea_status film_open(const dea_scene *scene, const dea_model *model, dea_
     }
     const dea_dynamics *d = &f->membrane.film;
     dea_membrane_look look;
-    f->count = f->membrane.rings.node_count;
+    f->count = f->membrane.nodes;
     f->voltage = scene->modes.bias / (1.0 + d->series * d->conductance);
     f->row = dea_row_failed();
     f->row.state = DEA_STATE_PULL_IN;
@@ -148,15 +148,14 @@ static double newton_round(const film *f, size_t k, double grown, double complex
 {
     const dea_dynamics *d = &f->membrane.film;
     const size_t n = f->count, m = n + 1, edge = f->membrane.rings.edge;
-    lapack_complex_double a[(DEA_RINGS_NODES + 1) * (DEA_RINGS_NODES + 1)] = {0}, b[DEA_RINGS_NODES + 1];
+    lapack_complex_double a[(DEA_RINGS_NODES + 1) * (DEA_RINGS_NODES + 1)], b[DEA_RINGS_NODES + 1];
     lapack_int pivots[DEA_RINGS_NODES + 1];
     double complex slope;
     const double complex share = grown * viscous_share(d, *s, &slope), behind = *s + f->charge_rate;
     const double complex gain = grown * f->charge_gain * *s / behind;
     const double complex gain_slope = grown * f->charge_gain * f->charge_rate / (behind * behind);
-    for (size_t i = 0; i <= n; i++) {
-        b[i] = 0.0;
-    }
+    memset(a, 0, m * m * sizeof *a);
+    memset(b, 0, m * sizeof *b);
     for (size_t j = 0; j < n; j++) {
         for (size_t i = 0; i < n; i++) {
             const double drag = grown * d->damping * f->shapes[i * n + edge] * f->shapes[j * n + edge];

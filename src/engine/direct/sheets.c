@@ -33,7 +33,7 @@ static bool set_mesh(const dea_sheets *s, size_t level, mesh *m)
         !dea_membrane_still(&m->membrane, s->voltage, u) || !dea_membrane_look_at(&m->membrane, u, &look)) {
         return false;
     }
-    const size_t n = m->membrane.rings.node_count;
+    const size_t n = m->membrane.nodes;
     dea_membrane_stiffness(&m->membrane, &look, s->voltage, NULL, 0.0, m->stiffness);
     dea_membrane_damping(&m->membrane, &look, 1.0, m->viscous);
     dea_sheet_look(&m->membrane, &look, still, s->voltage, &charges);
@@ -51,7 +51,7 @@ static bool set_mesh(const dea_sheets *s, size_t level, mesh *m)
 /* (C + Y/(i w)) v = -(row of the rim in Y)/(i w) - P^T u: columns of b are v by each u, and last, without u. */
 static bool spread(const mesh *m, double omega, lapack_complex_double *b)
 {
-    const size_t count = m->membrane.sheet.charges, n = m->membrane.rings.node_count;
+    const size_t count = m->membrane.sheet.charges, n = m->membrane.nodes;
     lapack_complex_double *a = malloc(count * count * sizeof *a);
     lapack_int pivots[DEA_SHEET_PLACES];
     for (size_t k = 0; a && k < count; k++) {
@@ -75,7 +75,7 @@ static bool spread(const mesh *m, double omega, lapack_complex_double *b)
 static bool move(const mesh *m, double omega, const lapack_complex_double *b, lapack_complex_double *u)
 {
     const dea_membrane *membrane = &m->membrane;
-    const size_t count = membrane->sheet.charges, n = membrane->rings.node_count;
+    const size_t count = membrane->sheet.charges, n = membrane->nodes;
     const double complex v = dea_radial_viscosity(&membrane->film, omega);
     lapack_complex_double *a = malloc(n * n * sizeof *a);
     lapack_int pivots[DEA_RINGS_NODES];
@@ -103,7 +103,7 @@ static bool answer_on(const mesh *m, double omega, dea_per_volt *answer)
 {
     const dea_membrane *membrane = &m->membrane;
     const dea_sheet *s = &membrane->sheet;
-    const size_t count = s->charges, n = membrane->rings.node_count;
+    const size_t count = s->charges, n = membrane->nodes;
     lapack_complex_double *b = malloc(count * (n + 1) * sizeof *b), u[DEA_RINGS_NODES];
     const bool done = b && spread(m, omega, b) && move(m, omega, b, u);
     double complex charge = 0.0, leak = -membrane->film.conductance;

@@ -186,7 +186,7 @@ static void explain(const search *s, const dea_summary *summary, dea_error *erro
         dea_fail(error, DEA_ERROR_ENGINE,
                  "%zu nodes and %ld steps of SUNDIALS at a tolerance of %.1g leave an error of %.1g, the scene wants %g: waves of a "
                  "film without much damping get steep; a rise of the voltage and a damper (material.retardation) smooth them%s",
-                 f->membrane.rings.node_count, f->steps, f->tolerance, fmax(s->worst, summary->error), s->scene->accuracy,
+                 f->membrane.nodes, f->steps, f->tolerance, fmax(s->worst, summary->error), s->scene->accuracy,
                  f->membrane.sheet.places > 0 ? "; charge lies close to the rim of so resistive an electrode "
                                                 "(electrode.sheet_resistance), the closer the denser the samples" : "");
     }

@@ -42,6 +42,9 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
         return "it has no network form that ngspice could solve";
     }
     const bool still = !dea_study_of(scene)->along || dea_study_of(scene)->still;
+    if (model->membrane && !still && scene->antagonist.there) {
+        return "its moving membrane has no second film";
+    }
     if (model->membrane && still && dea_scene_is_pulled(scene)) {
         return "its membrane at rest carries springs alone, no force and no second film";
     }

@@ -327,7 +327,7 @@ static void explain(const search *s, dea_error *error)
         dea_fail(error, DEA_ERROR_ENGINE,
                  "%zu nodes leave an error of %.1g, the steps of ngspice one of %.1g, the scene wants %g: waves of a film without much "
                  "damping get steep; a rise of the voltage and a damper (material.retardation) smooth them",
-                 f->membrane.rings.node_count, s->mesh_error, s->error, s->scene->accuracy);
+                 f->membrane.nodes, s->mesh_error, s->error, s->scene->accuracy);
     }
 }
 

@@ -214,11 +214,11 @@ double dea_columns_worst(const dea_scales *scales, const dea_columns_gap *gap)
     return worst;
 }
 
-void dea_scales_tell(const dea_scales *scales, const dea_sample *samples, size_t count, dea_rate_errors errors,
+void dea_scales_tell(const dea_scales *scales, const dea_sample *samples, size_t count, dea_rate_errors errors, double least,
                      dea_summary *summary)
 {
     const dea_sample scale = dea_scales_of(scales, samples, count);
     const bool port = count > 0 && !isnan(samples[0].current);
-    summary->velocity_error = share(errors.velocity, scale.velocity);
-    summary->current_error = port ? share(errors.current, scale.current) : (double)NAN;
+    summary->velocity_error = fmax(share(errors.velocity, scale.velocity), least);
+    summary->current_error = port ? fmax(share(errors.current, scale.current), least) : (double)NAN;
 }

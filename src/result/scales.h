@@ -50,8 +50,8 @@ void dea_columns_widen(dea_columns_gap *gap, const dea_sample *a, const dea_samp
 /* Of the column that is worst against what it promises, times its allowance, over its scale [1]. */
 double dea_columns_worst(const dea_scales *scales, const dea_columns_gap *gap);
 
-/* Errors of velocity and current over their scales, into the summary. */
-void dea_scales_tell(const dea_scales *scales, const dea_sample *samples, size_t count, dea_rate_errors errors,
+/* Errors of velocity and current over their scales, into the summary, none less than @p least: what runs may be off by alike [1]. */
+void dea_scales_tell(const dea_scales *scales, const dea_sample *samples, size_t count, dea_rate_errors errors, double least,
                      dea_summary *summary);
 
 #endif

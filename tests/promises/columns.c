@@ -27,16 +27,15 @@ static bool has(const judged *j, size_t offset)
     return false;
 }
 
-static void hold(const true_run *truth, const dea_sample *rows, size_t column, double scale, column_error *worst)
+static void hold(const true_run *truth, const dea_sample *rows, size_t offset, const char *name, double scale, column_error *worst)
 {
     for (size_t i = 0; i < truth->good; i++) {
-        const double got = number_at(&rows[i], columns[column].offset);
-        const double wanted = number_at(&truth->samples[i], columns[column].offset);
+        const double got = number_at(&rows[i], offset), wanted = number_at(&truth->samples[i], offset);
         const bool delivered = rows[i].state != DEA_STATE_FAILED && rows[i].state != DEA_STATE_PULL_IN;
         const double gap = fabs(got - wanted);
         const double error = !delivered || gap <= 0.0 ? 0.0 : isfinite(gap) ? gap / scale : (double)INFINITY;
         if (error > worst->error) {
-            *worst = (column_error){columns[column].name, i, error};
+            *worst = (column_error){name, i, error};
         }
     }
 }
@@ -53,7 +52,7 @@ column_error columns_error(const judged *j, size_t point, const dea_sample *rows
         const size_t offset = columns[c].offset;
         const double promise = dea_scales_allowance(offset) * number_at(&scale, offset);
         if (has(j, offset) && number_at(&truth->errors, offset) <= 0.1 * accuracy * promise) {
-            hold(truth, rows, c, promise, &worst);
+            hold(truth, rows, offset, columns[c].name, promise, &worst);
         }
     }
     return worst;
@@ -71,6 +70,28 @@ column_error means_error(const judged *j, size_t point, const dea_summary *summa
         const double error = !covered || gap <= 0.0 ? 0.0 : isfinite(gap) ? gap / peak : (double)INFINITY;
         if (error > worst.error) {
             worst = (column_error){"mean", i, error};
+        }
+    }
+    return worst;
+}
+
+column_error told_error(const judged *j, size_t point, const dea_sample *rows, const dea_summary *summary)
+{
+    const true_run *truth = &j->runs[point];
+    const dea_scales scales = dea_scales_open(&j->scene, j->scene.models[0]);
+    const dea_sample scale = dea_scales_of(&scales, truth->samples, truth->good);
+    const struct {
+        size_t offset;
+        double told;
+        const char *name;
+    } held[] = {{offsetof(dea_sample, displacement), summary->error, "error of the displacement"},
+                {offsetof(dea_sample, velocity), summary->velocity_error, "error of the velocity"},
+                {offsetof(dea_sample, current), summary->current_error, "error of the current"}};
+    column_error worst = {.column = ""};
+    for (size_t c = 0; c < sizeof held / sizeof *held; c++) {
+        const double whole = number_at(&scale, held[c].offset);
+        if (has(j, held[c].offset) && number_at(&truth->errors, held[c].offset) <= 0.1 * held[c].told * whole) {
+            hold(truth, rows, held[c].offset, held[c].name, whole * held[c].told, &worst);
         }
     }
     return worst;

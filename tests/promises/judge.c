@@ -416,6 +416,16 @@ static bool tell(const judged *j, const dea_engine *engine, double accuracy, con
     return true;
 }
 
+/* Errors that summaries tell, of which the worst stays. */
+static void take_told(const judged *j, const void *points, tally *t)
+{
+    for (size_t p = 0; p < j->points && j->scene.study == DEA_STUDY_TRANSIENT; p++) {
+        const dea_sample *rows = (const dea_sample *)(const void *)row_of(j, points, p, 0);
+        const column_error off = told_error(j, p, rows, (const dea_summary *)(const void *)row_of(j, points, p, j->layout.rows));
+        t->told = off.error > t->told.error ? off : t->told;
+    }
+}
+
 bool judge_engine(judged *j, const dea_engine *engine, double accuracy, tally *t, char *text, size_t size)
 {
     dea_scene *scene = &j->scene;
@@ -459,6 +469,7 @@ bool judge_engine(judged *j, const dea_engine *engine, double accuracy, tally *t
         broken = f.state || f.error > accuracy;
         t->broken += broken ? 1 : 0;
         t->worst = fmax(t->worst, f.error / accuracy);
+        take_told(j, h.points, t);
         if (broken) {
             tell(j, engine, accuracy, &f, text, size);
         }

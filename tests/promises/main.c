@@ -26,6 +26,18 @@ static const char *const usage =
     "the best of each engine. Scenes are sweeps, transients and responses of all models; --films: moving membranes alone, with "
     "loads, skins,\nlayers and the like, in time and in frequency; --stalls: transients at which steps of ngspice once collapsed.\n";
 
+/* Delivered over wanted error of each promise that was judged. */
+typedef struct shares {
+    double *values; /* owned */
+    size_t count;
+} shares;
+
+/* What is found, by engine, study and, of the shares, accuracy. */
+typedef struct record {
+    tally tallies[MOST_ENGINES][STUDIES];
+    shares delivered[MOST_ENGINES][STUDIES][ACCURACIES];
+} record;
+
 /* The date as a number, 20250131: nobody chose it, and it can be said again. */
 static uint64_t today(void)
 {
@@ -86,18 +98,78 @@ static double now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static void print_table(tally tallies[MOST_ENGINES][STUDIES])
+static void add_share(shares *s, double share)
 {
-    static const char *const studies[STUDIES] = {"sweep", "transient", "ac"};
-    puts("\n| engine | study | runs | delivered | refused | failed | not judged | worst delivered/wanted | broken | processor "
-         "time [s] |");
-    puts("|---|---|---|---|---|---|---|---|---|---|");
+    double *wider = realloc(s->values, (s->count + 1) * sizeof *wider);
+    if (wider) {
+        s->values = wider;
+        s->values[s->count++] = share;
+    }
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(shares *s)
+{
+    qsort(s->values, s->count, sizeof *s->values, by_size);
+    return 0.5 * (s->values[(s->count - 1) / 2] + s->values[s->count / 2]);
+}
+
+static const char *const studies[STUDIES] = {"sweep", "transient", "ac"};
+
+static void print_medians(const arguments *a, record *found)
+{
+    puts("\nMedian of delivered/wanted:\n");
+    if (a->accuracy > 0.0) {
+        printf("| engine | study | %.0e |\n|---|---|---|\n", a->accuracy);
+    } else {
+        puts("| engine | study | 1e-2 | 1e-4 | 1e-6 | best |\n|---|---|---|---|---|---|");
+    }
+    for (size_t e = 0; e < dea_engine_count() && e < MOST_ENGINES; e++) {
+        for (int s = 0; s < STUDIES; s++) {
+            if (found->tallies[e][s].delivered == 0) {
+                continue;
+            }
+            printf("| %s | %s |", dea_engine_at(e)->name, studies[s]);
+            for (int k = 0; k < (a->accuracy > 0.0 ? 1 : ACCURACIES); k++) {
+                shares *all = &found->delivered[e][s][k];
+                if (all->count > 0) {
+                    printf(" %.2g of %zu |", median(all), all->count);
+                } else {
+                    printf(" |");
+                }
+            }
+            putchar('\n');
+        }
+    }
+}
+
+static void free_record(record *found)
+{
+    for (int e = 0; e < MOST_ENGINES; e++) {
+        for (int s = 0; s < STUDIES; s++) {
+            for (int k = 0; k < ACCURACIES; k++) {
+                free(found->delivered[e][s][k].values);
+            }
+        }
+    }
+}
+
+static void print_table(const tally tallies[MOST_ENGINES][STUDIES])
+{
+    puts("\n| engine | study | runs | delivered | refused | failed | not judged | worst delivered/wanted | broken | worst "
+         "error/told | processor time [s] |");
+    puts("|---|---|---|---|---|---|---|---|---|---|---|");
     for (size_t e = 0; e < dea_engine_count() && e < MOST_ENGINES; e++) {
         for (int s = 0; s < STUDIES; s++) {
             const tally *t = &tallies[e][s];
             if (t->scenes > 0) {
-                printf("| %s | %s | %zu | %zu | %zu | %zu | %zu | %.2g | %zu | %.1f |\n", dea_engine_at(e)->name, studies[s],
-                       t->scenes, t->delivered, t->refused, t->failed, t->unjudged, t->worst, t->broken, t->seconds);
+                printf("| %s | %s | %zu | %zu | %zu | %zu | %zu | %.2g | %zu | %.2g | %.1f |\n", dea_engine_at(e)->name, studies[s],
+                       t->scenes, t->delivered, t->refused, t->failed, t->unjudged, t->worst, t->broken, t->told.error, t->seconds);
             }
         }
     }
@@ -112,7 +184,7 @@ static void print_table(tally tallies[MOST_ENGINES][STUDIES])
 }
 
 /* One scene by all engines and accuracies; returns how many promises it broke. */
-static size_t judge_scene(const arguments *a, size_t number, tally tallies[MOST_ENGINES][STUDIES])
+static size_t judge_scene(const arguments *a, size_t number, record *found)
 {
     static const double asked[] = {1e-2, 1e-4, 1e-6};
     char *text = a->draw(a->seed, number), line[LINE];
@@ -132,15 +204,20 @@ static size_t judge_scene(const arguments *a, size_t number, tally tallies[MOST_
             if ((k == 3 && best >= 1e-6) || (k > 0 && a->accuracy > 0.0)) {
                 continue;
             }
-            tally *t = &tallies[e][j.scene.study];
+            tally *t = &found->tallies[e][j.scene.study];
             const tally before = *t;
             t->worst = 0.0;
+            t->told = (column_error){.column = ""};
             const bool breaks = judge_engine(&j, engine, accuracy, t, line, sizeof line);
             if (a->verbose) {
-                fprintf(stderr, "%zu %s %.0e: %.4f s, %.2g of it\n", number, engine->name, accuracy, t->seconds - before.seconds,
-                        t->worst);
+                fprintf(stderr, "%zu %s %.0e: %.4f s, %.2g of it, %.2g of the %s told\n", number, engine->name, accuracy,
+                        t->seconds - before.seconds, t->worst, t->told.error, t->told.error > 0.0 ? t->told.column : "error");
+            }
+            if (t->delivered > before.delivered) {
+                add_share(&found->delivered[e][j.scene.study][k], t->worst);
             }
             t->worst = fmax(t->worst, before.worst);
+            t->told = t->told.error > before.told.error ? t->told : before.told;
             if (breaks) {
                 printf("- broken: %s\n", line);
                 fflush(stdout);
@@ -159,7 +236,7 @@ static size_t judge_scene(const arguments *a, size_t number, tally tallies[MOST_
 
 int main(int count, char **words)
 {
-    static tally tallies[MOST_ENGINES][STUDIES];
+    static record found;
     arguments a;
     size_t broken = 0;
     if (!parse(count, words, &a)) {
@@ -177,9 +254,11 @@ int main(int count, char **words)
            "with --dump K\n\n",
            a.count, a.first, seed, words[0], kind, seed);
     for (size_t i = 0; i < a.count; i++) {
-        broken += judge_scene(&a, a.first + i, tallies);
+        broken += judge_scene(&a, a.first + i, &found);
     }
-    print_table(tallies);
+    print_table((const tally (*)[STUDIES])found.tallies);
+    print_medians(&a, &found);
+    free_record(&found);
     printf("\nBroken accuracy promises over %zu random scenes x engines x accuracies: %zu; again: %s%s --seed %llu --first %zu "
            "--scenes %zu\n",
            a.count, broken, words[0], kind, seed, a.first, a.count);

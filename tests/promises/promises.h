@@ -19,6 +19,13 @@ char *draw_stall(uint64_t seed, size_t number);
 
 enum { MOST_REASONS = 48, REASON_LENGTH = 320, ACCURACIES = 4, STUDIES = 3, MOST_ENGINES = 4 };
 
+/* What a column of transients is off by (columns.c). */
+typedef struct column_error {
+    const char *column;
+    size_t row;
+    double error; /* over what the column promises for an accuracy of 1, or over what is told */
+} column_error;
+
 /* How often something was said. */
 typedef struct reason {
     char text[REASON_LENGTH];
@@ -30,6 +37,7 @@ typedef struct tally {
     size_t delivered; /* with all rows judged */
     size_t refused, failed, unjudged, broken;
     double worst;   /* delivered over wanted error, of promises that were kept */
+    column_error told; /* delivered over told error of the worst of them */
     double seconds; /* of processors */
     reason reasons[MOST_REASONS];
 } tally;
@@ -55,18 +63,14 @@ void judge_close(judged *j);
 /* Runs an engine at one accuracy; adds to the tally. True where the promise was broken; *text then says how. */
 bool judge_engine(judged *j, const dea_engine *engine, double accuracy, tally *t, char *text, size_t size);
 
-/* What columns of transients that follow from displacement and charge are off by (columns.c). */
-typedef struct column_error {
-    const char *column;
-    size_t row;
-    double error; /* over what the column promises for an accuracy of 1 */
-} column_error;
-
 /* Worst of them in the rows of a point, of those whose truth is good to a tenth of what it judges. */
 column_error columns_error(const judged *j, size_t point, const dea_sample *rows, double accuracy);
 
 /* Worst mean of a point's windows that its rows cover, over the peak; INFINITY where a film that never ends has none. */
 column_error means_error(const judged *j, size_t point, const dea_summary *summary, double peak, double accuracy);
+
+/* Worst error over the one that the summary tells, of the columns that it tells one of and whose truth is good to a tenth of that. */
+column_error told_error(const judged *j, size_t point, const dea_sample *rows, const dea_summary *summary);
 
 /* The tightest accuracy that the engine promises for such a study. */
 double best_accuracy(const dea_engine *engine, const dea_scene *scene);

@@ -662,8 +662,11 @@ static bool record(motion *m, double time, long double here, const state *s)
     static _Thread_local radial_pairs x;
     long double v[RADIAL_MOST];
     branch_stresses(m, s, x, m->held);
-    if (!radial_look_at(&m->mesh, s->u, s->w, x, f->total_share, &m->look) ||
-        (f->retardation == 0.0L && !(m->look.firmness > 0.0L))) {
+    if (!radial_look_at(&m->mesh, s->u, s->w, x, f->total_share, &m->look)) {
+        return false;
+    }
+    const bool firm = f->retardation > 0.0L || m->look.firmness > 0.0L;
+    if (!firm && !(m->mesh.heavy && time == 0.0)) { /* at the start a film with mass has not moved yet, whatever it does then */
         return false;
     }
     velocities_of(m, here, s, x, v);
@@ -680,7 +683,7 @@ static bool record(motion *m, double time, long double here, const state *s)
                                          .film_voltage = f->series > 0.0L ? (double)s->w : (double)NAN,
                                          .capacitance = row.capacitance,
                                          .state = row.state};
-    return true;
+    return firm;
 }
 
 /* Place of an edge of a window in the segment, INFINITY once it is passed. */

@@ -217,16 +217,33 @@ static void the_estimate_tells_the_error_of_a_rate(void **state)
     static const struct {
         const char *name;
         double accuracy;
-    } cases[] = {{"move1", 1e-4}, {"columns_kicked", 1e-2}, {"columns_squeezed", 1e-2}};
+        bool ngspice;
+    } cases[] = {{"move1", 1e-4, true}, {"columns_kicked", 1e-2, true}, {"columns_squeezed", 1e-2, true}, {"columns_narrow", 1e-3, false}};
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
         char *text = read_case(cases[c].name);
         judged j;
         assert_true(judge_open(&j, text, c));
-        hold_estimates(&j, "ngspice", cases[c].accuracy);
+        if (cases[c].ngspice) {
+            hold_estimates(&j, "ngspice", cases[c].accuracy);
+        }
         hold_estimates(&j, "ida", cases[c].accuracy);
         judge_close(&j);
         free(text);
     }
+}
+
+/* A jump at the start past what its regions bear: the film has not moved yet, and runs away from there on. */
+static void a_film_with_mass_is_at_rest_in_its_first_row(void **state)
+{
+    (void)state;
+    char *text = read_case("columns_gone_at_once");
+    judged j;
+    assert_true(judge_open(&j, text, 0));
+    hold(&j, "ngspice", 1e-3);
+    assert_int_equal(j.runs[0].good, 1);
+    assert_true(j.runs[0].samples[0].displacement == 0.0);
+    judge_close(&j);
+    free(text);
 }
 
 /* The electrical port by its own two laws: what the resistance leaves, and q = C U. */
@@ -368,6 +385,7 @@ int main(void)
         cmocka_unit_test(focal_length_shortens_with_the_voltage),
         cmocka_unit_test(the_velocity_of_a_slow_film_has_its_sign_and_size),
         cmocka_unit_test(the_estimate_tells_the_error_of_a_rate),
+        cmocka_unit_test(a_film_with_mass_is_at_rest_in_its_first_row),
         cmocka_unit_test(a_velocity_off_by_thirty_times_the_accuracy_is_found),
         cmocka_unit_test(check_compares_velocity_by_its_scale),
         cmocka_unit_test(the_program_tells_and_compares_rates),

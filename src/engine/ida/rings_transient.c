@@ -1,5 +1,6 @@
 /* Transients of a membrane: runs at tighter tolerances on finer meshes, until two of them show that the answer is good enough. */
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,6 +20,7 @@ static const double first_share = 0.2;      /* from one tolerance to the next */
 static const double gains_nothing = 0.5;    /* a difference that falls by less than that stays too large */
 static const double least_tolerance = 3e-12; /* what rounding of the stiffest nodes leaves */
 static const double drift = 30.0; /* errors of BDF add up over a swing to so many times the tolerance, which two runs may share */
+static const double least_told = 0.1; /* of the accuracy */
 static const double certain = 1e-7; /* an end of the motion counts from this tolerance on */
 
 /* A study of one scene. */
@@ -34,6 +36,7 @@ typedef struct search {
     size_t rows, entries; /* of the layout; numbers that a row tells over the radius */
     double unseen; /* as membranes have it */
     double loosest;
+    double shared; /* error that the last two runs may have alike, of the displacement [1] */
     double worst; /* error that the last run is left with, of the column that is worst against what it promises [1] */
 } search;
 
@@ -141,7 +144,8 @@ static dea_status refine(search *s, dea_summary *summary, dea_rate_errors *rates
         const double trust = dea_rings_mesh_trust(&s->solver->flight.membrane, &s->solver->flight.motion.rest, nodes);
         const bool doubtful = s->traces[1].end == DEA_STATE_PULL_IN && tolerance > certain;
         const bool comparable = s->traces[0].count == s->traces[1].count;
-        summary->error = fmax(apart.displacement * trust, fmax(drift * tolerance, 0.1 * accuracy));
+        s->shared = fmax(drift * tolerance, least_told * accuracy);
+        summary->error = fmax(apart.displacement * trust, s->shared);
         *rates = (dea_rate_errors){apart.rates.velocity * trust, apart.rates.current * trust};
         s->worst = fmax(apart.answer * trust, drift * tolerance);
         *good = s->worst <= accuracy && comparable && !doubtful;
@@ -211,7 +215,8 @@ static dea_status fly(search *s, dea_sample *samples, dea_summary *summary, dea_
     }
     fill(s, &s->traces[1], good, samples);
     tell_averages(s, &s->traces[1], summary);
-    dea_scales_tell(&s->scales, s->traces[1].samples, s->traces[1].count, rates, summary);
+    dea_scales_tell(&s->scales, s->traces[1].samples, s->traces[1].count, rates,
+                    dea_scales_allowance(offsetof(dea_sample, velocity)) * s->shared, summary);
     if (s->solver->flight.peaks && s->traces[1].end == DEA_STATE_OK) {
         dea_peak_tell(&s->traces[0].peak, &s->traces[1].peak, s->scene->accuracy, summary);
     }

@@ -218,12 +218,6 @@ static void explain(const dea_flight *flight, const dea_summary *summary, dea_er
     }
 }
 
-/* NAN, of a column that is not there, stays. */
-static double at_least(double error, double least)
-{
-    return error < least ? least : error;
-}
-
 /* Runs until the answer is good enough, and tells it. */
 static void fly_on(dea_flight *flight, const dea_scales *scales, dea_trace traces[2], dea_sample *samples, dea_summary *summary,
                    dea_error *error)
@@ -244,9 +238,7 @@ static void fly_on(dea_flight *flight, const dea_scales *scales, dea_trace trace
     if (flight->motion.dynamics->linear && !(flight->motion.dynamics->series > 0.0)) { /* the current C U' + C' U v is as good as the velocity */
         rates.current = scales->motional * rates.velocity;
     }
-    dea_scales_tell(scales, samples, flight->rows, rates, summary);
-    summary->velocity_error = at_least(summary->velocity_error, shared * accuracy);
-    summary->current_error = at_least(summary->current_error, shared * accuracy);
+    dea_scales_tell(scales, samples, flight->rows, rates, shared * accuracy, summary);
     if (flight->peaks && traces[1].end == DEA_STATE_OK) {
         dea_peak_tell(&traces[0].peak, &traces[1].peak, flight->scene->accuracy, summary);
     }

@@ -310,7 +310,7 @@ static void tell(const search *s, const dea_sample *samples, dea_summary *summar
         summary->averages[i] = (dea_average){u / s->track->flight.membrane.film.radius, u};
     }
     const dea_rate_errors rates = {s->rates.velocity + s->mesh_rates.velocity, s->rates.current + s->mesh_rates.current};
-    dea_scales_tell(&s->scales, samples, trace->count, rates, summary);
+    dea_scales_tell(&s->scales, samples, trace->count, rates, 0.0, summary);
     const double gap = fabs(s->fine->trace.peak.current - s->coarse->trace.peak.current);
     if (s->track->flight.peaks && trace->end == DEA_STATE_OK && gap <= 10.0 * s->scene->accuracy * trace->peak.current) {
         summary->peak_current = trace->peak.current;

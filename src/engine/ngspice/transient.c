@@ -518,7 +518,7 @@ static void tell_rates(const dea_route *route, const levels *l, const dea_sample
     if (!(route->dynamics->series > 0.0)) {
         errors.current = route->dynamics->linear ? l->scales.motional * errors.velocity : l->motional;
     }
-    dea_scales_tell(&l->scales, samples, route->samples, errors, summary);
+    dea_scales_tell(&l->scales, samples, route->samples, errors, 0.0, summary);
 }
 
 static void fill_samples(const dea_route *route, const levels *l, dea_sample *samples)

@@ -2,6 +2,7 @@
  * equations of physics.md, sections 3 and 7, with nothing of the library's. */
 #include "answers.h"
 
+#include <complex.h>
 #include <stdlib.h>
 
 typedef long double real;
@@ -396,6 +397,34 @@ static void energy_is_kept_with_loads_and_two_films(void **state)
     }
 }
 
+#define PAIR                                                                                                             \
+    FILM("dot") ", retardation: 50 us}\nmodel: field\naccuracy: 1e-7\n"                                                \
+                "antagonist: {actuator: {kind: lens, film_thickness: 80 um, prestretch: 1.3}, drive: {voltage: 3 kV}, "   \
+                "material: {neo_hookean: {mu: 350 kPa}, permittivity: 2.8, density: 1000 kg/m^3, retardation: 40 us}}\n"
+
+/* Slowly by the slope of its rests; fast by a small sine of the film that moves in time, which knows forces alone, no stiffness. */
+static void two_membranes_are_shaken_as_they_rest_and_move(void **state)
+{
+    (void)state;
+    static answer wave;
+    enum { EVERY = 40, PERIODS = 10 };
+    double complex moved = 0.0;
+    assert_true(run(PAIR "study: {ac: {from: 0.05 Hz, to: 500 Hz, points_per_decade: 1, bias: 3 kV}}\n", "field", "direct", &one));
+    assert_true(run(PAIR "study: {sweep: {drive.voltage: [2999 V, 3001 V]}}\n", "field", "direct", &other));
+    const dea_response *shaken = (const dea_response *)one.bytes;
+    const dea_row *still = rows_of(&other);
+    assert_relative(shaken[0].displacement, 0.5 * (still[1].displacement - still[0].displacement), 1e-6);
+    assert_relative(1.0 / (0.1 * DEA_PI * shaken[0].impedance), 0.5 * (still[1].charge - still[0].charge), 1e-6);
+    assert_true(run(PAIR "drive: {waveform: {sine: {amplitude: 3 V, offset: 3 kV, frequency: 500 Hz}}}\n"
+                         "study: {transient: {until: 60 ms, every: 0.05 ms, start: bias}}\n", "field", "ida", &wave));
+    const dea_sample *samples = (const dea_sample *)wave.bytes;
+    for (size_t i = wave.rows - 1 - EVERY * PERIODS; i + 1 < wave.rows; i++) {
+        moved += samples[i].displacement * 2.0 / (EVERY * PERIODS) * cexp(-I * 1000.0 * DEA_PI * samples[i].time);
+    }
+    const double complex per_volt = shaken[4].displacement * cexp(I * DEA_PI / 180.0 * shaken[4].displacement_phase);
+    assert_near(cabs(moved / (-3.0 * I) - per_volt), 0.0, 2e-4 * cabs(per_volt));
+}
+
 static void a_membrane_under_a_load_keeps_its_energy(void **state)
 {
     (void)state;
@@ -478,6 +507,7 @@ int main(void)
         cmocka_unit_test(a_film_rests_under_its_load_until_the_voltage_comes),
         cmocka_unit_test(a_linear_film_swings_as_mass_spring_and_damper),
         cmocka_unit_test(energy_is_kept_with_loads_and_two_films),
+        cmocka_unit_test(two_membranes_are_shaken_as_they_rest_and_move),
         cmocka_unit_test(a_membrane_under_a_load_keeps_its_energy),
         cmocka_unit_test(a_damper_lags_a_shaken_film),
         cmocka_unit_test(a_slowly_shaken_film_follows_its_statics_under_a_force),

@@ -50,7 +50,7 @@ typedef struct biased {
     dea_edge edge;
     double relaxed;         /* stiffness of the node [N/m] */
     dea_radial *radial; /* borrowed, as sheets; NULL: one node */
-    dea_sheets *sheets; /* NULL: the electrodes have no sheet resistance */
+    dea_sheets *sheets; /* NULL: one film whose electrodes have no sheet resistance */
 } biased;
 
 /* Per volt on the film: u = 2 phi U/D, q = C + C' U u. */
@@ -151,7 +151,7 @@ static dea_status respond_radius(const dea_scene *scene, const dea_model *model,
                 .held = isfinite(radial.rest.strain),
                 .accuracy = scene->accuracy,
                 .radial = &radial,
-                .sheets = resistive ? &sheets : NULL};
+                .sheets = resistive || scene->antagonist.there ? &sheets : NULL};
     const size_t failed = respond(&b, scene, rows, band);
     if (failed > 0) {
         dea_fail(error, DEA_OK, "%zu frequencies failed: two meshes of the film do not agree within the accuracy", failed);

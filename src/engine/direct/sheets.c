@@ -15,10 +15,17 @@ static const double small_disc = 0.1;
 typedef struct dea_sheets_mesh {
     dea_membrane membrane;
     double stiffness[DEA_RINGS_NODES * DEA_RINGS_NODES], viscous[DEA_RINGS_NODES * DEA_RINGS_NODES]; /* K, K_v */
+    double beside[DEA_RINGS_NODES * DEA_RINGS_NODES]; /* K_2 [N s/m] */
     double pull[DEA_SHEET_PLACES][DEA_RINGS_NODES];                                                /* P of all places [N/V] */
     double capacitances[DEA_SHEET_PLACES];                                                        /* [F] */
     double admittance[DEA_SHEET_PLACES * DEA_SHEET_PLACES];                                       /* Y without the rim [S] */
 } mesh;
+
+/* Places of one potential each: an electrode without a sheet resistance is one, at the rim. */
+static size_t places_of(const mesh *m)
+{
+    return m->membrane.sheet.places > 0 ? m->membrane.sheet.places : 1;
+}
 
 /* The film under its bias, where the potential is uniform. */
 static bool set_mesh(const dea_sheets *s, size_t level, mesh *m)
@@ -36,9 +43,10 @@ static bool set_mesh(const dea_sheets *s, size_t level, mesh *m)
     const size_t n = m->membrane.nodes;
     dea_membrane_stiffness(&m->membrane, &look, s->voltage, NULL, 0.0, m->stiffness);
     dea_membrane_damping(&m->membrane, &look, 1.0, m->viscous);
+    dea_membrane_damp_second(&m->membrane, &look, 1.0, m->beside);
     dea_sheet_look(&m->membrane, &look, still, s->voltage, &charges);
     dea_sheet_admittance(&m->membrane, &look, m->admittance);
-    for (size_t k = 0; k < m->membrane.sheet.places; k++) {
+    for (size_t k = 0; k < places_of(m); k++) {
         m->capacitances[k] = charges.capacitances[k];
         dea_sheet_push(&m->membrane, &look, k, m->pull[k]);
         for (size_t i = 0; i < n; i++) {
@@ -65,8 +73,8 @@ static bool spread(const mesh *m, double omega, lapack_complex_double *b)
         }
         b[n * count + k] = row / (I * omega);
     }
-    const bool done = a && dea_lapacke_zgesv(LAPACK_COL_MAJOR, (lapack_int)count, (lapack_int)(n + 1), a, (lapack_int)count, pivots, b,
-                                             (lapack_int)count) == 0;
+    const bool done = count == 0 || (a && dea_lapacke_zgesv(LAPACK_COL_MAJOR, (lapack_int)count, (lapack_int)(n + 1), a,
+                                                            (lapack_int)count, pivots, b, (lapack_int)count) == 0);
     free(a);
     return done;
 }
@@ -85,7 +93,7 @@ static bool move(const mesh *m, double omega, const lapack_complex_double *b, la
             u[i] += m->pull[k][i] * b[n * count + k];
         }
         for (size_t j = 0; j < n; j++) {
-            a[j * n + i] = m->stiffness[j * n + i] + v * m->viscous[j * n + i];
+            a[j * n + i] = m->stiffness[j * n + i] + v * m->viscous[j * n + i] + I * (omega * m->beside[j * n + i]);
             for (size_t k = 0; k < count; k++) {
                 a[j * n + i] -= m->pull[k][i] * b[j * count + k];
             }
@@ -104,17 +112,17 @@ static bool answer_on(const mesh *m, double omega, dea_per_volt *answer)
     const dea_membrane *membrane = &m->membrane;
     const dea_sheet *s = &membrane->sheet;
     const size_t count = s->charges, n = membrane->nodes;
-    lapack_complex_double *b = malloc(count * (n + 1) * sizeof *b), u[DEA_RINGS_NODES];
+    lapack_complex_double *b = malloc((count + 1) * (n + 1) * sizeof *b), u[DEA_RINGS_NODES];
     const bool done = b && spread(m, omega, b) && move(m, omega, b, u);
-    double complex charge = 0.0, leak = -membrane->film.conductance;
-    for (size_t k = 0; done && k < s->places; k++) {
+    double complex charge = 0.0, leak = s->places > 0 ? -membrane->film.conductance : 0.0;
+    for (size_t k = 0; done && k < places_of(m); k++) {
         double complex v = k < count ? b[n * count + k] : 1.0;
         for (size_t i = 0; i < n; i++) {
             v += k < count ? b[i * count + k] * u[i] : 0.0;
             charge += m->pull[k][i] * u[i];
         }
         charge += m->capacitances[k] * v;
-        leak += s->leak[k] * v;
+        leak += s->leak[k] * v; /* none of an electrode of one potential */
     }
     if (done) {
         *answer = (dea_per_volt){.displacement = u[membrane->rings.edge], .charge = charge + leak / (I * omega)};

@@ -1,9 +1,10 @@
-/* Frequency response of the membrane with a sheet resistance: small motion of its rings and of the potentials along the electrode about
- * the equilibrium under a uniform bias, 1 V at the rim,
+/* Frequency response of the membrane with a sheet resistance or a second film: small motion of its rings and of the potentials along
+ * the electrode about the equilibrium under a uniform bias, 1 V at the rim,
  *
- *     (K + V K_v - w^2 M + i w d) u = P v,   i w (C v + P^T u) + Y v = 0 but at the rim,   P = 2 U (1/2) dC/du
+ *     (K + V K_v + i w K_2 - w^2 M + i w d) u = P v,   i w (C v + P^T u) + Y v = 0 but at the rim,   P = 2 U (1/2) dC/du
  *
- * with V as in radial.h, the damper d of a load, and the admittance Y of sheets and leakage (network/sheet.h). */
+ * with V as in radial.h, the dampers K_2 of the second film and d of a load, and the admittance Y of sheets and leakage
+ * (network/sheet.h). */
 #ifndef DEA_DIRECT_SHEETS_H
 #define DEA_DIRECT_SHEETS_H
 

@@ -553,6 +553,33 @@ static void masses_fit_the_steps_between_pulses(void **state)
     run_in_child(compare_pulses);
 }
 
+/* A run that may take half of its work ends on the way, by count: twice at the same step. */
+static void exhaust(void)
+{
+    child_route c = ringing_route();
+    dea_error error = {0};
+    lay_route(&c);
+    const dea_track whole = track(&c, 0.25);
+    dea_track ends[2];
+    c.route.most = 0.5 * dea_track_work(&c.route, whole.steps, whole.netlists);
+    for (int i = 0; i < 2; i++) {
+        if (dea_track_run(&c.route, 0.25, &ends[i], &error) != DEA_OK) {
+            _exit(101);
+        }
+    }
+    const bool early = ends[0].exhausted && ends[0].end == DEA_STATE_FAILED && ends[0].steps < whole.steps;
+    if (whole.exhausted || !early || ends[0].steps != ends[1].steps || ends[0].reached != ends[1].reached) {
+        fprintf(stderr, "%g and %g of %g steps\n", ends[0].steps, ends[1].steps, whole.steps);
+        _exit(1);
+    }
+}
+
+static void run_without_end_stops_where_its_work_is_done(void **state)
+{
+    (void)state;
+    run_in_child(exhaust);
+}
+
 static double angle_between(double a, double b)
 {
     return fabs(remainder(a - b, 360.0));
@@ -698,6 +725,7 @@ int main(void)
         cmocka_unit_test(error_falls_with_the_square_of_the_step),
         cmocka_unit_test(run_in_pieces_is_the_run_in_one),
         cmocka_unit_test(masses_fit_the_steps_between_pulses),
+        cmocka_unit_test(run_without_end_stops_where_its_work_is_done),
         cmocka_unit_test(frequency_responses_are_those_of_the_closed_form),
         cmocka_unit_test(no_frequency_is_lost_to_rounding),
         cmocka_unit_test(a_large_resistance_keeps_the_phase_of_the_impedance),

@@ -168,6 +168,24 @@ static void what_takes_too_long_is_refused_at_once(void **state)
     assert_non_null(strstr(found.log, "--engine ida"));
 }
 
+/* At the frame the stress of a negative exponent grows so steeply that forty thousand steps go through the point where the film turns
+ * back: no finer run is worth half a minute. */
+static void a_bounce_that_is_too_steep_is_refused_early(void **state)
+{
+    (void)state;
+    run_text("actuator: {kind: lens, frame_radius: 5.56 mm, coverage: 0.94477841005180463, film_thickness: 95.3 um, "
+             "prestretch: 1.0719181338268406}\n"
+             "material:\n  ogden: [{mu: -376267.4 Pa, alpha: -0.55194281545337898}]\n  permittivity: 8.395\n  density: 914 kg/m^3\n"
+             "  retardation: 13.09 us\n  modulus: 482102 Pa\n"
+             "drive: {waveform: {step: {on: 0.58 ms, voltage: 2892 V, rise: 0 s}}}\n"
+             "model: coverage\nstudy: {transient: {until: 2.668 ms, every: 8.748 us}}\n",
+             "ngspice", 1e-4, &found);
+    assert_int_equal(found.samples[1].state, DEA_STATE_FAILED);
+    assert_non_null(strstr(found.log, "turns back"));
+    assert_non_null(strstr(found.log, "at most 12 s"));
+    assert_non_null(strstr(found.log, "--engine ida"));
+}
+
 /* A record of a sine with noise, of which a film with a damper sees much: a netlist of a film that is not linear costs milliseconds. */
 static void a_noisy_record_that_takes_too_long_is_refused_at_once(void **state)
 {
@@ -277,6 +295,7 @@ int main(void)
         cmocka_unit_test(a_film_is_thrown_back_where_its_chains_are_straight),
         cmocka_unit_test(a_bridge_of_short_edges_is_solved),
         cmocka_unit_test(what_takes_too_long_is_refused_at_once),
+        cmocka_unit_test(a_bounce_that_is_too_steep_is_refused_early),
         cmocka_unit_test(a_noisy_record_that_takes_too_long_is_refused_at_once),
         cmocka_unit_test(a_ring_that_loses_its_phase_is_refused_by_its_begin),
         cmocka_unit_test(a_film_is_followed_past_its_fold),

@@ -254,31 +254,34 @@ static const double first_points = 500.0;
 static const double loosen = 100.0;
 static const double loosest = 1e4;
 
-/* Points after which the steps of a netlist have collapsed. */
-static size_t most_points(const dea_mobility_piece *piece)
+/* Points after which the steps of a netlist have collapsed, or it has taken what it may. */
+static double most_points(const dea_mobility_piece *piece)
 {
     const dea_signal *signal = piece->signal;
     double corners = 0.0;
     for (size_t i = piece->segment; i < signal->count && signal->segments[i].from < piece->to; i++) {
         corners += piece->parts;
     }
-    return (size_t)(first_points + corner_points * corners + collapse * (piece->to - piece->from) / piece->step);
+    const double all = first_points + corner_points * corners + collapse * (piece->to - piece->from) / piece->step;
+    return piece->most > 0.0 ? fmin(all, fmax(1.0, ceil(piece->most - piece->taken))) : all;
 }
 
 dea_status dea_deck_run(dea_ngspice *library, dea_mobility_piece *piece, dea_deck_writer *write, const void *user,
                         const char *const *names, size_t count, dea_ngspice_table *table, dea_error *error)
 {
-    const size_t most = most_points(piece);
     *table = (dea_ngspice_table){0};
     for (;;) {
         char *text = NULL;
+        const size_t most = (size_t)most_points(piece);
         dea_status status = write(user, piece, &text, error);
         if (status == DEA_OK) {
             dea_ngspice_limit(library, most);
             status = dea_ngspice_run_all(library, text, names, count, table, error);
         }
         free(text);
-        if (status != DEA_OK || table->count < most || !(piece->loose < loosest)) {
+        piece->taken += (double)table->count;
+        const bool spent = piece->most > 0.0 && piece->taken >= piece->most;
+        if (status != DEA_OK || table->count < most || !(piece->loose < loosest) || spent) {
             return status;
         }
         dea_ngspice_table_free(table);

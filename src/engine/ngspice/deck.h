@@ -20,6 +20,8 @@ typedef struct dea_mobility_piece {
     double mass;        /* [kg]; of a membrane those of its nodes over their own [1] */
     double conductance; /* 0: none; resistor beside the mass that fits the rule's damping to the film's [N s/m], of a membrane over it [1/s] */
     dea_mobility_state start;
+    double most;  /* points of the library that it may take; 0: no limit */
+    double taken; /* computed by dea_deck_run(): points of the library, those of steps that collapsed too */
 } dea_mobility_piece;
 
 /* Parts of an edge that is shorter than a time step. */

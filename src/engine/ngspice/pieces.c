@@ -57,6 +57,7 @@ static void add(cutter *c, dea_piece next)
     if (goes_on(c, &next)) {
         dea_piece *last = &pieces->pieces[pieces->count - 1];
         c->corners += last->segment != next.segment;
+        pieces->corners += last->segment != next.segment;
         last->to = next.to;
         last->step = fmin(last->step, next.step);
         last->longest = fmax(last->longest, next.longest);

@@ -17,7 +17,8 @@ typedef struct dea_piece {
 typedef struct dea_pieces {
     dea_piece *pieces; /* owned */
     size_t count;
-    double points; /* time steps of them all at fineness 1 */
+    double points;  /* time steps of them all at fineness 1, */
+    double corners; /* and corners of the voltage inside them, behind which the library's steps begin short */
 } dea_pieces;
 
 /* Cuts the run; @p quiet: the film rests until the voltage changes first. A ring counts as dead @p life behind a corner of the

@@ -9,6 +9,9 @@
 /* Most time steps of one netlist: what its plot takes of memory. */
 static const double most_steps = 300000.0;
 
+/* Work of a step and of a netlist, in steps of a linear network, of films of linear springs and of others. */
+static const double step_work[2] = {1.0, 5.0}, netlist_work[2] = {300.0, 500.0};
+
 /* Share of a step within which a film charges at once. */
 static const double at_once = 1e-2;
 
@@ -638,6 +641,25 @@ static void start_again(runner *r)
     r->last = node_at(r, r->last.moment.time, &state, r->before_time < r->last.moment.time ? &known : NULL);
 }
 
+double dea_track_work(const dea_route *route, double points, double netlists)
+{
+    const bool bent = !route->dynamics->linear;
+    return step_work[bent] * points + netlist_work[bent] * netlists;
+}
+
+/* Work that is left. Counted, not timed: whatever else the machine does, the same run ends at the same place. */
+static double work_left(const dea_route *route, const dea_track *track)
+{
+    return route->most > 0.0 ? route->most - dea_track_work(route, track->steps, track->netlists) : (double)INFINITY;
+}
+
+/* Points that a netlist may take; one at least, so that the run can end there. */
+static double points_left(const runner *r)
+{
+    const double left = work_left(r->route, r->track);
+    return isfinite(left) ? fmax(1.0, left / step_work[!r->route->dynamics->linear]) : 0.0;
+}
+
 static void set_piece(runner *r, dea_mobility_piece *piece, double to, double step)
 {
     const dea_route *route = r->route;
@@ -665,6 +687,7 @@ static void set_piece(runner *r, dea_mobility_piece *piece, double to, double st
                                   .force = route->scale * dea_dynamics_stiffness(route->dynamics, 0.0, 0.0, false),
                                   .tolerance = fmin(1e-7, 1e-3 * route->scene->accuracy),
                                   .loose = r->loose,
+                                  .most = points_left(r),
                                   .mass = r->match.mass,
                                   .conductance = r->match.resistance,
                                   .start = scaled(r->last.state, 1.0 / r->speed)};
@@ -727,6 +750,8 @@ static dea_status run_netlist(runner *r, double to, double step, dea_error *erro
     set_piece(r, &piece, to, step);
     const dea_status status = dea_deck_run(r->route->library, &piece, write_piece, mobility, names, vectors.count, &table, error);
     r->loose = piece.loose;
+    r->track->steps += piece.taken;
+    r->track->netlists++;
     if (status == DEA_OK) {
         absorb(r, &table, piece.from, to);
     }
@@ -823,6 +848,10 @@ dea_status dea_track_run(const dea_route *route, double fineness, dea_track *tra
     }
     for (size_t i = 0; i < route->pieces->count && status == DEA_OK && track->end == DEA_STATE_OK; i++) {
         status = run_piece(&r, &route->pieces->pieces[i], fineness, error);
+        if (!(work_left(route, track) > 0.0) && r.last.moment.time < route->pieces->pieces[route->pieces->count - 1].to) {
+            track->end = DEA_STATE_FAILED;
+            track->exhausted = true;
+        }
     }
     if (track->reached > 0) {
         settle(&r);

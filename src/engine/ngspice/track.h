@@ -17,6 +17,8 @@ typedef struct dea_track {
     size_t reached;                /* samples before the run ended */
     dea_state end;                 /* why: ok, pull_in, failed */
     double integrals[DEA_WINDOWS]; /* of u over the windows of the scene [m s] */
+    double steps, netlists;        /* of the library, those of steps that collapsed too */
+    bool exhausted;                /* it failed since it took more work than it may */
     bool bounces;                  /* it failed since its steps went through where the film turns back */
     bool vague;                    /* a sample lies in the step in which the film ran away */
     dea_peak peak;                 /* of the current, behind a series resistance */
@@ -46,6 +48,7 @@ typedef struct dea_route {
     double scale;   /* size of a displacement [m] */
     bool peaks; /* the current between samples is known */
     double omega;   /* of the ring [rad/s], 0: none */
+    double most;    /* work of a run, dea_track_work(); 0: no limit */
     double unit;    /* of the times of the scene [1/s] */
     dea_cuts *cuts; /* takes those of a run; NULL: not wanted */
 } dea_route;
@@ -53,6 +56,9 @@ typedef struct dea_route {
 /* Runs the pieces with @p fineness times their steps; the caller frees track->points, also after a failure. A run that ends early
  * is no failure of this call. */
 dea_status dea_track_run(const dea_route *route, double fineness, dea_track *track, dea_error *error);
+
+/* Work, in time steps of a linear network, that so many points in so many netlists take. */
+double dea_track_work(const dea_route *route, double points, double netlists);
 
 /* Film voltage that goes with a state. */
 double dea_route_voltage(const dea_route *route, double source, double u, double charge);

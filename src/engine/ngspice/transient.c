@@ -12,14 +12,13 @@
 #include "network/thin.h"
 #include "result/scales.h"
 
-/* Most work that all runs of a transient may take, in time steps of a linear network, and how much of that other steps and a
- * netlist take. A scene is refused as early as it can be told that it takes more; once so much is spent that a refusal would come
+/* Most work that all runs of a transient may take, in time steps of a linear network. A scene is refused as early as it can be told that it takes more; once so much is spent that a refusal would come
  * late, it gets more. */
 static const double most_work = 5e6;
 static const double late_work = 1e6;
 static const double late_share = 3.0;
-static const double nonlinear_step = 5.0;
-static const double netlist = 300.0, nonlinear_netlist = 500.0;
+static const double bounce_share = 0.4;
+static const double corner_points = 10.0; /* of the library behind a corner in a netlist, whose steps begin short */
 static const double work_time = 6e-6; /* of one processor, roughly [s] */
 
 /* Most runs, those after which a failure is one, and those after which a film that runs away does so at a sample. */
@@ -37,6 +36,7 @@ typedef struct levels {
     dea_track before;       /* extrapolated from the two before: points, integrals and peak only */
     double peak_error;      /* of the answer for the peak of the current [A] */
     size_t runs;
+    double work;     /* of the last one, counted; 0: none yet */
     bool shown;      /* all rows have numbers: the film stays within its frame */
     double error;    /* of the answer: that of the column that is worst against what it promises */
     double displacement;   /* error of displacement and charge */
@@ -291,12 +291,23 @@ static double first_fineness(const dea_scene *scene)
     return fmin(1.0, pow(scene->accuracy / 1e-5, 0.3));
 }
 
-/* Work of a run, in steps of a linear network. */
+/* Work of a run that nothing is known of. */
 static double work_of(const dea_route *route, double fineness)
 {
-    const bool linear = route->dynamics->linear;
-    return (linear ? 1.0 : nonlinear_step) * route->pieces->points / fineness +
-           (linear ? netlist : nonlinear_netlist) * (double)route->pieces->count;
+    const dea_pieces *p = route->pieces;
+    return dea_track_work(route, p->points / fineness + corner_points * p->corners, (double)p->count);
+}
+
+/* Work that a run took. */
+static double counted(const dea_route *route, const dea_track *track)
+{
+    return dea_track_work(route, track->steps, track->netlists);
+}
+
+/* Work of the next run: what it halves are steps, at most all of them. */
+static double next_work(const dea_route *route, const levels *l, double fineness)
+{
+    return l->work > 0.0 ? 2.0 * l->work : work_of(route, fineness);
 }
 
 /* An error as large as the motion says nothing yet of how it falls, [1]. */
@@ -325,18 +336,20 @@ typedef struct bill {
     double work;  /* of all runs, those that were done too */
 } bill;
 
-static bool is_affordable(const bill *b, double spent)
+/* Most work of all runs once so much is spent. Steps that go through the point where a film turns back say that it is steep there, not
+ * that one more run would do: that ends early. */
+static double most_of(const levels *l, double spent)
 {
-    return b->work <= (spent > late_work ? late_share : 1.0) * most_work;
+    return (l->fine.bounces ? bounce_share : spent > late_work ? late_share : 1.0) * most_work;
 }
 
 /* Refuses with what it would take, the limit, and what to do. */
-static dea_status refuse(const bill *b, const char *why, dea_error *error)
+static dea_status refuse(const bill *b, double most, const char *why, dea_error *error)
 {
     return dea_fail(error, DEA_ERROR_ENGINE,
-                    "%s: %.2g time steps of ngspice or more, some %.0f s, at most %.0f s are spent on a run; take --engine ida, a "
+                    "%s: %.2g time steps of ngspice or more, some %.0f s, at most %.0f s are spent on such a run; take --engine ida, a "
                     "looser accuracy or a shorter run",
-                    why, b->steps, b->work * work_time, most_work * work_time);
+                    why, b->steps, b->work * work_time, most * work_time);
 }
 
 /* Why a run takes so many steps before anything of it is known. */
@@ -367,8 +380,8 @@ static dea_status afford(const dea_route *route, const levels *l, double finenes
     const double wanted = wanted_of(route);
     const double runs = least_runs(l, wanted);
     const bill b = {.steps = route->pieces->points / fineness * exp2(runs - 1.0),
-                    .work = spent + work_of(route, fineness) * (exp2(runs) - 1.0)};
-    if (is_affordable(&b, spent) && l->runs <= MOST_LEVELS) {
+                    .work = spent + next_work(route, l, fineness) * (exp2(runs) - 1.0)};
+    if (b.work <= most_of(l, spent) && l->runs <= MOST_LEVELS) {
         return DEA_OK;
     }
     if (l->runs > 1 && l->fine.bounces) {
@@ -383,18 +396,36 @@ static dea_status afford(const dea_route *route, const levels *l, double finenes
     } else {
         explain_length(route, why, sizeof why);
     }
-    return refuse(&b, why, error);
+    return refuse(&b, most_of(l, spent), why, error);
+}
+
+/* Refuses a run that took more work than was thought. */
+static dea_status refuse_exhausted(const dea_route *route, const levels *l, double spent, dea_error *error)
+{
+    char why[200];
+    const dea_track *t = &l->fine;
+    const double until = route->scene->transient.until, share = until / fmax(t->last.time, 1e-3 * until);
+    const bill b = {.steps = share * t->steps, .work = spent + share * l->work};
+    snprintf(why, sizeof why, "its steps get short, at %.3g s of %.3g s %.2g of them were taken", t->last.time / route->unit,
+             until / route->unit, t->steps);
+    return refuse(&b, most_of(l, spent), why, error);
 }
 
 /* One more run, twice as fine as the last; true in *done where the answer is good enough. */
-static dea_status refine_once(const dea_route *route, levels *l, double fineness, dea_summary *summary, bool *done,
+static dea_status refine_once(const dea_route *route, levels *l, double fineness, double spent, dea_summary *summary, bool *done,
                               dea_error *error)
 {
     const double wanted = wanted_of(route);
+    dea_route bounded = *route;
+    bounded.most = (most_of(l, spent) - spent) / (exp2(least_runs(l, wanted)) - 1.0);
     free(l->coarse.points);
     l->coarse = l->fine;
     l->fine = (dea_track){0};
-    const dea_status status = dea_track_run(route, fineness, &l->fine, error);
+    dea_status status = dea_track_run(&bounded, fineness, &l->fine, error);
+    l->work = counted(route, &l->fine);
+    if (status == DEA_OK && l->fine.exhausted) {
+        return refuse_exhausted(route, l, spent, error);
+    }
     if (status == DEA_OK && l->runs > 1) {
         judge(route, l);
         fill_summary(route, l, summary);
@@ -417,7 +448,7 @@ static const double trial_share = 0.2; /* most of the run that a trial is worth 
 /* The begin of the pieces with so many points, in @p pieces, which has room for all; the time that it rings [s]. */
 static double cut_trial(const dea_pieces *all, double points, dea_pieces *begin)
 {
-    begin->points = 0.0;
+    begin->points = begin->corners = 0.0;
     begin->count = 0;
     while (begin->count < all->count && begin->points < points) {
         dea_piece piece = all->pieces[begin->count];
@@ -467,16 +498,16 @@ static dea_status afford_ring(const dea_route *route, levels *l, const dea_pace 
     dea_route trial = *route;
     trial.pieces = &begin;
     dea_status status = try_begin(&trial, fineness, l, error);
-    *spent += work_of(&trial, fineness) + work_of(&trial, 0.5 * fineness);
+    *spent += counted(route, &l->coarse) + counted(route, &l->fine);
     const double expected = l->error * fmax(grows, 1.0);
     const double runs = 2.0 + (isfinite(expected) ? fmax(0.0, ceil(log(expected / trial_doubt / wanted) / log(16.0))) : 0.0);
     const bill b = {.steps = route->pieces->points / fineness * exp2(runs - 1.0),
                     .work = *spent + work_of(route, fineness) * (exp2(runs) - 1.0)};
-    if (status == DEA_OK && !is_affordable(&b, *spent)) {
+    if (status == DEA_OK && b.work > most_of(l, *spent)) {
         char why[200];
         snprintf(why, sizeof why, "the ring of this film would lose a phase of some %.1g at %.2g time steps, the scene wants %g", expected,
                  2.0 * route->pieces->points / fineness, route->scene->accuracy);
-        status = refuse(&b, why, error);
+        status = refuse(&b, most_of(l, *spent), why, error);
     }
     free(begin.pieces);
     l->coarse = l->fine = (dea_track){0};
@@ -498,9 +529,9 @@ static dea_status refine(const dea_route *route, levels *l, const dea_pace *pace
     for (l->runs = 1; status == DEA_OK && !done; l->runs++) {
         status = afford(route, l, fineness, spent, error);
         if (status == DEA_OK) {
-            status = refine_once(route, l, fineness, summary, &done, error);
+            status = refine_once(route, l, fineness, spent, summary, &done, error);
         }
-        spent += work_of(route, fineness);
+        spent += l->work;
         fineness *= 0.5;
     }
     if (status == DEA_OK && l->fine.end == DEA_STATE_FAILED) {
@@ -651,6 +682,7 @@ static dea_status cut_at_limits(dea_route *route, dea_signal *signal, const dea_
     dea_track track;
     dea_route scout = *route;
     scout.cuts = &cuts;
+    scout.most = 0.25 * most_work;
     dea_status status = dea_track_run(&scout, first_fineness(route->scene), &track, error);
     free(track.points);
     if (status == DEA_OK) {

@@ -453,11 +453,11 @@ static void try_series(planner *p)
     }
 }
 
-/* True where a linear film leaves its frame: its rows end there, and their peak is not that of the run. */
+/* True where a film of linear springs leaves its frame: its rows end there, and their peak is not that of the run. */
 static bool leaves_frame(const planner *p)
 {
     const dea_dynamics *d = &p->surrogate.dynamics;
-    for (size_t k = 0; d->linear && k < p->surrogate.count; k++) {
+    for (size_t k = 0; !d->framed && k < p->surrogate.count; k++) {
         const double u = p->now.u[k];
         if (!(u > -d->radius && u < d->point.frame_radius - d->radius)) {
             return true;

@@ -193,8 +193,8 @@ dea_status dea_dynamics_settle(const dea_scene *scene, const dea_model *model, d
     if (status != DEA_OK) {
         return status;
     }
-    d->framed = !model->linear || scene->electrode.law;
-    d->linear = !d->framed && !dea_point_is_loaded(&d->point);
+    d->framed = !model->linear;
+    d->linear = !d->framed && !scene->electrode.law && !dea_point_is_loaded(&d->point);
     if (dea_point_is_pulled(&d->point) && !dea_dynamics_equilibrium(d, 0.0, &d->rest)) {
         d->rest = (double)NAN;
     }

@@ -45,7 +45,7 @@ typedef struct dea_dynamics {
     double radius;                         /* r_a [m] */
     double focal_length, refractive_index; /* NAN: no optics */
     bool linear;                           /* one stress K u on the lever 1, without G, as without a skin and a load, as without a skin */
-    bool framed;                           /* its stresses end at centre and frame: those of a hyperelastic film or skin */
+    bool framed;                           /* its stresses end at centre and frame: those of a hyperelastic film; linear models have a linear skin */
     dea_tape tape;                         /* owned: G, phi, C, then S_a and B_a in turn */
     double seen;                           /* u that the tape has its values at [m] */
     dea_balance balance;                   /* owned: rows */

@@ -497,6 +497,35 @@ static const struct {
      "model: lumped\n"
      "study:\n"
      "  transient: {until: 0.056591590827551677 s, every: 0.00066578342150060794 s, start: rest}\n"},
+    /* the same with a skin, which is linear there too, from one piece of the drive to the next */
+    {DEA_STATE_PULL_IN, 6, 0,
+     "electrode:\n"
+     "  thickness: 1.9832249815626091e-05 m\n"
+     "  neo_hookean: {mu: 566318.21916923544 Pa}\n"
+     "actuator:\n"
+     "  kind: dot\n"
+     "  frame_radius: 0.004413926315819142 m\n"
+     "  coverage: 0.084817129429761134\n"
+     "  film_thickness: 6.6234676056411106e-05 m\n"
+     "  prestretch: 1.22125332536187\n"
+     "  electrode_mass: 0.010733926729787836 kg/m^2\n"
+     "material:\n"
+     "  yeoh: {C1: 520440.09042306879 Pa, C2: 0 Pa, C3: 7111.7191939741124 Pa}\n"
+     "  permittivity: {constant: 6.9621053656911132, per_stretch: 0}\n"
+     "  density: 1129.1523467054146 kg/m^3\n"
+     "  breakdown: 102649390.97226955 V/m\n"
+     "drive:\n"
+     "  waveform:\n"
+     "    points:\n"
+     "      - [5.2797971806180547e-05 s, -3835.0734089287312 V]\n"
+     "      - [0.00010756872638330849 s, 5947.1398630614021 V]\n"
+     "      - [0.00016322762470594298 s, 13903.462613918171 V]\n"
+     "      - [0.00027653808810380577 s, -4748.9312950955873 V]\n"
+     "      - [0.00033934882180650913 s, 11487.318618284011 V]\n"
+     "    period: 0.00050513880770683341 s\n"
+     "model: lumped\n"
+     "study:\n"
+     "  transient: {until: 0.0029463391615154079 s, every: 5.2613199312775139e-05 s, start: rest, average: [{from: 0.00043853278426364675 s, to: 0.0005091316704069704 s}, {from: 0 s, to: 0.0029463391615154079 s}]}\n"},
     /* a film that follows its voltage at once while its branches have not: what they hold counts where levers turn with the film */
     {DEA_STATE_OK, 4, 0,
      "actuator:\n"

@@ -425,6 +425,25 @@ static void two_membranes_are_shaken_as_they_rest_and_move(void **state)
     assert_near(cabs(moved / (-3.0 * I) - per_volt), 0.0, 2e-4 * cabs(per_volt));
 }
 
+/* Those in which both move alike are modes of one film, of the double mass; between them lie those that leave the edge at rest. */
+static void two_like_membranes_have_the_modes_of_one(void **state)
+{
+    (void)state;
+    const char *alone = FILM("dot") ", retardation: 50 us}\nstudy: {modes: {count: 2, bias: 2 kV}}\n";
+    const char *both = FILM("dot") ", retardation: 50 us}\nantagonist: {actuator: {kind: dot}, drive: {voltage: 2 kV}}\n"
+                       "study: {modes: {count: 3, bias: 2 kV}}\n";
+    assert_true(run(alone, "field", "direct", &one));
+    assert_true(run(both, "field", "direct", &other));
+    const dea_mode *single = (const dea_mode *)one.bytes, *pair = (const dea_mode *)other.bytes;
+    assert_true(pair[1].frequency > single[0].frequency && pair[1].frequency < single[1].frequency && pair[1].edge_share < 1e-20);
+    for (size_t k = 0; k < 2; k++) {
+        assert_relative(pair[2 * k].frequency, single[k].frequency, 1e-6);
+        assert_relative(pair[2 * k].damping_ratio, single[k].damping_ratio, 1e-5);
+        assert_relative(pair[2 * k].edge_share, single[k].edge_share, 1e-5);
+        assert_relative(pair[2 * k].edge_mass, 2.0 * single[k].edge_mass, 1e-5);
+    }
+}
+
 static void a_membrane_under_a_load_keeps_its_energy(void **state)
 {
     (void)state;
@@ -508,6 +527,7 @@ int main(void)
         cmocka_unit_test(a_linear_film_swings_as_mass_spring_and_damper),
         cmocka_unit_test(energy_is_kept_with_loads_and_two_films),
         cmocka_unit_test(two_membranes_are_shaken_as_they_rest_and_move),
+        cmocka_unit_test(two_like_membranes_have_the_modes_of_one),
         cmocka_unit_test(a_membrane_under_a_load_keeps_its_energy),
         cmocka_unit_test(a_damper_lags_a_shaken_film),
         cmocka_unit_test(a_slowly_shaken_film_follows_its_statics_under_a_force),

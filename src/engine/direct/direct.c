@@ -18,11 +18,7 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
     if (!model->solve) {
         return "it has no equation of its own";
     }
-    const dea_study *study = dea_study_of(scene);
-    if (model->membrane && scene->antagonist.there && study->along && !study->still && !study->phasors) {
-        return "its moving membrane has no second film";
-    }
-    const char *why = study->timed ? dea_direct_refuses_transient(scene, model) : NULL;
+    const char *why = dea_study_of(scene)->timed ? dea_direct_refuses_transient(scene, model) : NULL;
     if (why) {
         return why;
     }

@@ -5,7 +5,8 @@
  *
  *   D(s) x = 0,   D = s^2 M + K + (tau_KV s + sum_i c_i s tau_i/(1 + s tau_i)) V + (2 U)^2/C s/(s + q) phi phi^T,
  *
- * V = sum of the slopes of the Cauchy stresses on their levers, phi = (1/2) dC/du, q = (1/R_s + 1/R_p)/C. In the coordinates of
+ * V = sum of the slopes of the Cauchy stresses on their levers, phi = (1/2) dC/du, q = (1/R_s + 1/R_p)/C; dampers of a load and of
+ * a second film add s times theirs. In the coordinates of
  * the undamped modes M is 1 and K diagonal; each root is followed from +i w as V and phi phi^T grow from nothing. The mesh is refined
  * until no number moves by more than the accuracy. A film with one node has one mode, in the shape of Lame that its mass has. */
 #include "engine/direct/direct.h"
@@ -32,6 +33,7 @@ typedef struct film {
     double w[DEA_RINGS_NODES];    /* [rad/s] */
     double shapes[DEA_RINGS_NODES * DEA_RINGS_NODES];  /* mode after mode [kg^-1/2] */
     double viscous[DEA_RINGS_NODES * DEA_RINGS_NODES]; /* V in modal coordinates [1/s^2] */
+    double beside[DEA_RINGS_NODES * DEA_RINGS_NODES];  /* damper of the second film likewise [1/s] */
     double push[DEA_RINGS_NODES];                      /* phi likewise [N/V^2/kg^1/2] */
     double charge_gain, charge_rate;                   /* (2 U)^2/C [V^2/F], q [1/s]; 0: the voltage holds */
     bool damped;
@@ -72,6 +74,10 @@ static void set_losses(film *f, const dea_membrane_look *look)
     double push[DEA_RINGS_NODES];
     dea_membrane_stiffness(&f->membrane, look, f->voltage, NULL, 1.0, f->viscous);
     to_modal(f, f->viscous);
+    if (f->membrane.second.retardation > 0.0) {
+        dea_membrane_damp_second(&f->membrane, look, 1.0, f->beside);
+        to_modal(f, f->beside);
+    }
     dea_membrane_push(&f->membrane, look, push);
     for (size_t k = 0; k < n; k++) {
         f->viscous[k * n + k] -= f->w[k] * f->w[k]; /* K went into it too */
@@ -84,7 +90,7 @@ static void set_losses(film *f, const dea_membrane_look *look)
         f->charge_gain = 4.0 * f->voltage * f->voltage / look->capacitance;
         f->charge_rate = (1.0 / d->series + d->conductance) / look->capacitance;
     }
-    f->damped = dea_dynamics_is_damped(d) || d->branch_count > 0 || f->charge_gain > 0.0;
+    f->damped = dea_dynamics_is_damped(d) || d->branch_count > 0 || f->charge_gain > 0.0 || f->membrane.second.retardation > 0.0;
 }
 
 /* Degree of an element that takes that share of the radius: many nodes close together cost the slow modes their digits. */
@@ -158,7 +164,7 @@ static double newton_round(const film *f, size_t k, double grown, double complex
     memset(b, 0, m * sizeof *b);
     for (size_t j = 0; j < n; j++) {
         for (size_t i = 0; i < n; i++) {
-            const double drag = grown * d->damping * f->shapes[i * n + edge] * f->shapes[j * n + edge];
+            const double drag = grown * (d->damping * f->shapes[i * n + edge] * f->shapes[j * n + edge] + f->beside[j * n + i]);
             const double complex at = share * f->viscous[j * n + i] + gain * f->push[i] * f->push[j] + drag * *s +
                                       (i == j ? *s * *s + f->w[i] * f->w[i] : 0.0);
             a[j * m + i] = at;

@@ -519,6 +519,10 @@ static double jump_of_held(const membrane *m, double edge)
     enum { MOST = 60 };
     double d0 = 0.0, d = 2.0 * edge / (1.0 - m->point->coverage * m->point->coverage);
     double miss0 = miss_from(m, edge, d0, NULL);
+    if (isnan(miss0)) { /* alike stretches at the edge can be past the end of the film where those of Lame's solution are not */
+        d0 = 0.99 * d;
+        miss0 = miss_from(m, edge, d0, NULL);
+    }
     for (int i = 0; i < MOST && d != d0; i++) {
         const double miss = miss_from(m, edge, d, NULL);
         if (isnan(miss)) { /* past the end of the film */

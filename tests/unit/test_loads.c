@@ -202,6 +202,25 @@ static void a_held_edge_feels_what_film_and_voltage_exert(void **state)
     }
 }
 
+/* A soft film under a voltage that wrinkles its annulus is far from Lame's, from whose answer the searches of both engines begin; at the
+ * last place alike stretches on both sides of the edge, the other place of a secant, would have lost their stiffness. */
+static void a_soft_lens_is_held_far_from_rest(void **state)
+{
+    (void)state;
+    enum { PLACES = 4 };
+    const film f = {false, 4e-3L, 0.25L, 300e-6L, 1.25L, 3000.0L, {1500.0L, 0.0L, 0.0L}};
+    for (size_t e = 0; e < ENGINES; e++) {
+        if (run("actuator: {kind: lens, frame_radius: 4 mm, coverage: 0.25, film_thickness: 300 um, prestretch: 1.25}\n"
+                "material: {yeoh: {C1: 1500 Pa, C2: 0 Pa, C3: 0 Pa}, permittivity: 2.8}\ndrive: {voltage: 3 kV}\n"
+                "study: {force: {displacement: {from: -0.2 mm, to: 0.1 mm, points: 4}}}\n",
+                "field", engines[e], &one)) {
+            for (int i = 0; i < PLACES; i++) {
+                assert_near(rows_of(&one)[i].force, (double)field(&f, -0.2e-3L + 0.1e-3L * (real)i), 1e-11);
+            }
+        }
+    }
+}
+
 /* At displacement 0 a film pushes with the force of its voltage alone; where it rests it pushes with none. */
 static void the_curve_of_forces_ends_where_the_free_film_rests(void **state)
 {
@@ -517,6 +536,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_held_edge_feels_what_film_and_voltage_exert),
+        cmocka_unit_test(a_soft_lens_is_held_far_from_rest),
         cmocka_unit_test(the_curve_of_forces_ends_where_the_free_film_rests),
         cmocka_unit_test(a_film_under_a_force_rests_where_forces_balance),
         cmocka_unit_test(antagonists_rest_where_their_forces_balance),

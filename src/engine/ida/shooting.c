@@ -31,6 +31,7 @@ static const double nearly = 0.1;
 typedef struct limits {
     double x;
     double stress;                /* smaller in-plane nominal stress [Pa] */
+    double s11;                   /* its radial stiffness [Pa] */
     double hoop, hoop_slope;      /* [Pa] */
     double area, area_slope;      /* lambda_1 lambda_2 [1] */
 } limits;
@@ -59,6 +60,7 @@ struct dea_shooting {
     double strain;          /* scale of d1, d2 [1] */
     double tolerance;
     double least_stress; /* of the last integration [Pa] */
+    double least_s11;    /* and there: without it no such film is stable [Pa] */
     double largest_area; /* largest lambda_1 lambda_2 of the electroded region [1] */
     double edge_force;   /* lambda_1 lambda_2^2 of the electroded side at r_a, over k its stress [1] */
     double radial;       /* lambda_1 behind r_a [1] */
@@ -159,6 +161,7 @@ static limits limits_at(const dea_shooting *s, double x)
     const double hoop = stress.p2 - k * l2 * l1 * l1;
     return (limits){.x = x,
                     .stress = fmin(stress.p1 - k * l1 * l2 * l2, hoop),
+                    .s11 = stress.w11 - k_slope * l2 * l2,
                     .hoop = hoop,
                     .hoop_slope = (stress.w12 - (k + k_slope) * l1 * l2) * l1_slope + (stress.w22 - k_slope * l1 * l1) * l2_slope,
                     .area = l1 * l2,
@@ -188,6 +191,7 @@ static void note(dea_shooting *s, double x)
     const double width = to.x - from.x;
     s->limits = to;
     s->least_stress = fmin(s->least_stress, to.stress);
+    s->least_s11 = fmin(s->least_s11, to.s11);
     s->least_stress = fmin(s->least_stress, -largest_between(width, -from.hoop, -from.hoop_slope, -to.hoop, -to.hoop_slope));
     if (s->annulus_k > 0.0) {
         s->largest_area = fmax(s->largest_area, largest_between(width, from.area, from.area_slope, to.area, to.area_slope));
@@ -266,6 +270,7 @@ static bool start(dea_shooting *s, double edge)
     s->least_stress = stress_at(s, DISC, l, l).p1 - disc_pull(s, l);
     s->largest_area = s->point->kind == DEA_LENS ? s->radial * l : l * l;
     s->edge_force = dea_film_electric(&s->point->film, s->largest_area).first * s->largest_area * l;
+    s->least_s11 = INFINITY;
     s->charge = 0.0;
     s->end = panel_at(s, 0.0);
     s->limits = limits_at(s, 0.0);
@@ -559,19 +564,45 @@ static dea_found found_at(const dea_shooting *s, double edge)
                        .taut = s->least_stress > 0.0};
 }
 
+/* What must pull at an edge that is held under a share of the load, from a guess [Pa]; NAN where KINSOL does not settle. */
+static double pull_at(dea_shooting *s, double share, double edge, double guess)
+{
+    s->strain = fabs(edge);
+    s->stress = s->point->film.w11 * s->strain;
+    s->held = edge;
+    set_load(s, share);
+    s->uniform = s->annulus_k * dea_point_electric(s->point).first;
+    return edge != 0.0 ? search_from(s, SEARCH_PULL, guess / s->stress) * s->stress : 0.0;
+}
+
+/* The same without a guess. Lame's film is a poor one where the voltage softens the film or the law stiffens it: the way then goes from
+ * rest, where it is exact, to there, edge and load in one proportion, and each place tells where the next one lies. */
+static double find_pull(dea_shooting *s, double share, double edge)
+{
+    const double least = 1.0 / 64.0; /* steps of the way: a film that is not found so is past its end */
+    const double linear = lame_stiffness(s->point) * edge;
+    double pull = pull_at(s, share, edge, linear);
+    double at = 0.0, ratio = linear, slope = 0.0; /* pull over its share of the way, and the slope of that */
+    for (double step = 0.5; isnan(pull) && step >= least;) {
+        const double next = fmin(1.0, at + step);
+        const double here = pull_at(s, next * share, next * edge, next * (ratio + slope * (next - at)));
+        if (isnan(here)) {
+            step *= 0.5;
+            continue;
+        }
+        slope = (here / next - ratio) / (next - at);
+        ratio = here / next;
+        at = next;
+        pull = next < 1.0 ? pull : here;
+    }
+    return pull;
+}
+
 /* What the film exerts on an edge that is held under a share of the load, outward [N]. At rest it is uniform. */
 static double force_on_edge(dea_shooting *s, double share, double edge)
 {
     const double l = s->point->film.prestretch;
-    s->strain = fabs(edge);
-    s->stress = s->point->film.w11 * s->strain;
-    s->held = edge;
-    s->pull = 0.0;
-    set_load(s, share);
-    s->uniform = s->annulus_k * dea_point_electric(s->point).first;
-    if (edge != 0.0) {
-        s->pull = search_from(s, SEARCH_PULL, lame_stiffness(s->point) * edge / s->stress) * s->stress;
-    }
+    s->pull = find_pull(s, share, edge);
     return -lever_of(s->point) * (s->pull + s->uniform * l * l * l);
 }
 
@@ -612,7 +643,7 @@ static bool hold_once(dea_shooting *s, const dea_point *point, double strain, de
     s->strain = edge != 0.0 ? fabs(edge) : step;
     s->stress = s->point->film.w11 * s->strain;
     const bool sloped = isfinite(hold->held_slope) && isfinite(hold->push_slope);
-    const bool there = sloped && isfinite(hold->held) && isfinite(hold->push) && !isnan(miss_at_frame(s, edge));
+    const bool there = sloped && isfinite(hold->held) && isfinite(hold->push) && !isnan(miss_at_frame(s, edge)) && s->least_s11 > 0.0;
     if (there) {
         hold->found = found_at(s, edge);
         hold->found.capacitance = edge == 0.0 ? dea_point_capacitance(point) : hold->found.capacitance; /* IDA has no steps to sum over */

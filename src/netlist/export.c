@@ -40,6 +40,10 @@ static dea_status refuse_models(const dea_scene *scene, dea_error *error)
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s at rest is a netlist with springs at its edge alone, no force and no second "
                                                       "film: --model ring has them", scene->models[0]->name);
     }
+    if (scene->models[0]->membrane && !still && scene->antagonist.there) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s with a second film that moves is no netlist: --as subckt has both films, "
+                                                      "--model ring is one", scene->models[0]->name);
+    }
     if (!scene->models[0]->network && !scene->models[0]->membrane) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s is not a network: --model lumped is one",
                         scene->models[0]->name);

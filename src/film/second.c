@@ -46,6 +46,11 @@ void dea_second_scene(const dea_scene *scene, dea_scene *second)
     }
 }
 
+bool dea_second_relaxes(const dea_scene *scene)
+{
+    return scene->antagonist.there && !scene->antagonist.own_material && (scene->material.prony_count > 0 || !isnan(scene->material.retardation));
+}
+
 bool dea_second_axis(const dea_scene *scene, const dea_axis *axis, dea_axis *second)
 {
     const size_t material = offsetof(dea_scene, material), end = material + sizeof scene->material;

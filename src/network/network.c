@@ -388,13 +388,14 @@ static void place_edge(const dea_symbols *symbols, dea_network *network)
     network->breakdown = symbols->breakdown;
 }
 
-/* An element of the second film: its springs are elastic beside those of the first, what its voltage does is steady. */
-static dea_element as_second(dea_pool *pool, const dea_network *second, dea_element element)
+/* An element of the second film: its springs relax as those of the first or are elastic beside them, what its voltage does is steady. */
+static dea_element as_second(const dea_symbols *symbols, const dea_network *second, dea_element element)
 {
+    dea_pool *pool = symbols->pool;
     element.second = true;
-    if (element.role == DEA_ROLE_SPRING) {
+    if (element.role == DEA_ROLE_SPRING && !symbols->relaxes) {
         element.role = DEA_ROLE_BESIDE;
-    } else if (element.role == DEA_ROLE_HYPERELASTIC) {
+    } else if (element.role == DEA_ROLE_HYPERELASTIC && !symbols->relaxes) {
         element.role = DEA_ROLE_TENSION;
         element.value = MUL(element.lever, element.value);
     } else if (element.role == DEA_ROLE_SOFTENING) {
@@ -413,7 +414,7 @@ static void add_second(const dea_symbols *symbols, const dea_model *model, dea_n
     place_edge(symbols, &second);
     model->network(symbols, &second);
     for (int i = 0; i < second.element_count; i++) {
-        add_element(network, as_second(&network->pool, &second, second.elements[i]));
+        add_element(network, as_second(symbols, &second, second.elements[i]));
     }
     for (int i = 0; i < second.tension_count; i++) {
         dea_network_taut(network, second.tension[i]);
@@ -558,6 +559,7 @@ static dea_symbols second_symbols(const dea_scene *scene, const dea_axis *axis, 
         lift_all(quantities, &second, "second_", given(first->pool, scalar(first->pool, &other, own, &other.material.modulus)));
     }
     second.loaded = true;
+    second.relaxes = dea_second_relaxes(scene);
     return second;
 }
 
@@ -614,10 +616,10 @@ static dea_expr sum_of(dea_network *network, dea_role role)
 int dea_network_stresses(dea_network *network, dea_network_stress *stresses)
 {
     dea_pool *pool = &network->pool;
-    int count = 0;
+    int count = 0, own = 0; /* levers of two films may be equal as numbers and are not as formulas: they are counted apart */
     for (int i = 0; i < network->element_count; i++) {
         const dea_element *element = &network->elements[i];
-        int k = 0;
+        int k = element->second ? own : 0;
         while (k < count && stresses[k].lever != element->lever) {
             k++;
         }
@@ -628,6 +630,7 @@ int dea_network_stresses(dea_network *network, dea_network_stress *stresses)
         } else if (element->role == DEA_ROLE_HYPERELASTIC) {
             pool->exhausted = true; /* a network that holds more is not built */
         }
+        own = element->second ? own : count;
     }
     if (count == 0) {
         stresses[count++] = (dea_network_stress){MUL(sum_of(network, DEA_ROLE_SPRING), network->edge), NUM(1.0)};

@@ -8,8 +8,8 @@
 #include "deaspice/model.h"
 #include "expression/tape.h"
 
-/* Most levers of a film. */
-enum { DEA_NETWORK_STRESSES = 3 };
+/* Most levers of a film, of two of them. */
+enum { DEA_NETWORK_STRESSES = 2 * 3 };
 
 /* What a model's network is built from: numbers, or expressions of symbol 0 where the swept scalar enters. */
 typedef struct dea_symbols {
@@ -33,6 +33,7 @@ typedef struct dea_symbols {
     dea_expr loads[DEA_LOADS];                  /* its numbers */
     bool loaded;                   /* the film is not alone with its edge */
     const struct dea_symbols *second; /* of the other film on the edge, NULL: there is none */
+    bool relaxes;                  /* damper and branches of the first film are those of the second too */
     dea_expr voltage;              /* across the film [V] */
     dea_expr focal_length;         /* of a lens at rest [m], NAN: no optics */
     dea_expr refractive_index;     /* of its liquid [1] */

@@ -88,20 +88,22 @@ static dea_status sweep_check(dea_reader *reader)
     return DEA_OK;
 }
 
-/* Branches follow the first film, and so does the damper of models of one node. A membrane's inner nodes all have mass, or none has. */
+/* Branches follow the first film, and so does the damper of models of one node: they are the second's where its material is. A membrane's
+ * inner nodes all have mass, or none has. */
 static dea_status motion_check(dea_reader *reader)
 {
     const dea_scene *scene = reader->scene;
-    const dea_material *material = scene->antagonist.own_material ? &scene->antagonist.material : &scene->material;
+    const bool own = scene->antagonist.own_material;
+    const dea_material *material = own ? &scene->antagonist.material : &scene->material;
     const dea_study *study = dea_study_of(scene);
     const bool damped = !isnan(material->retardation), alike = isnan(material->density) == isnan(scene->material.density);
     const dea_place *place = &dea_tree_child(reader->root, "antagonist")->place;
     for (size_t i = 0; i < scene->model_count && study->along && !study->still; i++) {
         const bool membrane = scene->models[i]->membrane;
-        if (material->prony_count > 0 || (damped && !membrane)) {
+        if (membrane ? material->prony_count > 0 : own && (material->prony_count > 0 || damped)) {
             return dea_place_fail(place, reader->error, "antagonist.material",
                                   "relaxes beside a %s of the model %s; accepted there: a material without %s, or a static study",
-                                  study->title, scene->models[i]->name, membrane ? "prony" : "prony and retardation");
+                                  study->title, scene->models[i]->name, membrane ? "prony" : "prony and retardation, or none of its own");
         }
         if (membrane && !alike) {
             return dea_place_fail(place, reader->error, "antagonist.material.density",

@@ -79,6 +79,13 @@ static void pair(dea_scene *scene)
     scene->antagonist.material.density = 1000.0;
 }
 
+/* A second film of the same material, which damps and relaxes as the first. */
+static void twin(dea_scene *scene)
+{
+    pair(scene);
+    scene->antagonist.own_material = false;
+}
+
 /* The name of the part of a scene: of the library, or of its own one, which is written. */
 static const char *name_part(FILE *file, const dea_scene *scene, const struct kind *kind, char own[16])
 {
@@ -310,6 +317,7 @@ static void coated_films_and_pairs_of_films_move_as_in_the_engine_ida(void **sta
     (void)state;
     compare_motions(coat);
     compare_motions(pair);
+    compare_motions(twin);
 }
 
 /* Displacement and current per volt about 3 kV, through the series resistance. */
@@ -358,6 +366,7 @@ static void responses_are_those_of_the_linearised_equations(void **state)
     compare_responses(NULL);
     compare_responses(coat);
     compare_responses(pair);
+    compare_responses(twin);
 }
 
 /* A spring of the library, and its stiffness, beside a part: K u + k u = phi U^2. */

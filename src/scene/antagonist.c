@@ -99,11 +99,12 @@ static dea_status motion_check(dea_reader *reader)
     const bool damped = !isnan(material->retardation), alike = isnan(material->density) == isnan(scene->material.density);
     const dea_place *place = &dea_tree_child(reader->root, "antagonist")->place;
     for (size_t i = 0; i < scene->model_count && study->along && !study->still; i++) {
-        const bool membrane = scene->models[i]->membrane;
-        if (membrane ? material->prony_count > 0 : own && (material->prony_count > 0 || damped)) {
+        const bool membrane = scene->models[i]->membrane, node = !membrane || scene->automatic; /* which may become one of one node */
+        if ((membrane && material->prony_count > 0) || (node && own && (material->prony_count > 0 || damped))) {
             return dea_place_fail(place, reader->error, "antagonist.material",
                                   "relaxes beside a %s of the model %s; accepted there: a material without %s, or a static study",
-                                  study->title, scene->models[i]->name, membrane ? "prony" : "prony and retardation, or none of its own");
+                                  study->title, scene->automatic ? "auto" : scene->models[i]->name,
+                                  node ? "prony and retardation, or none of its own" : "prony");
         }
         if (membrane && !alike) {
             return dea_place_fail(place, reader->error, "antagonist.material.density",

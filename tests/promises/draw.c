@@ -166,6 +166,7 @@ static void draw_temperature(uint64_t *seed, dea_material *m)
     const double reference = random_between(seed, 270.0, 320.0), rise = random_between(seed, -30.0, 60.0);
     const bool stiffens = random_chance(seed, 0.5), shifts = random_chance(seed, 0.5);
     m->temperature = reference + rise;
+    m->shift.count = 0; /* a table drawn before need not reach there */
     if (stiffens || !shifts) {
         m->modulus_slope = random_between(seed, -2e-3, 4e-3);
         m->modulus_reference = reference;

@@ -638,6 +638,22 @@ static const struct {
      "model: lumped\nstudy: {transient: {until: 5000 s, every: 1250 s}}\n"},
 };
 
+static void moving_films_that_are_drawn_are_valid_scenes(void **state)
+{
+    (void)state;
+    for (size_t number = 0; number < 150; number++) {
+        char *text = draw_moving_film(4151473991, number);
+        dea_scene scene;
+        dea_error error = {0};
+        assert_non_null(text);
+        if (dea_scene_parse(text, strlen(text), "draw", ".", NULL, 0, NULL, &scene, &error) != DEA_OK) {
+            fail_msg("%s", error.message);
+        }
+        dea_scene_free(&scene);
+        free(text);
+    }
+}
+
 /* Of all laws, no rise shorter than edges can be. */
 static void draws_are_valid_scenes_of_all_laws(void **state)
 {
@@ -752,6 +768,7 @@ int main(void)
         cmocka_unit_test(a_mean_that_is_off_is_found),
         cmocka_unit_test(no_film_is_pulled_in_where_meshes_alone_fold),
         cmocka_unit_test(draws_are_valid_scenes_of_all_laws),
+        cmocka_unit_test(moving_films_that_are_drawn_are_valid_scenes),
         cmocka_unit_test(engines_keep_the_promises_that_were_broken),
         cmocka_unit_test(engines_keep_their_promises_on_random_scenes),
     };

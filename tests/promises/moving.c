@@ -309,7 +309,7 @@ static bool jump(motion *m, state *s, long double to)
     const true_film *f = &m->film;
     const long double from = s->w * s->w, change = to * to - from;
     for (int i = 1; i <= PARTS; i++) {
-        const long double load = from + change * i / PARTS;
+        const long double load = i < PARTS ? from + change * i / PARTS : to * to; /* no sum: its rounding may be negative */
         long double step = (long double)INFINITY;
         s->w = sqrtl(load);
         for (int k = 0; k < 30 && fabsl(step) > 1e-19L * m->size[0]; k++) {

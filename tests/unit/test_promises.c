@@ -746,11 +746,29 @@ static void a_window_ends_with_a_run_that_rounds(void **state)
     judge_close(&j);
 }
 
+/* A film that follows its voltage jumps with it, to 0 V too, whatever the rounding of the square between. */
+static void a_film_that_follows_its_voltage_is_let_go_of(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 200; i++) {
+        dea_scene scene = ringing((double)NAN);
+        scene.material.density = (double)NAN;
+        scene.drive.waveform = (dea_waveform){.kind = DEA_WAVE_STEP,
+                                              .step = {.on = 0.01, .off = 0.03, .voltage = 1000.0 + 7.77 * i, .rise = 0.0},
+                                              .period = (double)NAN};
+        true_run run = moving_truth(&scene, scene.models[0], 1.0);
+        assert_null(run.why);
+        assert_int_equal(run.good, run.count);
+        true_run_free(&run);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mean_of_a_film_that_follows_its_voltage_is_that_of_its_square),
         cmocka_unit_test(a_window_ends_with_a_run_that_rounds),
+        cmocka_unit_test(a_film_that_follows_its_voltage_is_let_go_of),
         cmocka_unit_test(the_truth_of_a_ring_is_its_closed_form),
         cmocka_unit_test(the_truth_of_a_slow_film_ends_at_rest),
         cmocka_unit_test(static_truths_are_the_reference_numbers),

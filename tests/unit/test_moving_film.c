@@ -259,6 +259,45 @@ static void a_film_that_hardly_charges_keeps_its_digits(void **state)
     }
 }
 
+/* A branch of less than a millisecond under what takes hours hardly changes u': it is one damper more. Told by (S - z)/tau, what it leaves of
+ * u' is rounding. Without it the others have g/(1 - g_fast), so that c = g/(1 - sum g) stays. */
+static void a_velocity_behind_a_slow_charge_keeps_its_promise(void **state)
+{
+    (void)state;
+    static const double g[] = {0.08, 0.05, 0.1}, tau[] = {580.0, 1.6e5, 12.0}, fast = 0.05;
+    static const double fastest[] = {1e-4, 4e-6, 1e-7, 1e-9}, accuracies[] = {1e-3, 1e-6, 1e-8};
+    dea_scene scene = moving_scene("lumped", DEA_LENS, 28504.0, 0.0);
+    scene.material.instantaneous = false;
+    scene.drive.series_resistance = 1e14;
+    scene.drive.waveform.kind = DEA_WAVE_SINE;
+    scene.drive.waveform.sine = (dea_sine){.offset = 4000.0, .amplitude = 2000.0, .frequency = 5.68e-5, .phase = 1.3};
+    scene.material.prony_count = 3;
+    for (size_t i = 0; i < 3; i++) {
+        scene.material.prony[i] = (dea_prony){.g = g[i] / (1.0 - fast), .tau = tau[i]};
+    }
+    scene.accuracy = 1e-9;
+    fly_by("ida", &scene, &other);
+    double peak = 0.0;
+    for (size_t i = 0; i < other.count; i++) {
+        peak = fmax(peak, fabs(other.samples[i].velocity));
+    }
+    for (size_t i = 0; i < 3; i++) {
+        scene.material.prony[i].g = g[i];
+    }
+    scene.material.prony_count = 4;
+    for (int k = 0; k < 12; k++) {
+        scene.material.prony[3] = (dea_prony){.g = fast, .tau = fastest[k / 3]};
+        scene.accuracy = accuracies[k % 3];
+        fly(&scene);
+        assert_int_equal(good_rows(&last), last.count);
+        assert_true(last.summary.velocity_error <= 10.0 * scene.accuracy);
+        for (size_t i = 0; i < last.count; i++) {
+            const double told = last.summary.velocity_error + other.summary.velocity_error;
+            assert_near(last.samples[i].velocity, other.samples[i].velocity, told * peak);
+        }
+    }
+}
+
 static void a_ring_of_too_many_steps_says_so(void **state)
 {
     (void)state;
@@ -595,6 +634,7 @@ int main(void)
         cmocka_unit_test(one_branch_creeps_as_its_closed_form),
         cmocka_unit_test(a_stiff_film_charges_through_its_resistance),
         cmocka_unit_test(a_film_that_hardly_charges_keeps_its_digits),
+        cmocka_unit_test(a_velocity_behind_a_slow_charge_keeps_its_promise),
         cmocka_unit_test(a_ring_of_too_many_steps_says_so),
         cmocka_unit_test(a_film_that_bounces_keeps_its_accuracy),
         cmocka_unit_test(a_film_that_pulls_in_keeps_the_rows_before),

@@ -100,13 +100,28 @@ static void take_current(const dea_flight *flight, double time, dea_turn turn, c
     moment->charge_slope = (y[motion->q] - (swing->turns ? swing->center[motion->q] : 0.0)) * motion->size[motion->q];
 }
 
-/* Where a damper alone sets the velocity, the force that drives it is a small difference: IDA's own slope of u is the better
- * number. */
+/* Steps, in the times of what relaxes and charges, from which on (S - z)/tau has lost the digits of u': an error of u grows in it by
+ * 1/tau, in the slope of steps h by 1/h. Below, it has more: Newton's method leaves it less than a step leaves u. */
+static const double stiff_step = 1e3;
+
+/* True where IDA's own slope of u is the better number: where a damper alone sets the velocity, the force that drives it is a small
+ * difference; where branches and charge do, what is left of them behind a long step. */
+static bool slope_is_better(const dea_flight *flight)
+{
+    const dea_motion *motion = &flight->motion;
+    double step = 0.0;
+    if (motion->v >= 0 || (motion->algebraic && motion->count == 1)) {
+        return false;
+    }
+    (void)flight->integrator.sun->IDAGetLastStep(flight->integrator.ida, &step);
+    return !motion->algebraic || step * motion->pace > stiff_step;
+}
+
 static void take_velocity(const dea_flight *flight, double time, dea_moment *moment)
 {
     const dea_motion *motion = &flight->motion;
     const bool thinned = motion->segment->terms && moment == &flight->trace->moments[flight->trace->count - 1];
-    const double *slope = motion->v < 0 && !motion->algebraic && !thinned ? unknowns_at(flight, time, 1) : NULL;
+    const double *slope = !thinned && slope_is_better(flight) ? unknowns_at(flight, time, 1) : NULL;
     if (slope) {
         moment->v = slope[0] * motion->size[0];
     }

@@ -16,6 +16,7 @@ typedef struct parties {
     double base, toward;     /* strain from which the way begins, and the sign in which it goes */
     double begin;            /* what grows there, outward [N] */
     bool driven;             /* what grows is the voltage of the film; else force and second film */
+    bool *lost;              /* borrowed: set where a place was asked for at which the films hold no edge */
 } parties;
 
 /* Forces on the edge, those of rest inward, and their slopes over u. */
@@ -31,6 +32,7 @@ static bool look(const parties *p, double strain, bool plain, edge_forces *f)
     dea_hold one = {.plain = plain}, other = {.plain = plain};
     const dea_holder *h = p->holder;
     if (!h->hold(h->user, p->point, strain, &one) || (p->second && !h->hold(h->user, p->second, strain, &other))) {
+        *p->lost = true;
         return false;
     }
     const dea_spring spring = dea_point_spring(p->point, strain * p->radius);
@@ -114,6 +116,77 @@ static bool grow(parties *p, bool driven)
     return true;
 }
 
+/* What the films hold beyond what acts on them at the voltage of the point, from the base on. */
+static dea_path_place net_at(const void *user, double x)
+{
+    const parties *p = user;
+    const double none = (double)NAN;
+    edge_forces f;
+    if (!look(p, p->base + p->toward * x, false, &f)) {
+        return (dea_path_place){none, none, none, none};
+    }
+    return (dea_path_place){p->toward * (f.held - f.load - f.push) + p->begin,
+                            (f.held_slope - f.load_slope - f.push_slope) * p->radius, 1.0, 0.0};
+}
+
+/* Moves the base to the equilibrium next to it under the voltage of the point; false: there is none. */
+static bool settle(parties *p)
+{
+    edge_forces f;
+    double x = 0.0;
+    if (!look(p, p->base, false, &f)) {
+        return false;
+    }
+    const double net = f.held - f.load - f.push, slope = f.held_slope - f.load_slope - f.push_slope;
+    p->toward = net > 0.0 ? -1.0 : 1.0;
+    p->begin = fabs(net);
+    const dea_path path = {.at = net_at,
+                           .film = p,
+                           .rest = slope * p->radius,
+                           .end = end_of(p),
+                           .rough = p->holder->rough,
+                           .share = 1.0 - p->point->coverage};
+    if (!(slope > 0.0) || (net != 0.0 && !is_near(&path, p->begin, &x) && !dea_path_trace(&path, p->begin, &x)) || isnan(x)) {
+        return false;
+    }
+    p->base += p->toward * x;
+    return true;
+}
+
+/* Is the base, under the voltage of the point, far from a fold: are the films some tenth as stiff there as without it? */
+static bool is_stiff(const parties *p, double rest)
+{
+    edge_forces f;
+    return look(p, p->base, false, &f) && f.held_slope - f.load_slope - f.push_slope > 0.1 * rest;
+}
+
+/* The voltage grows in parts, each from the place of the one before: the annulus of a lens may stand nowhere on the way under the whole
+ * of it, and stand at its end. The base is NAN where the films are far from a fold and yet not found. */
+static bool grow_by_parts(parties *p)
+{
+    const double least = 1.0 / 64.0; /* of the square: what does not go on so has come to its fold */
+    const dea_point *whole = p->point;
+    dea_point part = *whole;
+    edge_forces f;
+    double at = 0.0;
+    p->point = &part;
+    part.voltage = 0.0;
+    const double rest = look(p, p->base, false, &f) ? f.held_slope - f.load_slope : (double)NAN;
+    for (double step = 0.5; at < 1.0 && step >= least;) {
+        const double next = fmin(1.0, at + step);
+        part.voltage = whole->voltage * sqrt(next);
+        *p->lost = false;
+        const bool stands = settle(p);
+        at = stands ? next : at;
+        step *= stands ? 1.5 : 0.5;
+    }
+    part.voltage = whole->voltage * sqrt(at);
+    const bool missed = at < 1.0 && *p->lost && is_stiff(p, rest);
+    p->base = missed ? (double)NAN : p->base;
+    p->point = whole;
+    return at >= 1.0 || missed;
+}
+
 /* The row of the films: its state is that of the worse one, broken down or slack. */
 static void fill(const parties *p, const edge_forces *f, dea_row *row)
 {
@@ -129,18 +202,30 @@ static void fill(const parties *p, const edge_forces *f, dea_row *row)
     }
 }
 
-static parties parties_of(const dea_holder *holder, const dea_point *point, const dea_point *second)
+static parties parties_of(const dea_holder *holder, const dea_point *point, const dea_point *second, bool *lost)
 {
-    return (parties){
-        .holder = holder, .point = point, .second = point->second.there ? second : NULL, .radius = dea_point_divide(point)};
+    return (parties){.holder = holder,
+                     .point = point,
+                     .second = point->second.there ? second : NULL,
+                     .radius = dea_point_divide(point),
+                     .lost = lost};
 }
 
 void dea_loaded_solve(const dea_holder *holder, const dea_point *point, dea_row *row)
 {
     const dea_point second = dea_point_second(point);
-    parties p = parties_of(holder, point, &second);
+    bool lost = false;
+    parties p = parties_of(holder, point, &second, &lost);
     edge_forces f;
-    const bool stands = grow(&p, false) && (isnan(p.base) || grow(&p, true)); /* it may stand, and not be found */
+    dea_point still = *point; /* force and second film come before the voltage, under which the film need not stand there */
+    still.voltage = 0.0;
+    p.point = &still;
+    bool stands = grow(&p, false); /* it may stand, and not be found */
+    p.point = point;
+    if (stands && !isnan(p.base)) {
+        lost = false;
+        stands = grow(&p, true) || (lost && grow_by_parts(&p));
+    }
     if (!stands || !look(&p, p.base, true, &f)) {
         dea_row_refuse(row, stands ? DEA_STATE_FAILED : DEA_STATE_PULL_IN);
         return;
@@ -151,7 +236,8 @@ void dea_loaded_solve(const dea_holder *holder, const dea_point *point, dea_row 
 void dea_loaded_hold(const dea_holder *holder, const dea_point *point, double displacement, dea_row *row)
 {
     const dea_point second = dea_point_second(point);
-    const parties p = parties_of(holder, point, &second);
+    bool lost = false;
+    const parties p = parties_of(holder, point, &second, &lost);
     const double room = point->frame_radius - p.radius;
     edge_forces f;
     dea_row_refuse(row, displacement > -p.radius && displacement < room ? DEA_STATE_PULL_IN : DEA_STATE_FAILED);

@@ -323,12 +323,14 @@ static void judge_record(const dea_scene *scene, const char *name)
 static void records_move_the_film_as_the_closed_form_says(void **state)
 {
     (void)state;
-    for (int i = 0; i < 6; i++) {
-        dea_scene scene = record(i < 2 ? 1e-4 : 3e-3, i % 2 ? 5.0 : 0.0);
+    for (int i = 0; i < 7; i++) {
+        dea_scene scene = record(i < 2 ? 1e-4 : 3e-3, i == 6 ? 50.0 : i % 2 ? 5.0 : 0.0);
         scene.reduction.mass = i >= 4;
         judge_record(&scene, "ida");
-        scene.accuracy = 1e-4;
         scene.transient.every = 1e-3;
+        scene.accuracy = 1e-3;
+        judge_record(&scene, "ida");
+        scene.accuracy = 1e-4;
         judge_record(&scene, "ida");
         if (i == 0 || i == 4) { /* the others take ngspice seconds */
             judge_record(&scene, "ngspice");

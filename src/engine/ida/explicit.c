@@ -59,14 +59,20 @@ static int rates(sunrealtype time, N_Vector w, N_Vector wp, void *user)
     return 0;
 }
 
+/* Fewest steps over a polynomial of the 11th degree that stands for lines: those that hold a whole turn of it pass the test of their
+ * error by chance, so that the error hardly falls with the tolerance. */
+static const double parts = 8.0;
+
 /* Longest step [s]: samples cut steps, and where they alone did, a tighter tolerance would change nothing that a comparison of
  * two runs could see. In a frame that does not turn, no more than a part of the swing either. */
 static double longest_step(const dea_flight *flight)
 {
     const dea_rotation *swing = flight->swing;
     const double tolerance = flight->tolerance;
-    const double lines = flight->motion.segment->step;
-    double sampled = flight->scene->transient.every * pow(tolerance / flight->loosest, 1.0 / 7.0);
+    const dea_segment *segment = flight->motion.segment;
+    const double lines = segment->step, every = flight->scene->transient.every;
+    const double whole = segment->terms ? fmin(every, (segment->to - segment->from) / parts) : every;
+    double sampled = whole * pow(tolerance / flight->loosest, 1.0 / 7.0);
     sampled = lines > 0.0 ? fmin(sampled, lines) : sampled;
     return swing->turns ? sampled : fmin(sampled, fmin(1.2, 6.0 * pow(tolerance, 1.0 / 7.0)) / swing->omega);
 }

@@ -24,7 +24,7 @@ enum { GBS_COLUMNS = 7, ELLIPTIC_SAMPLES = 8 };
 static const double longest_step = 0.35;
 static const double shortest_step = 1e-3; /* of the longest: there the film ends */
 static const double little = 1e-11;       /* of D */
-static const double tenth = 0.1;          /* and of the accuracy: deep in slack the force follows the strain some twenty times */
+static const double hundredth = 0.01;     /* and of the accuracy: deep in slack the force follows the strain some twenty times, over some steps */
 
 static double step_for(double accuracy)
 {
@@ -77,9 +77,7 @@ static double beside_jump(const membrane *m, double l, double d)
 
 static radial_state slope_at(const membrane *m, radial_state s)
 {
-    const double l2 = m->film->prestretch + s.e;
-    const double l1 = l2 - s.d;
-    const double area = l1 * l2;
+    const double l2 = m->film->prestretch + s.e, l1 = l2 - s.d, area = l1 * l2;
     const dea_stress stress = stress_at(m, l1, l2);
     const dea_electric electric = dea_film_electric(m->film, area);
     const double s11 = stress.w11 - m->annulus_k * electric.second * l2 * l2;
@@ -91,21 +89,24 @@ static radial_state slope_at(const membrane *m, radial_state s)
     return (radial_state){-s.d * rate, -s.d, electric.own * area * area - 2.0 * s.c};
 }
 
-/* Gragg's modified midpoint rule over one step with n substeps and its smoothing. */
+static radial_state moved(radial_state s, double by, radial_state way)
+{
+    return (radial_state){s.d + by * way.d, s.e + by * way.e, s.c + by * way.c};
+}
+
+/* Gragg's modified midpoint rule over one step with n substeps and its smoothing: the change from the start, which keeps the digits
+ * that extrapolation costs. */
 static radial_state midpoint(const membrane *m, radial_state start, radial_state slope, double step, int n)
 {
     const double h = step / n;
-    radial_state before = start;
-    radial_state now = {start.d + h * slope.d, start.e + h * slope.e, start.c + h * slope.c};
+    const radial_state none = {0.0, 0.0, 0.0};
+    radial_state before = none, now = moved(none, h, slope);
     for (int i = 1; i < n; i++) {
-        const radial_state f = slope_at(m, now);
-        const radial_state next = {before.d + 2.0 * h * f.d, before.e + 2.0 * h * f.e, before.c + 2.0 * h * f.c};
+        const radial_state next = moved(before, 2.0 * h, slope_at(m, moved(start, 1.0, now)));
         before = now;
         now = next;
     }
-    const radial_state f = slope_at(m, now);
-    return (radial_state){0.5 * (before.d + now.d + h * f.d), 0.5 * (before.e + now.e + h * f.e),
-                          0.5 * (before.c + now.c + h * f.c)};
+    return moved(none, 0.5, moved(moved(before, 1.0, now), h, slope_at(m, moved(start, 1.0, now))));
 }
 
 /* One step: midpoint rules with 2, 4, ... 14 substeps, extrapolated in h^2 (Neville). False: the step is too long. */
@@ -119,16 +120,14 @@ static bool advance(const membrane *m, radial_state start, double step, radial_s
         for (int j = 1; j <= k; j++) {
             const double ratio = (double)(k + 1) / (double)(k + 1 - j);
             const double weight = 1.0 / (ratio * ratio - 1.0);
-            const radial_state last = row[j - 1];
+            const radial_state last = row[j - 1], off = moved(value, -1.0, last);
             row[j - 1] = value;
-            change = weight * fabs(value.d - last.d);
-            value.d += weight * (value.d - last.d);
-            value.e += weight * (value.e - last.e);
-            value.c += weight * (value.c - last.c);
+            change = weight * fabs(off.d);
+            value = moved(value, weight, off);
         }
         row[k] = value;
     }
-    *end = row[GBS_COLUMNS - 1];
+    *end = moved(start, 1.0, row[GBS_COLUMNS - 1]);
     return change <= m->mesh.change * fabs(start.d);
 }
 
@@ -592,6 +591,28 @@ static dea_found found_of(const dea_point *point, double edge, const extremes *x
                                              .taut = x->least_stress > 0.0});
 }
 
+/* What is found of the film where it meets the frame, on the line through an edge next to that and one beside it. From a small hole
+ * in a wide annulus, whose edge moves the frame some 1/B^2 times as far, one ulp of the edge is many of what is found far from it: no
+ * edge in double meets the frame, the line does. */
+static bool finish(const membrane *m, double *edge, extremes *x)
+{
+    const double beside = 1e-7; /* of the edge */
+    extremes other;
+    const double miss = miss_at_frame(m, *edge, x);
+    if (miss == 0.0 || isnan(miss)) {
+        return miss == 0.0;
+    }
+    const double way = -miss / (miss_at_frame(m, *edge * (1.0 + beside), &other) - miss);
+    if (fabs(way) <= 1.0) { /* not past the end of the film */
+        *edge += way * beside * *edge;
+        x->least_stress += way * (other.least_stress - x->least_stress);
+        x->largest_area += way * (other.largest_area - x->largest_area);
+        x->edge_force += way * (other.edge_force - x->edge_force);
+        x->charge += way * (other.charge - x->charge);
+    }
+    return true;
+}
+
 void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row)
 {
     const dea_film *film = &point->film;
@@ -611,7 +632,7 @@ void dea_field_solve(const dea_point *point, dea_field_mesh mesh, dea_row *row)
         }
     }
     extremes x;
-    if (!isfinite(miss_at_frame(&m, edge, &x))) {
+    if (!finish(&m, &edge, &x)) {
         dea_row_refuse(row, DEA_STATE_FAILED);
         return;
     }
@@ -667,7 +688,7 @@ static bool hold(const dea_point *point, double strain, dea_hold *hold)
 static void solve_many(const dea_point *points, size_t count, double accuracy, dea_row *rows)
 {
     enum { CHUNK = 64 };
-    const dea_field_mesh mesh = {step_for(accuracy), fmin(little, tenth * accuracy)};
+    const dea_field_mesh mesh = {step_for(accuracy), fmin(little, hundredth * accuracy)};
     for (size_t from = 0; from < count; from += CHUNK) {
         const size_t some = count - from < CHUNK ? count - from : CHUNK;
         bool solved[CHUNK];

@@ -405,6 +405,73 @@ static void a_mean_that_is_off_is_found(void **state)
     judge_close(&j);
 }
 
+static dea_status answer_badly(void *session, const dea_scene *scene, const dea_model *model, dea_response *rows, dea_band *band,
+                               dea_error *error)
+{
+    const dea_status status = dea_engine_find("direct")->ac(session, scene, model, rows, band, error);
+    rows[0].displacement *= 1.0 + 3.0 * scene->accuracy;
+    return status;
+}
+
+static dea_status peak_badly(void *session, const dea_scene *scene, const dea_model *model, dea_response *rows, dea_band *band,
+                             dea_error *error)
+{
+    const dea_status status = dea_engine_find("direct")->ac(session, scene, model, rows, band, error);
+    rows[7].displacement *= 1.0 + 30.0 * scene->accuracy;
+    return status;
+}
+
+/* Row 7 of a film that rings some thousand times lies next to the peak, where an ulp of the frequency is 2,800 of the answer. */
+static void a_resonance_excuses_ulps_and_nothing_else(void **state)
+{
+    (void)state;
+    dea_engine badly = *dea_engine_find("direct"), peaks = badly;
+    badly.ac = answer_badly;
+    peaks.ac = peak_badly;
+    char *text = draw_scene(400884818, 180);
+    judged j;
+    tally counted = {0};
+    char line[LINE] = "";
+    assert_true(judge_open(&j, text, 0));
+    assert_false(judge_engine(&j, dea_engine_find("direct"), 1e-12, &counted, line, sizeof line));
+    assert_true(judge_engine(&j, &badly, 1e-12, &counted, line, sizeof line));
+    assert_non_null(strstr(line, "displacement of point 0, row 0"));
+    assert_true(judge_engine(&j, &peaks, 1e-12, &counted, line, sizeof line));
+    assert_non_null(strstr(line, "displacement of point 0, row 7"));
+    judge_close(&j);
+    free(text);
+}
+
+/* Far from rest: lenses slack around a small hole, whose edge moves the film at the frame a thousand times as far; a dot that has
+ * pressed its annulus against the frame; a stiff skin that a lens has drawn to ten times its length. */
+static void a_membrane_far_from_rest_keeps_its_digits(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {
+        "actuator: {kind: lens, frame_radius: 3 mm, coverage: 0.03, film_thickness: 400 um, prestretch: 2.6, layers: 3}\n"
+        "material: {gent: {mu: 590 kPa, Jm: 30}, permittivity: 2.8}\ndrive: {voltage: 46 kV}\nmodel: field\n"
+        "study: {sweep: {coverage: [0.035, 0.042, 0.05, 0.06]}}\n",
+        "actuator: {kind: dot, frame_radius: 5 mm, coverage: 0.1, film_thickness: 20 um, prestretch: 2.3}\n"
+        "material: {mooney_rivlin: {C10: 34 kPa, C01: 19 kPa}, permittivity: 5.6}\ndrive: {voltage: 1 kV}\nmodel: field\n"
+        "study: {sweep: {voltage: [650 V, 700 V, 750 V, 900 V, 1 kV, 1.2 kV, 1.5 kV]}}\n",
+        "electrode: {thickness: 2.4 um, neo_hookean: {mu: 5.4 MPa}}\n"
+        "actuator: {kind: lens, frame_radius: 1.3 mm, coverage: 0.92, film_thickness: 40 um, prestretch: 2.1}\n"
+        "material: {ogden: [{mu: -190 kPa, alpha: -2.9}], permittivity: 10}\ndrive: {voltage: 6 kV}\nmodel: field\n"
+        "study: {sweep: {voltage: [7 kV, 7.5 kV, 8 kV, 8.3 kV, 8.6 kV]}}\n",
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        judged j;
+        tally counted = {0};
+        char line[LINE] = "";
+        assert_true(judge_open(&j, texts[i], i));
+        (void)judge_engine(&j, dea_engine_find("direct"), 1e-12, &counted, line, sizeof line);
+        assert_string_equal(line, "");
+        assert_int_equal(counted.delivered, 1);
+        assert_true(counted.worst < 0.4);
+        judge_close(&j);
+    }
+}
+
 /* A lens so small that strains beside it are steep: every mesh of its network folds, while the film has an equilibrium; and one that
  * pulls in. */
 static void no_film_is_pulled_in_where_meshes_alone_fold(void **state)
@@ -806,6 +873,8 @@ int main(void)
         cmocka_unit_test(a_branch_without_fold_goes_as_far_as_its_film),
         cmocka_unit_test(an_engine_that_is_off_by_three_times_the_accuracy_is_found),
         cmocka_unit_test(a_mean_that_is_off_is_found),
+        cmocka_unit_test(a_resonance_excuses_ulps_and_nothing_else),
+        cmocka_unit_test(a_membrane_far_from_rest_keeps_its_digits),
         cmocka_unit_test(no_film_is_pulled_in_where_meshes_alone_fold),
         cmocka_unit_test(draws_are_valid_scenes_of_all_laws),
         cmocka_unit_test(moving_films_that_are_drawn_are_valid_scenes),

@@ -277,13 +277,31 @@ static double curvature_of(const planner *p, dea_part part, dea_branch_form form
     return second ? (1.0 + p->surrogate.variation) * excess_of(&p->surrogate) : 1.0;
 }
 
+/* Angular frequency of the film at rest, its branches held [rad/s]. */
+static double omega_of(const dea_surrogate *s)
+{
+    return sqrt((s->points[0].passive + s->dynamics.total_share * s->points[0].viscous) / s->dynamics.mass);
+}
+
+/* What a change of a swing grows by where the film's stiffness varies on its way: with its amplitude or middle, off by x, its frequency
+ * is off by x/2 of that variation, and turns its phase over all radians that it lives. */
+static double turning_of(const planner *p, dea_part part)
+{
+    const dea_surrogate *s = &p->surrogate;
+    const bool varies = !s->dynamics.linear || s->dynamics.series > 0.0;
+    if (!varies || part == DEA_PART_MASS || p->reduction.mass || !(s->swing > 0.0)) {
+        return 1.0;
+    }
+    return 1.0 + 0.5 * s->variation * fmin(1.0, s->swing) * omega_of(s) * s->fading;
+}
+
 /* Leaves something out if it fits into the budget; a bound that it has already is for what the stand-in does not see. */
 static bool try(planner *p, dea_omission omission)
 {
     if (!pays(p, omission.part) || !solve_with(p, &omission)) {
         return false;
     }
-    omission.bound += curvature_of(p, omission.part, omission.form) * change_of(p) + rounding;
+    omission.bound += curvature_of(p, omission.part, omission.form) * turning_of(p, omission.part) * change_of(p) + rounding;
     if (omission.bound <= one_share * p->left) {
         omission.bound += mark_of(p, &omission);
     }
@@ -309,12 +327,6 @@ static double ring_at(const planner *p, double omega, size_t probe)
         ring = here <= ring ? ring : isnan(here) ? (double)INFINITY : here;
     }
     return curvature_of(p, DEA_PART_RING, DEA_BRANCH_WHOLE) * p->safety * ring;
-}
-
-/* Angular frequency of the film at rest, its branches held [rad/s]. */
-static double omega_of(const dea_surrogate *s)
-{
-    return sqrt((s->points[0].passive + s->dynamics.total_share * s->points[0].viscous) / s->dynamics.mass);
 }
 
 /* The mass from that time behind a corner on from which no sample sees its ring any more. */

@@ -212,6 +212,21 @@ static void a_mean_sees_a_damper_that_no_sample_does(void **state)
     assert_true(measured[0].change > 1e-6); /* of the mean: no sample changes by that */
 }
 
+/* A branch of g = 3.7e-6 takes less than 1e-5 from this swing over its 120 periods; but the frequency goes with the amplitude, so that
+ * the phase in the end is off by 1.3e-3 of the peak. */
+static void a_weak_branch_turns_the_phase_of_a_long_swing(void **state)
+{
+    (void)state;
+    uint64_t seed = 7000103u * (uint64_t)29;
+    dea_scene scene;
+    random_transient(&seed, &scene);
+    random_blur(&seed, &scene);
+    scene.accuracy = 3.4e-3;
+    assert_int_equal(check_scene(29, &scene), 0);
+    scene.accuracy = 1e-1;
+    assert_int_equal(check_scene(29, &scene), 1);
+}
+
 /* Samples every 20 ms behind a wait of 0.1 s: neither the ring, nor a branch of 1 us, nor 1 Ohm shows, and one of 30 years is a
  * spring. */
 static void samples_decide_what_is_left_out(void **state)
@@ -711,6 +726,7 @@ int main(void)
         cmocka_unit_test(bounds_hold_where_the_film_softens),
         cmocka_unit_test(a_branch_stays_where_its_mark_in_the_slow_ones_shows),
         cmocka_unit_test(a_mean_sees_a_damper_that_no_sample_does),
+        cmocka_unit_test(a_weak_branch_turns_the_phase_of_a_long_swing),
         cmocka_unit_test(samples_decide_what_is_left_out),
         cmocka_unit_test(a_series_resistance_is_left_out_where_nothing_shows_it),
         cmocka_unit_test(a_film_that_leaves_its_frame_keeps_all_its_parts),

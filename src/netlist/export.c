@@ -36,9 +36,9 @@ static dea_status refuse_models(const dea_scene *scene, dea_error *error)
                                                       "has one resistance for it", scene->models[0]->name);
     }
     const bool still = !dea_study_of(scene)->along || dea_study_of(scene)->still;
-    if (scene->models[0]->membrane && still && dea_scene_is_pulled(scene)) {
-        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s at rest is a netlist with springs at its edge alone, no force and no second "
-                                                      "film: --model ring has them", scene->models[0]->name);
+    if (scene->models[0]->membrane && still && scene->antagonist.there) {
+        return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s with a second film at rest is no netlist: --model ring is one",
+                        scene->models[0]->name);
     }
     if (scene->models[0]->membrane && !still && scene->antagonist.there) {
         return dea_fail(error, DEA_ERROR_UNSUPPORTED, "the model %s with a second film that moves is no netlist: --as subckt has both films, "

@@ -118,7 +118,8 @@ void dea_rings_cards_make(const dea_symbols *symbols, dea_rings_mesh mesh, dea_r
     }
     const dea_expr thickness = DIV(SQUARE(symbols->prestretch), symbols->film_thickness);
     const dea_expr held = dea_symbols_springs(symbols, MUL(symbols->frame_radius, dea_expr_node(pool, DEA_RINGS_E1)));
-    cards->load = SCALE(0.5 / (DEA_PI * mega), MUL(DIV(held, symbols->frame_radius), thickness));
+    const dea_expr load = SUB(held, dea_symbols_force(symbols));
+    cards->load = SCALE(0.5 / (DEA_PI * mega), MUL(DIV(load, symbols->frame_radius), thickness));
     dea_rings_slopes_of(mesh.disc, &cards->slopes[0]);
     dea_rings_slopes_of(mesh.annulus, &cards->slopes[1]);
     make_element(cards, true);
@@ -256,7 +257,7 @@ static void write_forces(const dea_rings_writer *w, const dea_rings_ring *ring, 
     }
 }
 
-/* The springs between edge and frame. */
+/* The springs between edge and frame, and the force on the edge. */
 static void write_load(const dea_rings_writer *w)
 {
     if (dea_expr_constant(w->cards->symbols.pool, w->cards->load) == 0.0) {

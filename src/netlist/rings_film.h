@@ -29,7 +29,7 @@ typedef struct dea_rings_cards {
     size_t ring_count;
     dea_rings_ring rings[DEA_RINGS_MOST];
     dea_expr stress[DEA_RINGS_STRAINS][2][2]; /* s_1 and s_2 [MPa] of a kind of ring, bare and electroded */
-    dea_expr load;                            /* springs between edge and frame, of node DEA_RINGS_E1 as u/r */
+    dea_expr load;                            /* springs between edge and frame less the force outward, of node DEA_RINGS_E1 as u/r */
 } dea_rings_cards;
 
 #endif

@@ -115,7 +115,7 @@ void dea_rings_line_choose(dea_rings_line *line)
         }
         dea_film_prepare(&scene, &point.film);
         dea_point_place(&scene, &point);
-        if (dea_point_valid(&point) && point.voltage != 0.0) {
+        if (dea_point_valid(&point) && (point.voltage != 0.0 || point.force != 0.0)) {
             const dea_rings_mesh mesh = dea_still_mesh(&point, mesh_share * scene.accuracy, &error);
             line->error = mesh.annulus > 0 ? fmax(line->error, error) : line->error;
             line->mesh = mesh.annulus > line->mesh.annulus ? mesh : line->mesh;

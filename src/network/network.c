@@ -440,6 +440,17 @@ dea_expr dea_symbols_springs(const dea_symbols *symbols, dea_expr u)
     return sum;
 }
 
+dea_expr dea_symbols_force(const dea_symbols *symbols)
+{
+    dea_pool *pool = symbols->pool;
+    dea_expr sum = NUM(0.0);
+    for (size_t i = 0; i < DEA_LOADS; i++) {
+        const dea_load_kind *kind = symbols->load_kinds[i];
+        sum = kind ? ADD(sum, SCALE(kind->adds.force, symbols->loads[i])) : sum;
+    }
+    return sum;
+}
+
 /* What a load adds in one role, if anything. */
 static void add_load(dea_network *network, const dea_load_kind *kind, dea_role role, dea_expr value)
 {

@@ -145,6 +145,8 @@ dea_expr dea_network_load(dea_network *network);
 /* Shared pieces of the models' networks. */
 /* What springs at the edge hold against u [N]; NUM(0): there is none. */
 dea_expr dea_symbols_springs(const dea_symbols *symbols, dea_expr u);
+/* Steady force of the loads on the edge, outward [N]. */
+dea_expr dea_symbols_force(const dea_symbols *symbols);
 /* The symbols of a scene: numbers, or expressions of symbol 0 where the axis (may be NULL) enters. */
 dea_symbols dea_symbols_of(const dea_scene *scene, const dea_axis *axis, dea_pool *pool);
 /* Cauchy stress of the film at the pre-stretch, the same in all directions of its plane [Pa]. */

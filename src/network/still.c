@@ -24,6 +24,16 @@ void dea_still_open(const dea_point *point, dea_rings_mesh mesh, dea_still *stil
     dea_rings_cut(point, mesh, &still->rings);
 }
 
+/* What acts on a film at rest: a force on its edge, outward [N], and the voltage as M [Pa]. */
+typedef struct action {
+    double force, pressure;
+} action;
+
+static action whole(const dea_still *still)
+{
+    return (action){still->point->force, still->pressure};
+}
+
 /* Relative stretches of a ring. */
 typedef struct strains {
     double e1, e2;
@@ -41,10 +51,10 @@ static strains strains_of(const dea_ring *ring, const double *u)
 
 /* Changes of s_a = P_a - k (lambda1 lambda2)^2/lambda_a from P_a at rest, and their slopes over the stretches; a permittivity that
  * follows the strain scales k (dea_film_electric()). */
-static dea_biaxial stress_of(const dea_still *still, const dea_ring *ring, strains e, double share)
+static dea_biaxial stress_of(const dea_still *still, const dea_ring *ring, strains e, double pressure)
 {
     const dea_film *film = &still->point->film;
-    const double k = ring->electroded ? share * still->pressure : 0.0;
+    const double k = ring->electroded ? pressure : 0.0;
     const double l1 = film->prestretch * (1.0 + e.e1), l2 = film->prestretch * (1.0 + e.e2);
     const dea_electric electric = dea_film_electric(film, l1 * l2);
     const double first = k * electric.first, second = k * electric.second;
@@ -110,9 +120,9 @@ static void solve(size_t n, const double *k, double *x)
     }
 }
 
-/* Newton's step at @p u under that share of the load, node_count values [m]. False where the stiffness matrix is not positive
+/* Newton's step at @p u under an action, node_count values [m]. False where the stiffness matrix is not positive
  * definite (a pivot <= 0: the film is not stable), a ring has no stress or is no longer elliptic (ds_1/dlambda_1 <= 0); then @p step is undefined. */
-static bool still_step(const dea_still *still, double share, const double *u, double *step)
+static bool still_step(const dea_still *still, action under, const double *u, double *step)
 {
     const size_t n = still->rings.node_count;
     double k[DEA_RINGS_NODES * DEA_RINGS_NODES];
@@ -124,7 +134,7 @@ static bool still_step(const dea_still *still, double share, const double *u, do
         if (!(e.e1 > -1.0 && e.e2 > -1.0)) {
             return false;
         }
-        const dea_biaxial s = stress_of(still, ring, e, share);
+        const dea_biaxial s = stress_of(still, ring, e, under.pressure);
         if (!ring->disc && !(s.w11 > 0.0)) {
             return false; /* no longer elliptic: the film thins within a place, and no mesh tells how far (the disc stays uniform) */
         }
@@ -132,7 +142,7 @@ static bool still_step(const dea_still *still, double share, const double *u, do
     }
     const size_t edge = still->rings.edge;
     const dea_spring spring = dea_point_spring(still->point, u[edge]);
-    step[edge] -= spring.force;
+    step[edge] += under.force - spring.force;
     k[edge * n + edge] += spring.slope;
     if (!factor(n, k)) {
         return false;
@@ -157,13 +167,13 @@ static double rounding(const dea_still *still)
     return dea_point_is_loaded(still->point) ? 4.0 * DBL_EPSILON * still->point->frame_radius : 0.0;
 }
 
-/* Newton from @p u under a share of the load; false where it does not settle within @p reach or on something stable. */
-static bool settle(const dea_still *still, double share, double reach, double *u)
+/* Newton from @p u under an action; false where it does not settle within @p reach or on something stable. */
+static bool settle(const dea_still *still, action under, double reach, double *u)
 {
     const size_t n = still->rings.node_count;
     double step[DEA_RINGS_NODES], moved = 0.0, last = (double)INFINITY;
     for (int i = 0; i < NEWTON_MOST; i++) {
-        if (!still_step(still, share, u, step)) {
+        if (!still_step(still, under, u, step)) {
             return false;
         }
         const double size = size_of(n, step);
@@ -182,11 +192,21 @@ static bool settle(const dea_still *still, double share, double reach, double *u
     return false;
 }
 
-/* Slope of the equilibrium over the share of the load: at an equilibrium Newton's step under a share more is that. */
-static bool tangent(const dea_still *still, double share, const double *u, double *slope)
+/* A way of equilibria: what acts grows evenly from one action to another. */
+typedef struct way {
+    action from, to;
+} way;
+
+static action action_at(const way *w, double share)
+{
+    return (action){w->from.force + share * (w->to.force - w->from.force), w->from.pressure + share * (w->to.pressure - w->from.pressure)};
+}
+
+/* Slope of the equilibrium over the share of the way: at an equilibrium Newton's step under a share more is that. */
+static bool tangent(const dea_still *still, const way *w, double share, const double *u, double *slope)
 {
     const double more = 1e-4;
-    if (!still_step(still, share + more, u, slope)) {
+    if (!still_step(still, action_at(w, share + more), u, slope)) {
         return false;
     }
     for (size_t i = 0; i < still->rings.node_count; i++) {
@@ -195,34 +215,57 @@ static bool tangent(const dea_still *still, double share, const double *u, doubl
     return true;
 }
 
-dea_state dea_still_climb(const dea_still *still, double *u)
+/* Follows the equilibrium @p u along a way; false where it folds, or the film ends, before the end of it. */
+static bool follow(const dea_still *still, way w, double *u)
 {
     const size_t n = still->rings.node_count;
     double slope[DEA_RINGS_NODES], next[DEA_RINGS_NODES];
     double share = 0.0, step = first_share;
-    memset(u, 0, n * sizeof *u);
-    if (still->pressure == 0.0) {
-        return still_step(still, 0.0, u, slope) ? DEA_STATE_OK : DEA_STATE_PULL_IN;
+    if (w.from.force == w.to.force && w.from.pressure == w.to.pressure) {
+        return still_step(still, w.from, u, slope);
     }
     while (share < 1.0 && step > least_share) {
         const double to = share + step < 1.0 ? share + step : 1.0;
-        bool reached = tangent(still, share, u, slope);
+        bool reached = tangent(still, &w, share, u, slope);
         for (size_t i = 0; i < n && reached; i++) {
             next[i] = u[i] + (to - share) * slope[i];
         }
-        reached = reached && settle(still, to, straight * (to - share) * size_of(n, slope), next);
+        reached = reached && settle(still, action_at(&w, to), straight * (to - share) * size_of(n, slope), next);
         if (reached) {
             memcpy(u, next, n * sizeof *u);
             share = to;
         }
         step *= reached ? 2.0 : 0.5;
     }
-    return share < 1.0 ? DEA_STATE_PULL_IN : DEA_STATE_OK;
+    return share == 1.0;
+}
+
+dea_state dea_still_climb(const dea_still *still, double *u)
+{
+    const action rest = {0.0, 0.0}, alone = {still->point->force, 0.0};
+    memset(u, 0, still->rings.node_count * sizeof *u);
+    const bool stands = (alone.force == 0.0 || follow(still, (way){rest, alone}, u)) && follow(still, (way){alone, whole(still)}, u);
+    return stands ? DEA_STATE_OK : DEA_STATE_PULL_IN;
+}
+
+/* Displacement of the edge that the force alone makes of a film that stays linear: beside it the edge's is a difference [m]. */
+static double pulled(const dea_still *still)
+{
+    double u[DEA_RINGS_NODES] = {0.0}, step[DEA_RINGS_NODES];
+    if (still->point->force == 0.0 || !still_step(still, (action){still->point->force, 0.0}, u, step)) {
+        return 0.0;
+    }
+    return fabs(step[still->rings.edge]);
+}
+
+double dea_still_size(const dea_still *still, const double *u)
+{
+    return fmax(fabs(u[still->rings.edge]), pulled(still));
 }
 
 double dea_still_strain(const dea_still *still, const double *u)
 {
-    double most = 0.0;
+    double most = pulled(still) / dea_point_divide(still->point);
     for (size_t q = 0; q < still->rings.ring_count; q++) {
         const strains e = strains_of(&still->rings.rings[q], u);
         most = fmax(most, fmax(fabs(e.e1), fabs(e.e2)));
@@ -234,10 +277,13 @@ double dea_still_strain(const dea_still *still, const double *u)
 bool dea_still_near(const dea_still *still, const double *u)
 {
     double now = 0.0, rest = 0.0, most = 0.0;
+    if (still->point->force != 0.0) {
+        return false; /* the force alone may have led further */
+    }
     for (size_t q = 0; q < still->rings.ring_count; q++) {
         const dea_ring *ring = &still->rings.rings[q];
         const strains e = strains_of(ring, u);
-        const dea_biaxial s = stress_of(still, ring, e, 1.0);
+        const dea_biaxial s = stress_of(still, ring, e, still->pressure);
         now += ring->volume * (s.w11 * e.e1 * e.e1 + 2.0 * s.w12 * e.e1 * e.e2 + s.w22 * e.e2 * e.e2);
         const dea_biaxial bare = stress_of(still, ring, (strains){0.0, 0.0}, 0.0);
         rest += ring->volume * (bare.w11 * (e.e1 * e.e1 + e.e2 * e.e2) + 2.0 * bare.w12 * e.e1 * e.e2);
@@ -252,7 +298,7 @@ bool dea_still_near(const dea_still *still, const double *u)
 static double radial_strain(const dea_still *still, const dea_ring *ring, strains guess, double stress)
 {
     for (int i = 0; i < NEWTON_MOST; i++) {
-        const dea_biaxial s = stress_of(still, ring, guess, 1.0);
+        const dea_biaxial s = stress_of(still, ring, guess, still->pressure);
         const double step = (stress - s.p1) / (s.w11 * still->point->film.prestretch);
         guess.e1 += step;
         if (!(fabs(step) > 1e-15)) {
@@ -272,14 +318,15 @@ static void strains_all(const dea_still *still, const double *u, strains *e)
     for (size_t q = 0; q < rings->ring_count; q++) {
         const dea_ring *ring = &rings->rings[q];
         e[q] = strains_of(ring, u);
-        const dea_biaxial s = stress_of(still, ring, e[q], 1.0);
+        const dea_biaxial s = stress_of(still, ring, e[q], still->pressure);
         if (ring->disc) {
             stress = s.p1;
             moment = ring->radius * stress;
             continue;
         }
         const bool edge = rings->rings[q - 1].disc, frame = q + 1 == rings->ring_count;
-        const double held = edge ? dea_point_spring(still->point, u[rings->edge]).force / (2.0 * DEA_PI * thickness) : 0.0;
+        const double outside = dea_point_spring(still->point, u[rings->edge]).force - still->point->force;
+        const double held = edge ? outside / (2.0 * DEA_PI * thickness) : 0.0;
         stress += held * still->point->film.prestretch / dea_point_divide(still->point);
         moment += held + ring->volume / (2.0 * DEA_PI * ring->radius * thickness) * s.p2;
         if (edge || frame) {
@@ -325,7 +372,7 @@ static double fill(const dea_still *still, const double *u, dea_row *row)
     strains e[DEA_RINGS_MOST];
     strains_all(still, u, e);
     for (size_t q = 0; q < still->rings.ring_count; q++) {
-        const dea_biaxial s = stress_of(still, &still->rings.rings[q], e[q], 1.0);
+        const dea_biaxial s = stress_of(still, &still->rings.rings[q], e[q], still->pressure);
         radial[q] = -s.p1;
         hoop[q] = -s.p2;
         area[q] = film->square * (1.0 + e[q].e1) * (1.0 + e[q].e2);
@@ -350,18 +397,24 @@ static double relative(double a, double b)
     return a == b ? 0.0 : fabs(a - b) / fabs(b);
 }
 
+/* Of strains: over what the force alone makes, where that is more. */
+static double apart(const dea_still *still, double a, double b)
+{
+    return a == b ? 0.0 : fabs(a - b) / fmax(fabs(b), pulled(still) / dea_point_divide(still->point));
+}
+
 double dea_still_apart(const dea_still *coarse, const double *u, const dea_still *fine, const double *v, dea_row *row)
 {
     double better[DEA_RINGS_NODES];
     dea_row other;
-    if (!still_step(fine, 1.0, v, better)) {
+    if (!still_step(fine, whole(fine), v, better)) {
         return INFINITY;
     }
     for (size_t n = 0; n < fine->rings.node_count; n++) {
         better[n] += v[n];
     }
     const double lost = fill(coarse, u, row), finer = fill(fine, better, &other);
-    const double worst = fmax(fmax(relative(row->strain, other.strain), relative(row->force, other.force)),
+    const double worst = fmax(fmax(apart(fine, row->strain, other.strain), relative(row->force, other.force)),
                               fmax(relative(row->field, other.field), relative(row->capacitance, other.capacitance)));
     return row->state == other.state ? worst : fmax(worst, relative(lost, finer)); /* of two states the stress must tell */
 }
@@ -379,16 +432,16 @@ static double finer_error(const dea_still *still, const double *u, size_t more)
     dea_still_open(still->point, (dea_rings_mesh){mesh.disc, mesh.annulus + more, mesh.logarithmic}, &fine);
     dea_rings_transfer(mesh, fine.rings.mesh, matrix);
     dea_rings_move(matrix, still->rings.node_count, u, fine.rings.node_count, v);
-    if (!still_step(&fine, 1.0, v, step)) {
+    if (!still_step(&fine, whole(&fine), v, step)) {
         return INFINITY;
     }
-    return fmax(fabs(step[fine.rings.edge] / v[fine.rings.edge]), row_share * dea_still_apart(still, u, &fine, v, &row));
+    return fmax(fabs(step[fine.rings.edge]) / dea_still_size(&fine, v), row_share * dea_still_apart(still, u, &fine, v, &row));
 }
 
 /* By two: errors of meshes that converge slowly rise and fall with the degree, and two of them may agree by chance. */
 double dea_still_error(const dea_still *still, const double *u)
 {
-    return still->pressure == 0.0 ? 0.0 : fmax(finer_error(still, u, 1), finer_error(still, u, 2));
+    return still->pressure == 0.0 && still->point->force == 0.0 ? 0.0 : fmax(finer_error(still, u, 1), finer_error(still, u, 2));
 }
 
 /* Meshes of which none has an equilibrium, each finer than the last, and the degree from which on such a row of them is believed: finer

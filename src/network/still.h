@@ -1,5 +1,5 @@
-/* The film of rings at rest under its voltage: forces, stiffness, the way from rest, and the row of a solution. Displacements are
- * those of the moving nodes [m]. */
+/* The film of rings at rest under its voltage and a force on its edge: forces, stiffness, the way from rest, and the row of a
+ * solution. Displacements are those of the moving nodes [m]. */
 #ifndef DEA_STILL_H
 #define DEA_STILL_H
 
@@ -17,15 +17,18 @@ void dea_still_open(const dea_point *point, dea_rings_mesh mesh, dea_still *stil
 /* Fills the row of a mesh at u; returns how far it is, relative, from that of a finer mesh behind Newton's step from @p v, the same
  * place on it, with the stress that tells slack where their states differ; inf where that has no step. */
 double dea_still_apart(const dea_still *coarse, const double *u, const dea_still *fine, const double *v, dea_row *row);
-/* Follows the equilibrium from rest as the load grows; on DEA_STATE_OK @p u holds it under the full load, good to rounding.
- * DEA_STATE_PULL_IN: it folds, or the film ends, before that. */
+/* Follows the equilibrium from rest as the force grows and then the voltage; on DEA_STATE_OK @p u holds it under the full load, good
+ * to rounding. DEA_STATE_PULL_IN: it folds, or the film ends, before that. */
 dea_state dea_still_climb(const dea_still *still, double *u);
 
 /* True where a stable equilibrium @p u is so near to rest that no fold can lie between: small strains, and a stiffness against
  * them that the load has not halved. */
 bool dea_still_near(const dea_still *still, const double *u);
 
-/* Largest strain of a ring in its plane [1]. */
+/* What errors of the edge's displacement count against: it, or what the force alone makes where that is more [m]. */
+double dea_still_size(const dea_still *still, const double *u);
+
+/* Largest strain of a ring in its plane, at least that of the force alone [1]. */
 double dea_still_strain(const dea_still *still, const double *u);
 
 /* What meshes of one and of two degrees more make of the equilibrium @p u, the larger: of the edge's displacement, relative, and a

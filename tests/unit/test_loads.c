@@ -244,9 +244,9 @@ static void a_film_under_a_force_rests_where_forces_balance(void **state)
     for (size_t m = 0; m < MODELS; m++) {
         for (int lens = 0; lens < 2; lens++) {
             const char *text = lens ? FILM("lens") "}\ndrive: {voltage: 4 kV}\nload: {stiffness: 200 N/m}\n"
-                                      "study: {sweep: {load.force: [-300 mN, 50 mN, 1 N]}}\n"
+                                      "study: {sweep: {load.force: [-300 mN, 50 mN, 1 N]}}\naccuracy: 1e-9\n"
                                     : FILM("dot") "}\ndrive: {voltage: 4 kV}\nload: {stiffness: 200 N/m}\n"
-                                      "study: {sweep: {load.force: [-300 mN, 50 mN, 1 N]}}\n";
+                                      "study: {sweep: {load.force: [-300 mN, 50 mN, 1 N]}}\naccuracy: 1e-9\n";
             const film f = paper(!lens, 4000.0L);
             real wanted[3];
             for (int i = 0; i < 3; i++) {

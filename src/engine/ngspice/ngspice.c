@@ -45,8 +45,8 @@ static const char *refuses(const dea_scene *scene, const dea_model *model)
     if (model->membrane && !still && scene->antagonist.there) {
         return "its moving membrane has no second film";
     }
-    if (model->membrane && still && dea_scene_is_pulled(scene)) {
-        return "its membrane at rest carries springs alone, no force and no second film";
+    if (model->membrane && still && scene->antagonist.there) {
+        return "its membrane at rest has no second film";
     }
     if (model->membrane && dea_study_of(scene)->holds) {
         return "it does not hold the edge of the membrane";

@@ -68,6 +68,12 @@ static void place(line_job *job, size_t i)
     job->valid = dea_point_valid(&job->point);
 }
 
+/* True where nothing moves the film from rest. */
+static bool at_rest(const line_job *job)
+{
+    return job->point.voltage == 0.0 && job->point.force == 0.0;
+}
+
 /* The rings of the point, cut anew where its geometry is another. */
 static void cut(line_job *job)
 {
@@ -97,7 +103,7 @@ static bool is_connected(const line_job *job, const double *u)
         return true;
     }
     const size_t edge = job->coarse.rings.edge;
-    return dea_still_climb(&job->coarse, own) == DEA_STATE_OK && fabs(own[edge] - u[edge]) <= same * fabs(own[edge]);
+    return dea_still_climb(&job->coarse, own) == DEA_STATE_OK && fabs(own[edge] - u[edge]) <= same * dea_still_size(&job->coarse, own);
 }
 
 /* Fills the row of the placed point where displacements over r are its answer. */
@@ -132,7 +138,7 @@ static double least_strain(line_job *job, size_t from, size_t count)
             continue;
         }
         cut(job);
-        if (job->coarse.pressure > 0.0 && dea_still_climb(&job->coarse, u) == DEA_STATE_OK) {
+        if (!at_rest(job) && dea_still_climb(&job->coarse, u) == DEA_STATE_OK) {
             least = fmin(least, dea_still_strain(&job->coarse, u));
         }
     }
@@ -202,7 +208,7 @@ static bool can_start(void *user, size_t i)
 {
     line_job *job = user;
     place(job, i);
-    if (!job->valid || job->point.voltage == 0.0) {
+    if (!job->valid || at_rest(job)) {
         return false;
     }
     cut(job);
@@ -240,7 +246,7 @@ static dea_status sweep(void *user, size_t from, size_t count, size_t *good, dea
     return status;
 }
 
-/* A voltage that grows from 0 in so many steps to that of the placed point. */
+/* A voltage that grows from 0, where the force alone holds the film, in so many steps to that of the placed point. */
 static dea_status climb(line_job *job, size_t i, size_t steps, bool *accepted, dea_error *error)
 {
     double *values = malloc((steps + 1) * sizeof *values);
@@ -259,10 +265,13 @@ static dea_status climb(line_job *job, size_t i, size_t steps, bool *accepted, d
     const dea_scene here = job->scene;
     const dea_rings_line line = {.scene = &here, .axis = &axis, .to = steps + 1, .mesh = job->mesh, .number = 1};
     dea_ngspice_table table = {0};
-    double u[DEA_RINGS_NODES];
+    double u[DEA_RINGS_NODES], begin[DEA_RINGS_NODES];
+    job->coarse.pressure = 0.0;
+    const bool pulled = job->point.force != 0.0 && dea_still_climb(&job->coarse, begin) == DEA_STATE_OK;
+    cut(job);
     const bool known = dea_still_climb(&job->coarse, u) == DEA_STATE_OK;
     const double strain = known ? dea_still_strain(&job->coarse, u) / (double)(steps * steps) : 1e-6;
-    const analysis a = {.to = steps, .relative = fmin(1e-7, job->accuracy), .absolute = 1e-11 * strain};
+    const analysis a = {.to = steps, .relative = fmin(1e-7, job->accuracy), .absolute = 1e-11 * strain, .start = pulled ? begin : NULL};
     const dea_status status = run(job, &line, &a, &table, error);
     *accepted = status == DEA_OK && table.count == steps + 1 && accept(job, i, (const double *const *)table.columns, steps);
     dea_ngspice_table_free(&table);
@@ -285,7 +294,7 @@ static dea_status alone(void *user, size_t i, dea_error *failure)
     double u[DEA_RINGS_NODES], error;
     *row_at(job, i) = dea_row_failed();
     place(job, i);
-    if (!job->valid || (job->point.voltage == 0.0 && accept(job, i, NULL, 0))) {
+    if (!job->valid || (at_rest(job) && accept(job, i, NULL, 0))) {
         return DEA_OK;
     }
     cut(job);

@@ -671,7 +671,7 @@ static const struct {
      "-0.37319324986150926}}\n"
      "drive: {voltage: 400 V}\nmodel: field\nstudy: {sweep: {voltage: [397.82527412185522 V, 401.32986440797646 V]}}\n"},
     /* a pulled film deep in slack, at a place of which the tightest search of the shooting once ended in a circle */
-    {DEA_STATE_SLACK, 4, 0,
+    {DEA_STATE_SLACK, 6, 0,
      "actuator: {kind: dot, frame_radius: 0.0093991722183387957 m, coverage: 0.79978347932217841,\n"
      "  film_thickness: 4.0252806916949911e-06 m, prestretch: 1.3210016414242731}\n"
      "load: {force: 0.00019527745846592237 N}\nmaterial: {neo_hookean: {mu: 13400 Pa}, permittivity: 4.8}\n"

@@ -379,15 +379,15 @@ void dea_shooting_close(dea_shooting *s)
     }
 }
 
-/* Runs KINSOL from v = start on; NAN where it does not settle. */
-static double search_from(dea_shooting *s, search what, double start)
+/* Runs KINSOL from v = start on, for an answer of some size; NAN where it does not settle. */
+static double search_from(dea_shooting *s, search what, double start, double size)
 {
     const dea_sundials *sun = s->integrator.sun;
     s->search = what;
     sun->N_VConst(s->tolerance, s->integrator.tolerance);
     NV_DATA_S(s->integrator.tolerance)[HOOP] *= 1.0 - s->point->coverage; /* the hoop strain of a narrow annulus is that small */
     NV_DATA_S(s->edge)[0] = start;
-    sun->KINSetFuncNormTol(s->kinsol, 100.0 * s->tolerance * fabs(start));
+    sun->KINSetFuncNormTol(s->kinsol, 100.0 * s->tolerance * fabs(size));
     const int code = sun->KINSol(s->kinsol, s->edge, KIN_FP, s->ones, s->ones);
     return code < 0 ? NAN : NV_DATA_S(s->edge)[0];
 }
@@ -398,7 +398,7 @@ static double edge_at_full_load(dea_shooting *s, double guess)
     set_scales(s, 1.0);
     set_load(s, 1.0);
     s->held = guess;
-    return search_from(s, SEARCH_EDGE, guess / s->strain) * s->strain;
+    return search_from(s, SEARCH_EDGE, guess / s->strain, guess / s->strain) * s->strain;
 }
 
 /* d(miss)/d(edge) under the full load: 1 for a film without load, 0 where the equilibrium folds. */
@@ -414,7 +414,7 @@ static double share_at(dea_shooting *s, double edge, double guess)
     set_scales(s, guess);
     s->share = guess;
     s->held = edge;
-    return search_from(s, SEARCH_SHARE, 1.0) * guess;
+    return search_from(s, SEARCH_SHARE, 1.0, 1.0) * guess;
 }
 
 /* A place of the equilibrium: the edge, the share of the load that holds it, and lambda_1 behind r_a there. */
@@ -572,7 +572,10 @@ static double pull_at(dea_shooting *s, double share, double edge, double guess)
     s->held = edge;
     set_load(s, share);
     s->uniform = s->annulus_k * dea_point_electric(s->point).first;
-    return edge != 0.0 ? search_from(s, SEARCH_PULL, guess / s->stress) * s->stress : 0.0;
+    const double most = 1e6; /* what is so many times Lame's answer holds no film: a search that has gone far away ends in roots of rounding */
+    const double lame = lame_stiffness(s->point) * edge;
+    const double pull = edge != 0.0 ? search_from(s, SEARCH_PULL, guess / s->stress, lame / s->stress) * s->stress : 0.0;
+    return fabs(pull) <= most * fabs(lame) ? pull : (double)NAN;
 }
 
 /* The same without a guess. Lame's film is a poor one where the voltage softens the film or the law stiffens it: the way then goes from

@@ -13,6 +13,7 @@
  * A permittivity that follows the strain puts its factors (dea_film_electric()) before k and the integrand of c.
  */
 
+#include "model/path.h"
 #include "model/field.h"
 
 enum { GBS_COLUMNS = 7, ELLIPTIC_SAMPLES = 8 };
@@ -24,7 +25,7 @@ enum { GBS_COLUMNS = 7, ELLIPTIC_SAMPLES = 8 };
 static const double longest_step = 0.35;
 static const double shortest_step = 1e-3; /* of the longest: there the film ends */
 static const double little = 1e-11;       /* of D */
-static const double hundredth = 0.01;     /* and of the accuracy: deep in slack the force follows the strain some twenty times, over some steps */
+static const double hundredth = 0.01; /* and of the accuracy: deep in slack the force follows the strain some twenty times, over steps */
 
 static double step_for(double accuracy)
 {
@@ -512,18 +513,27 @@ static membrane membrane_of(const dea_point *point, double pressure, dea_field_m
     return (membrane){point, &point->film, !dot, dot ? pressure : 0.0, dot ? 0.0 : pressure, -log(point->coverage), mesh};
 }
 
-/* D behind an edge that is held, where e = 0 at the frame: by secants from Lame's solution, 2 e/(1 - B^2); NAN where there is none. */
-static double jump_of_held(const membrane *m, double edge)
+/* A film whose edge is held under its load. */
+typedef struct grip {
+    const membrane *film;
+    double edge;
+} grip;
+
+/* D behind the edge at a share of edge and load, where e = 0 at the frame: by secants from a guess; NAN where there is none. */
+static double jump_from(void *user, double way, double d)
 {
     enum { MOST = 60 };
-    double d0 = 0.0, d = 2.0 * edge / (1.0 - m->point->coverage * m->point->coverage);
-    double miss0 = miss_from(m, edge, d0, NULL);
+    const grip *g = user;
+    const membrane m = under_load(g->film, way);
+    const double edge = way * g->edge;
+    double d0 = 0.0;
+    double miss0 = miss_from(&m, edge, d0, NULL);
     if (isnan(miss0)) { /* alike stretches at the edge can be past the end of the film where those of Lame's solution are not */
         d0 = 0.99 * d;
-        miss0 = miss_from(m, edge, d0, NULL);
+        miss0 = miss_from(&m, edge, d0, NULL);
     }
     for (int i = 0; i < MOST && d != d0; i++) {
-        const double miss = miss_from(m, edge, d, NULL);
+        const double miss = miss_from(&m, edge, d, NULL);
         if (isnan(miss)) { /* past the end of the film */
             d = 0.5 * (d0 + d);
             continue;
@@ -537,6 +547,13 @@ static double jump_of_held(const membrane *m, double edge)
         }
     }
     return d == d0 ? d : (double)NAN;
+}
+
+/* The same of the whole, from Lame's solution. */
+static double jump_of_held(const membrane *m, double edge)
+{
+    grip g = {m, edge};
+    return dea_path_reach(jump_from, &g, 2.0 * edge / (1.0 - m->point->coverage * m->point->coverage));
 }
 
 /* Integrates over a stretch of x in steps that are short enough. */
@@ -652,7 +669,8 @@ static double force_on_edge(const membrane *m, double edge, double *d)
 static double held_at(const membrane *full, const membrane *still, double edge, double *push, double *d)
 {
     const double held = -force_on_edge(still, edge, d), l = full->film->prestretch + edge;
-    *push = full->lens ? force_on_edge(full, edge, d) + held : dea_field_lever(full->point) * full->disc_k * dea_film_electric(full->film, l * l).first * l * l * l;
+    *push = full->lens ? force_on_edge(full, edge, d) + held
+                       : dea_field_lever(full->point) * full->disc_k * dea_film_electric(full->film, l * l).first * l * l * l;
     return held;
 }
 

@@ -87,11 +87,28 @@ static bool is_near(const dea_path *path, double m, double *x)
     return false;
 }
 
+/* Moves the base to where the load m is held, on a way whose slope there is `slope` [N/m]; false: it is held nowhere. The base is NAN
+ * where it is, and was not found. */
+static bool advance(parties *p, dea_path_place (*at)(const void *user, double x), double slope, double m)
+{
+    const dea_path path = {.at = at,
+                           .film = p,
+                           .rest = slope * p->radius,
+                           .end = end_of(p),
+                           .rough = p->holder->rough,
+                           .share = 1.0 - p->point->coverage};
+    double x = 0.0;
+    if (!(slope > 0.0) || (m != 0.0 && !is_near(&path, m, &x) && !dea_path_trace(&path, m, &x))) {
+        return false;
+    }
+    p->base += p->toward * x;
+    return true;
+}
+
 /* Moves the base along the way of what grows; false: no equilibrium. */
 static bool grow(parties *p, bool driven)
 {
     edge_forces f;
-    double x = 0.0;
     p->driven = driven;
     if (!look(p, p->base, false, &f)) {
         return false;
@@ -99,21 +116,8 @@ static bool grow(parties *p, bool driven)
     const double weight = driven ? f.push : f.load, slope = driven ? f.held_slope - f.load_slope : f.held_slope;
     p->toward = weight < 0.0 ? -1.0 : 1.0;
     p->begin = weight;
-    const dea_path path = {.at = place_at,
-                           .film = p,
-                           .rest = slope * p->radius,
-                           .end = end_of(p),
-                           .rough = p->holder->rough,
-                           .share = 1.0 - p->point->coverage};
     const double stays = driven ? f.push_slope : f.load_slope;
-    if (!(slope > 0.0) || (weight == 0.0 && !(slope > stays))) {
-        return false;
-    }
-    if (weight != 0.0 && !is_near(&path, fabs(weight), &x) && !dea_path_trace(&path, fabs(weight), &x)) {
-        return false;
-    }
-    p->base += p->toward * x;
-    return true;
+    return (weight != 0.0 || slope > stays) && advance(p, place_at, slope, fabs(weight));
 }
 
 /* What the films hold beyond what acts on them at the voltage of the point, from the base on. */
@@ -129,28 +133,20 @@ static dea_path_place net_at(const void *user, double x)
                             (f.held_slope - f.load_slope - f.push_slope) * p->radius, 1.0, 0.0};
 }
 
-/* Moves the base to the equilibrium next to it under the voltage of the point; false: there is none. */
+/* Moves the base to the equilibrium next to it under the voltage of the point; false: there is none, or it was not found. */
 static bool settle(parties *p)
 {
+    const double base = p->base;
     edge_forces f;
-    double x = 0.0;
-    if (!look(p, p->base, false, &f)) {
+    if (!look(p, base, false, &f)) {
         return false;
     }
-    const double net = f.held - f.load - f.push, slope = f.held_slope - f.load_slope - f.push_slope;
+    const double net = f.held - f.load - f.push;
     p->toward = net > 0.0 ? -1.0 : 1.0;
     p->begin = fabs(net);
-    const dea_path path = {.at = net_at,
-                           .film = p,
-                           .rest = slope * p->radius,
-                           .end = end_of(p),
-                           .rough = p->holder->rough,
-                           .share = 1.0 - p->point->coverage};
-    if (!(slope > 0.0) || (net != 0.0 && !is_near(&path, p->begin, &x) && !dea_path_trace(&path, p->begin, &x)) || isnan(x)) {
-        return false;
-    }
-    p->base += p->toward * x;
-    return true;
+    const bool stands = advance(p, net_at, f.held_slope - f.load_slope - f.push_slope, fabs(net)) && !isnan(p->base);
+    p->base = stands ? p->base : base;
+    return stands;
 }
 
 /* Is the base, under the voltage of the point, far from a fold: are the films some tenth as stiff there as without it? */

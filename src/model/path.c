@@ -133,3 +133,23 @@ bool dea_path_trace(const dea_path *path, double m, double *x)
     }
     return false;
 }
+
+double dea_path_reach(double (*at)(void *user, double share, double guess), void *user, double linear)
+{
+    const double least = 1.0 / 64.0;
+    double answer = at(user, 1.0, linear);
+    double gone = 0.0, ratio = linear, slope = 0.0; /* the answer over its share of the way, and the slope of that */
+    for (double step = 0.5; isnan(answer) && step >= least;) {
+        const double next = fmin(1.0, gone + step);
+        const double here = at(user, next, next * (ratio + slope * (next - gone)));
+        if (isnan(here)) {
+            step *= 0.5;
+            continue;
+        }
+        slope = (here / next - ratio) / (next - gone);
+        ratio = here / next;
+        gone = next;
+        answer = next < 1.0 ? answer : here;
+    }
+    return answer;
+}

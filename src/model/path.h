@@ -40,4 +40,9 @@ bool dea_path_grows(const dea_path *path, double x);
 /* The first equilibrium from rest under the load m > 0, NAN where it is there and was not found; false where there is none: pull-in. */
 bool dea_path_trace(const dea_path *path, double m, double *x);
 
+/* What answers a load, from rest: `linear` where both are small. It is searched from there at once, and, where that leads nowhere, on
+ * the way from rest, all in one proportion, each place telling where the next one lies. @p at finds the answer at a share of the way
+ * [1] from a guess of it, NAN where it finds none. NAN where steps of a 64th lead no further: the film has come to its end. */
+double dea_path_reach(double (*at)(void *user, double share, double guess), void *user, double linear);
+
 #endif

@@ -13,6 +13,7 @@
 
 #include "engine/ida/sundials.h"
 #include "model/loaded.h"
+#include "model/path.h"
 
 enum { SIGMA, HOOP, RADIAL, UNKNOWNS };
 
@@ -379,15 +380,15 @@ void dea_shooting_close(dea_shooting *s)
     }
 }
 
-/* Runs KINSOL from v = start on, for an answer of some size; NAN where it does not settle. */
-static double search_from(dea_shooting *s, search what, double start, double size)
+/* Runs KINSOL from v = start on; NAN where it does not settle. */
+static double search_from(dea_shooting *s, search what, double start)
 {
     const dea_sundials *sun = s->integrator.sun;
     s->search = what;
     sun->N_VConst(s->tolerance, s->integrator.tolerance);
     NV_DATA_S(s->integrator.tolerance)[HOOP] *= 1.0 - s->point->coverage; /* the hoop strain of a narrow annulus is that small */
     NV_DATA_S(s->edge)[0] = start;
-    sun->KINSetFuncNormTol(s->kinsol, 100.0 * s->tolerance * fabs(size));
+    sun->KINSetFuncNormTol(s->kinsol, 100.0 * s->tolerance * fabs(start));
     const int code = sun->KINSol(s->kinsol, s->edge, KIN_FP, s->ones, s->ones);
     return code < 0 ? NAN : NV_DATA_S(s->edge)[0];
 }
@@ -398,7 +399,7 @@ static double edge_at_full_load(dea_shooting *s, double guess)
     set_scales(s, 1.0);
     set_load(s, 1.0);
     s->held = guess;
-    return search_from(s, SEARCH_EDGE, guess / s->strain, guess / s->strain) * s->strain;
+    return search_from(s, SEARCH_EDGE, guess / s->strain) * s->strain;
 }
 
 /* d(miss)/d(edge) under the full load: 1 for a film without load, 0 where the equilibrium folds. */
@@ -414,7 +415,7 @@ static double share_at(dea_shooting *s, double edge, double guess)
     set_scales(s, guess);
     s->share = guess;
     s->held = edge;
-    return search_from(s, SEARCH_SHARE, 1.0, 1.0) * guess;
+    return search_from(s, SEARCH_SHARE, 1.0) * guess;
 }
 
 /* A place of the equilibrium: the edge, the share of the load that holds it, and lambda_1 behind r_a there. */
@@ -564,48 +565,33 @@ static dea_found found_at(const dea_shooting *s, double edge)
                        .taut = s->least_stress > 0.0};
 }
 
-/* What must pull at an edge that is held under a share of the load, from a guess [Pa]; NAN where KINSOL does not settle. */
-static double pull_at(dea_shooting *s, double share, double edge, double guess)
-{
-    s->strain = fabs(edge);
-    s->stress = s->point->film.w11 * s->strain;
-    s->held = edge;
-    set_load(s, share);
-    s->uniform = s->annulus_k * dea_point_electric(s->point).first;
-    const double most = 1e6; /* what is so many times Lame's answer holds no film: a search that has gone far away ends in roots of rounding */
-    const double lame = lame_stiffness(s->point) * edge;
-    const double pull = edge != 0.0 ? search_from(s, SEARCH_PULL, guess / s->stress, lame / s->stress) * s->stress : 0.0;
-    return fabs(pull) <= most * fabs(lame) ? pull : (double)NAN;
-}
+/* A film whose edge is held under a share of the load. */
+typedef struct grip {
+    dea_shooting *shooting;
+    double share, edge;
+} grip;
 
-/* The same without a guess. Lame's film is a poor one where the voltage softens the film or the law stiffens it: the way then goes from
- * rest, where it is exact, to there, edge and load in one proportion, and each place tells where the next one lies. */
-static double find_pull(dea_shooting *s, double share, double edge)
+/* What must pull there at a share of both, from a guess [Pa]; NAN where KINSOL does not settle. */
+static double pull_at(void *user, double way, double guess)
 {
-    const double least = 1.0 / 64.0; /* steps of the way: a film that is not found so is past its end */
-    const double linear = lame_stiffness(s->point) * edge;
-    double pull = pull_at(s, share, edge, linear);
-    double at = 0.0, ratio = linear, slope = 0.0; /* pull over its share of the way, and the slope of that */
-    for (double step = 0.5; isnan(pull) && step >= least;) {
-        const double next = fmin(1.0, at + step);
-        const double here = pull_at(s, next * share, next * edge, next * (ratio + slope * (next - at)));
-        if (isnan(here)) {
-            step *= 0.5;
-            continue;
-        }
-        slope = (here / next - ratio) / (next - at);
-        ratio = here / next;
-        at = next;
-        pull = next < 1.0 ? pull : here;
-    }
-    return pull;
+    const double most = 1e6; /* what is so many times Lame's answer holds no film: far away a search ends in roots of rounding */
+    const grip *g = user;
+    dea_shooting *s = g->shooting;
+    s->held = way * g->edge;
+    s->strain = fabs(s->held);
+    s->stress = s->point->film.w11 * s->strain;
+    set_load(s, way * g->share);
+    s->uniform = s->annulus_k * dea_point_electric(s->point).first;
+    const double pull = s->held != 0.0 ? search_from(s, SEARCH_PULL, guess / s->stress) * s->stress : 0.0;
+    return fabs(pull) <= most * fabs(lame_stiffness(s->point) * s->held) ? pull : (double)NAN;
 }
 
 /* What the film exerts on an edge that is held under a share of the load, outward [N]. At rest it is uniform. */
 static double force_on_edge(dea_shooting *s, double share, double edge)
 {
     const double l = s->point->film.prestretch;
-    s->pull = find_pull(s, share, edge);
+    grip g = {s, share, edge};
+    s->pull = dea_path_reach(pull_at, &g, lame_stiffness(s->point) * edge);
     return -lever_of(s->point) * (s->pull + s->uniform * l * l * l);
 }
 
